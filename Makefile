@@ -1,0 +1,111 @@
+# Everything runs in .venv, which the first target that needs it makes; no environment has to be active.
+#   make demo     the six-speed gearbox launches and shifts: out/demo/
+#   make test     all tests: C++ core under sanitizers, then Python
+#   make check    format, lint, types, import contracts, spelling
+#   make bench    speed against peers
+#   make docs     the documentation: build/docs/index.html
+#   make setup    the environment alone
+#   make clean    removes .venv, build and out
+
+PYTHON ?= python3
+# the built-in default of make is g++ even where only clang is installed
+ifeq ($(origin CXX),default)
+CXX := c++
+endif
+export CXX
+unexport PYTHONPATH PYTHONHOME VIRTUAL_ENV
+
+VENV := .venv
+BIN := $(VENV)/bin
+STAMPS := $(VENV)/stamps
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+JOBS ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
+
+# what the compiled core is made from; Python files outside the declarations take effect without a build
+CORE_SOURCES := $(shell find CMakeLists.txt cpp interfaces src/clutchwork/elements src/clutchwork/laws \
+	-name '*.py' -o -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.txt' 2>/dev/null) \
+	$(wildcard tools/gen_registry.py src/clutchwork/schema.py src/clutchwork/layout.py)
+CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*.cpp' 'interfaces/*.hpp' 'tests/cpp/*.cpp' 'tests/cpp/*.hpp')
+
+.PHONY: help setup demo test test-cpp test-python check format bench docs picture clean
+.DELETE_ON_ERROR:
+
+help:
+	@sed -n '2,8p' Makefile | cut -c 3-
+
+# ---------------------------------------------------------------- environment
+
+setup: $(STAMPS)/package
+
+$(STAMPS)/venv: tools/prerequisites.sh
+	@tools/prerequisites.sh $(PYTHON) $(CXX)
+	@echo "making $(VENV)"
+	@$(PYTHON) -m venv $(VENV)
+	@mkdir -p $(STAMPS)
+	@touch $@
+
+$(STAMPS)/tools: $(STAMPS)/venv pyproject.toml tools/extras.py
+	@echo "installing what the build and the tests need"
+	@$(PIP) install $$($(BIN)/python tools/extras.py build test)
+	@touch $@
+
+$(STAMPS)/package: $(STAMPS)/tools $(CORE_SOURCES)
+	@echo "building and installing clutchwork"
+	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH" \
+		$(PIP) install --no-build-isolation --no-deps --editable .
+	@touch $@
+
+$(STAMPS)/check $(STAMPS)/docs $(STAMPS)/bench: $(STAMPS)/%: $(STAMPS)/tools
+	@echo "installing what 'make $*' needs"
+	@$(PIP) install $$($(BIN)/python tools/extras.py $*)
+	@touch $@
+
+# ---------------------------------------------------------------- what people want
+
+demo: $(STAMPS)/package
+	@mkdir -p out/demo
+	@$(BIN)/clutchwork run examples/six_speed/model.toml --out out/demo
+
+# both parts run, a failure of either fails the target, and pytest has the last word
+test: $(STAMPS)/package
+	@cpp=0; $(MAKE) --no-print-directory test-cpp || cpp=$$?; \
+	if [ $$cpp -ne 0 ]; then echo "the C++ tests FAILED; the Python tests follow"; fi; \
+	$(BIN)/python -m pytest && exit $$cpp
+
+test-cpp: $(STAMPS)/tools
+	@$(BIN)/cmake -S tests/cpp -B build/cpp -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja \
+		-DCMAKE_CXX_COMPILER=$(CXX) -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python >build/cpp.log 2>&1 || \
+		{ cat build/cpp.log; exit 1; }
+	@$(BIN)/cmake --build build/cpp --parallel $(JOBS)
+	@$(BIN)/ctest --test-dir build/cpp --output-on-failure
+
+test-python: $(STAMPS)/package
+	@$(BIN)/python -m pytest
+
+check: $(STAMPS)/package $(STAMPS)/check
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/codespell
+	$(BIN)/clang-format --dry-run --Werror $(CPP_FILES)
+
+format: $(STAMPS)/check
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+	$(BIN)/clang-format -i $(CPP_FILES)
+
+bench: $(STAMPS)/package $(STAMPS)/bench
+	@$(BIN)/python -m benchmarks
+
+docs: $(STAMPS)/package $(STAMPS)/docs
+	@$(BIN)/python tools/gen_docs.py docs/reference
+	@$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/docs
+	@echo "build/docs/index.html"
+
+# the picture at the top of the README
+picture: $(STAMPS)/package
+	@$(BIN)/python docs/figures/engagement.py docs/_static/engagement.png
+
+clean:
+	rm -rf $(VENV) build out docs/reference
