@@ -1,0 +1,30 @@
+"""Friction brake against the housing."""
+
+from __future__ import annotations
+
+from clutchwork.node import Component, Law, Node, SignalLike
+from clutchwork.schema import Role, component, law, option, param, port, signal
+
+
+@component(Role.CONTACT)
+class Brake(Component):
+    """Clutch whose base is the housing.
+
+    Use it for the brakes of a gearbox and for vehicle brakes. Capacity is `gain * pressure * coefficient`; a
+    pressure below zero counts as zero. Give a normal force in place of the pressure where that is known: in N
+    with a gain in m, or as a share from 0 to 1 with a gain in N m.
+    """
+
+    shaft: Node = port("member that is braked: slip is its speed")
+    friction: Law = law("friction coefficient over slip, static coefficient at rest")
+    gain: float = param(
+        "m3", "torque per unit of pressure and coefficient", above=0.0, units=("m", "m2", "N m", "N", "1")
+    )
+    pressure: SignalLike | None = signal("Pa", "pressure on the piston", default=None)
+    normal_force: SignalLike | None = signal(
+        "N", "force on the linings, or its share", default=None, units=("1",), instead_of="pressure"
+    )
+    tolerance: float = option("rad/s", "speed below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
+    locked: bool = option(
+        "1", "whether it is locked at the start, with an impulse if need be", default=False, flag=True
+    )

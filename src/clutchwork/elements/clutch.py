@@ -1,0 +1,31 @@
+"""Friction clutch between two members."""
+
+from __future__ import annotations
+
+from clutchwork.node import Component, Law, Node, SignalLike
+from clutchwork.schema import Role, component, law, option, param, port, signal
+
+
+@component(Role.CONTACT)
+class Clutch(Component):
+    """Clutch that slips, locks exactly and breaks away.
+
+    Use it for a plate clutch between two shafts that is closed by a pressure. Capacity is
+    `gain * pressure * coefficient`; a pressure below zero counts as zero. Give a normal force in place of the
+    pressure where that is known: in N with a gain in m, or as a share from 0 to 1 with a gain in N m.
+    """
+
+    base: Node = port("side that the slip is counted from")
+    follower: Node = port("side whose motion counts positive: slip = follower - base")
+    friction: Law = law("friction coefficient over slip, static coefficient at rest")
+    gain: float = param(
+        "m3", "torque per unit of pressure and coefficient", above=0.0, units=("m", "m2", "N m", "N", "1")
+    )
+    pressure: SignalLike | None = signal("Pa", "pressure on the piston", default=None)
+    normal_force: SignalLike | None = signal(
+        "N", "force on the linings, or its share", default=None, units=("1",), instead_of="pressure"
+    )
+    tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
+    locked: bool = option(
+        "1", "whether it is locked at the start, with an impulse if need be", default=False, flag=True
+    )

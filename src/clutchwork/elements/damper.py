@@ -1,0 +1,18 @@
+"""Linear damper."""
+
+from __future__ import annotations
+
+from clutchwork.node import Component, Node
+from clutchwork.schema import Role, component, param, port
+
+
+@component(Role.TORQUE)
+class Damper(Component):
+    """Viscous coupling: the torque on the follower is -damping (follower - base).
+
+    Use it for fluid couplings near synchronous speed, viscous losses and drag in oil.
+    """
+
+    base: Node = port("side that the rate is counted from")
+    follower: Node = port("side whose motion counts positive")
+    damping: float = param("N m s/rad", "viscous damping", at_least=0.0, units=("N s/m",))

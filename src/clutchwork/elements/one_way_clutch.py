@@ -1,0 +1,33 @@
+"""Freewheel with an optional friction clutch in parallel."""
+
+from __future__ import annotations
+
+from clutchwork.laws.coulomb import Coulomb
+from clutchwork.node import Component, Law, Node, SignalLike
+from clutchwork.schema import Role, component, law, option, param, port, signal
+
+
+@component(Role.CONTACT)
+class OneWayClutch(Component):
+    """Freewheel: the follower may run ahead of the base and never falls behind it.
+
+    Use it for sprags, roller clutches and ratchets. While locked it transmits any torque that would make the
+    slip negative. The friction clutch in parallel has the capacity `gain * pressure * coefficient`, none by default.
+    """
+
+    base: Node = port("side that the slip is counted from")
+    follower: Node = port("side that may run ahead: slip = follower - base is never negative")
+    friction: Law = law("friction of the clutch in parallel", default=Coulomb(static=0.1, kinetic=0.1))
+    gain: float = param(
+        "m3", "torque per unit of pressure and coefficient", default=1.0, above=0.0, units=("m", "m2", "N m", "N", "1")
+    )
+    pressure: SignalLike | None = signal(
+        "Pa", "pressure on the clutch in parallel, 0 by default", default=None, otherwise=0.0
+    )
+    normal_force: SignalLike | None = signal(
+        "N", "force on the linings, or its share", default=None, units=("1",), instead_of="pressure"
+    )
+    tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
+    locked: bool = option(
+        "1", "whether it is locked at the start, with an impulse if need be", default=False, flag=True
+    )

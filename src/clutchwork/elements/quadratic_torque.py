@@ -1,0 +1,21 @@
+"""Torque quadratic in speed."""
+
+from __future__ import annotations
+
+from clutchwork.node import Component, Node
+from clutchwork.schema import Role, component, flag, param, port
+
+
+@component(Role.TORQUE)
+class QuadraticTorque(Component):
+    """Torque `nominal_torque * x abs(x)` on a shaft, x = speed / nominal_speed, speed relative to the base.
+
+    Use it for fans, pumps and air drag; a load that brakes has a negative nominal torque. With
+    `same_direction` the torque follows x^2: it acts in the same direction at all speeds.
+    """
+
+    shaft: Node = port("shaft that a positive torque accelerates")
+    base: Node | None = port("member that takes the reaction and that the speed is counted from", default=None)
+    nominal_torque: float = param("N m", "torque at nominal speed", units=("N",))
+    nominal_speed: float = param("rad/s", "speed of the nominal torque", above=0.0, units=("m/s",))
+    same_direction: bool = flag("whether it acts in the same direction at all speeds", default=False)

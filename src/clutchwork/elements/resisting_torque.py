@@ -1,0 +1,19 @@
+"""Load that opposes the motion."""
+
+from __future__ import annotations
+
+from clutchwork.node import Component, Node, SignalLike
+from clutchwork.schema import Role, component, param, port, signal
+
+
+@component(Role.TORQUE)
+class ResistingTorque(Component):
+    """Torque `-torque * tanh(speed_of_shaft / speed)`: full size against the motion, none at rest.
+
+    Use it for a road load that must not turn the shaft backward. For exact sticking use `BearingFriction`.
+    """
+
+    shaft: Node = port("shaft that is braked")
+    base: Node | None = port("member that takes the reaction and that the speed is counted from", default=None)
+    torque: SignalLike = signal("N m", "size of the torque", units=("N",))
+    speed: float = param("rad/s", "speed at which 76 % of it acts", above=0.0, units=("m/s",))

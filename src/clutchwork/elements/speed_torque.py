@@ -1,0 +1,19 @@
+"""Torque over speed as a table."""
+
+from __future__ import annotations
+
+from clutchwork.node import Component, Node, Points
+from clutchwork.schema import Role, component, curve, param, port
+
+
+@component(Role.TORQUE)
+class SpeedTorque(Component):
+    """Torque as a table over the speed of a shaft relative to its base, continued linearly beyond both ends.
+
+    Use it for the full-load line of an engine, motors and measured losses.
+    """
+
+    shaft: Node = port("shaft that a positive torque accelerates")
+    base: Node | None = port("member that takes the reaction and that the speed is counted from", default=None)
+    torque: Points = curve("rad/s", "N m", "torque on the shaft over speed", units=("N",))
+    gain: float = param("1", "factor on the torque", default=1.0)

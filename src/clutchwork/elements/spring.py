@@ -1,0 +1,24 @@
+"""Linear spring."""
+
+from __future__ import annotations
+
+from clutchwork.node import Component, Node
+from clutchwork.schema import Role, State, component, param, port
+
+
+@component(Role.TORQUE, states=(State("spring_torque", "N m", "stiffness times twist"),))
+class Spring(Component):
+    """Elastic shaft without damping.
+
+    Use it where damping does not matter; `SpringDamper` has some.
+    The torque on the follower is -stiffness twist, with twist = follower - base - free angle.
+    """
+
+    base: Node = port("side that the twist is counted from")
+    follower: Node = port("side whose motion counts positive")
+    stiffness: float = param("N m/rad", "torsional stiffness", above=0.0, units=("N/m",))
+    initial_twist: float = param("rad", "twist at the start, free angle taken off", default=0.0, units=("m",))
+
+    def initial_states(self) -> tuple[float, ...]:
+        """Spring torque at the start [N m]."""
+        return (self.stiffness * self.initial_twist,)

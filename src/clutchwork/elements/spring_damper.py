@@ -1,0 +1,25 @@
+"""Linear spring and damper in parallel."""
+
+from __future__ import annotations
+
+from clutchwork.node import Component, Node
+from clutchwork.schema import Role, State, component, param, port
+
+
+@component(Role.TORQUE, states=(State("spring_torque", "N m", "stiffness times twist"),))
+class SpringDamper(Component):
+    """Elastic shaft with internal damping.
+
+    Use it where two inertias are joined by something that twists: shafts, dual-mass flywheels, tyres.
+    The torque on the follower is -(stiffness twist + damping rate), with twist = follower - base - free angle.
+    """
+
+    base: Node = port("side that the twist is counted from")
+    follower: Node = port("side whose motion counts positive")
+    stiffness: float = param("N m/rad", "torsional stiffness", above=0.0, units=("N/m",))
+    damping: float = param("N m s/rad", "viscous damping", default=0.0, at_least=0.0, units=("N s/m",))
+    initial_twist: float = param("rad", "twist at the start, free angle taken off", default=0.0, units=("m",))
+
+    def initial_states(self) -> tuple[float, ...]:
+        """Spring torque at the start [N m]."""
+        return (self.stiffness * self.initial_twist,)

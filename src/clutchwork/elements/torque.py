@@ -1,0 +1,18 @@
+"""Torque over time."""
+
+from __future__ import annotations
+
+from clutchwork.node import Component, Node, SignalLike
+from clutchwork.schema import Role, component, port, signal
+
+
+@component(Role.TORQUE)
+class Torque(Component):
+    """Given torque on a shaft, its reaction on the base.
+
+    Use it for loads, motors and engines whose torque is known over time. On a mass it is a force.
+    """
+
+    shaft: Node = port("shaft that a positive torque accelerates")
+    base: Node | None = port("member that takes the reaction", default=None)
+    torque: SignalLike = signal("N m", "torque on the shaft", units=("N",))

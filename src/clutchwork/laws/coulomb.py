@@ -1,0 +1,21 @@
+"""Constant coefficients of friction."""
+
+from __future__ import annotations
+
+from clutchwork.node import Law
+from clutchwork.schema import Role, component, param
+
+
+@component(Role.LAW)
+class Coulomb(Law):
+    """One coefficient while it slips, another at rest.
+
+    Use it where the change with slip does not matter or is not known.
+    """
+
+    static: float = param("1", "coefficient at rest", at_least=0.0)
+    kinetic: float = param("1", "coefficient while it slips, at most the static one", at_least=0.0)
+
+    def sliding(self) -> float:
+        """Kinetic coefficient at vanishing slip."""
+        return self.kinetic

@@ -1,0 +1,23 @@
+"""Coefficient that falls exponentially with slip."""
+
+from __future__ import annotations
+
+from clutchwork.node import Law
+from clutchwork.schema import Role, component, param
+
+
+@component(Role.LAW)
+class Exponential(Law):
+    """Kinetic coefficient `fast + (slow - fast) exp(-abs(slip)/speed)`, static coefficient at rest.
+
+    Use it for paper linings whose coefficient settles with slip.
+    """
+
+    static: float = param("1", "coefficient at rest", above=0.0)
+    slow: float = param("1", "kinetic coefficient at vanishing slip, at most the static one", at_least=0.0)
+    fast: float = param("1", "kinetic coefficient at high slip", at_least=0.0)
+    speed: float = param("rad/s", "slip over which the difference falls to 1/e", above=0.0, units=("m/s",))
+
+    def sliding(self) -> float:
+        """Kinetic coefficient at vanishing slip."""
+        return self.slow

@@ -1,0 +1,77 @@
+"""What components attach to, and the bases of elements, laws and signals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple, TypeAlias
+
+
+class Domain(Enum):
+    """Kind of motion of a node."""
+
+    ROTATION = "rotation"
+    TRANSLATION = "translation"
+
+
+@dataclass(frozen=True)
+class Node:
+    """A shaft, a mass or the housing, as `Driveline.shaft`, `.mass` and `.housing` hand it out."""
+
+    name: str
+    domain: Domain = Domain.ROTATION
+    inertia: float = 0.0  # kg m2, or kg for a mass
+    speed: float | None = None  # rad/s or m/s at the start; None: follows from the others, else 0
+    angle: float = 0.0  # rad or m at the start
+    fixed: bool = False  # the housing
+
+
+HOUSING = Node("housing", fixed=True)
+
+
+@dataclass(frozen=True)
+class Component:
+    """An element with a name that is its path in results and errors."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Law:
+    """A friction law; it has no name of its own."""
+
+
+class Segment(NamedTuple):
+    """One piece of a signal; with s = t - start its value is
+
+    c0 + c1 s + c2 s^2 + c3 s^3 + amplitude exp(-decay s) sin(omega s + phase).
+    """
+
+    start: float
+    c0: float = 0.0
+    c1: float = 0.0
+    c2: float = 0.0
+    c3: float = 0.0
+    amplitude: float = 0.0
+    omega: float = 0.0
+    phase: float = 0.0
+    decay: float = 0.0
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A value over time in the unit of the quantity that it drives."""
+
+    def segments(self) -> tuple[Segment, ...]:
+        """Pieces in order of their start; the first holds for all earlier times too."""
+        raise NotImplementedError
+
+    def repeats(self) -> float:
+        """Period [s] with which the pieces repeat from the start of the first one; 0: never."""
+        return 0.0
+
+
+# what an input accepts
+SignalLike: TypeAlias = "float | Signal"
+# (x, y) pairs of a curve
+Points: TypeAlias = "tuple[tuple[float, float], ...] | list[tuple[float, float]]"

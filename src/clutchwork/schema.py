@@ -1,0 +1,212 @@
+"""How a component is declared: ports, parameters, curves, signals, states.
+
+Standard library only, because the build imports the declarations before a compiled core exists.
+A declaration is a frozen dataclass whose fields carry their unit, meaning and bounds as metadata.
+The C++ header of the same stem holds the equations; `tools/gen_registry.py` pairs the two.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator
+from dataclasses import MISSING, Field, dataclass, field, fields
+from enum import Enum
+from typing import Any, TypeVar, dataclass_transform
+
+
+class Role(Enum):
+    """What a component is to the engine."""
+
+    TORQUE = "torque"  # torque as a function of rate, states and inputs along one direction
+    CONTACT = "contact"  # set-valued friction along one direction
+    GEAR = "gear"  # rigid kinematic row between speeds, assembled in Python
+    MOTION = "motion"  # prescribed speed
+    LAW = "law"  # friction coefficient over slip
+    SIGNAL = "signal"  # value over time that drives an input
+
+
+@dataclass(frozen=True)
+class State:
+    """A continuous state that a component owns: name, unit, meaning."""
+
+    name: str
+    unit: str
+    doc: str
+
+
+@dataclass(frozen=True)
+class Spec:
+    """Metadata of one declared field."""
+
+    # "port" | "param" | "curve" | "signal" | "law" of the compiled core;
+    # "alternative" (to another signal) | "option" | "text" | "function" for Python alone
+    what: str
+    unit: str  # SI; "*" in a signal: the unit of what it drives
+    doc: str
+    optional: bool = False
+    above: float | None = None
+    at_least: float | None = None
+    below: float | None = None
+    at_most: float | None = None
+    unit_x: str = ""
+    units: tuple[str, ...] = ()  # further SI units that the quantity may have
+    domain: str = ""  # of a port: "rotation" or "translation"; empty: the same as its fellow ports
+    instead_of: str = ""  # of an alternative: the signal that it stands for
+    otherwise: float | None = None  # of a signal: its value when neither it nor its alternative is given
+    flag: bool = False  # true or false in Python, 1 or 0 in the core
+    whole: bool = False  # a whole number
+    rising: str = ""  # of a curve: "strictly", or "weakly" where equal x mean a jump
+
+    @property
+    def bound(self) -> str:
+        """The bound in words, empty when there is none."""
+        signs = ((">", self.above), (">=", self.at_least), ("<", self.below), ("<=", self.at_most))
+        return " and ".join(f"{sign} {value:g}" for sign, value in signs if value is not None)
+
+    def allows(self, value: float) -> bool:
+        """Whether a finite number keeps the bound."""
+        return (
+            (self.above is None or value > self.above)
+            and (self.at_least is None or value >= self.at_least)
+            and (self.below is None or value < self.below)
+            and (self.at_most is None or value <= self.at_most)
+        )
+
+
+def _field(spec: Spec, default: Any) -> Any:
+    return field(default=default, metadata={"spec": spec}, kw_only=True)
+
+
+def port(doc: str, *, default: None = MISSING, domain: str = "") -> Any:  # type: ignore[assignment]
+    """A shaft, mass or the housing that the component is attached to; with default None: the housing."""
+    return _field(Spec("port", "", doc, default is None, domain=domain), default)
+
+
+def param(
+    unit: str,
+    doc: str,
+    *,
+    default: float | None = MISSING,  # type: ignore[assignment]
+    above: float | None = None,
+    at_least: float | None = None,
+    below: float | None = None,
+    at_most: float | None = None,
+    units: tuple[str, ...] = (),
+    whole: bool = False,
+) -> Any:
+    """A constant number in SI units: one scalar of the C++ `Params`, in order of declaration."""
+    bounds = (above, at_least, below, at_most)
+    return _field(Spec("param", unit, doc, default is None, *bounds, units=units, whole=whole), default)
+
+
+def flag(doc: str, *, default: bool = MISSING) -> Any:  # type: ignore[assignment]
+    """True or false in Python, a scalar 1 or 0 of the C++ `Params`."""
+    return _field(Spec("param", "1", doc, flag=True), default)
+
+
+def curve(unit_x: str, unit_y: str, doc: str, *, units: tuple[str, ...] = (), rising: str = "strictly") -> Any:
+    """A piecewise linear function as (x, y) points with x increasing: a `Curve` of the C++ `Params`."""
+    return _field(Spec("curve", unit_y, doc, unit_x=unit_x, units=units, rising=rising), MISSING)
+
+
+def signal(
+    unit: str,
+    doc: str,
+    *,
+    default: float | None = MISSING,  # type: ignore[assignment]
+    units: tuple[str, ...] = (),
+    instead_of: str = "",
+    otherwise: float | None = None,
+) -> Any:
+    """An input over time: a number or a Signal; the C++ functions get it as `u[i]`.
+
+    With `instead_of` it is another way to give the signal of that name: exactly one of them is given, or
+    none where that signal has a value `otherwise`.
+    """
+    what = "alternative" if instead_of else "signal"
+    spec = Spec(what, unit, doc, default is None, units=units, instead_of=instead_of, otherwise=otherwise)
+    return _field(spec, default)
+
+
+def law(doc: str, *, default: object = MISSING) -> Any:
+    """The friction law of a contact."""
+    return _field(Spec("law", "1", doc), default)
+
+
+def option(
+    unit: str,
+    doc: str,
+    *,
+    default: float | None = MISSING,  # type: ignore[assignment]
+    above: float | None = None,
+    at_least: float | None = None,
+    flag: bool = False,
+) -> Any:
+    """A setting that the assembly reads and the equations do not: no part of the C++ `Params`."""
+    return _field(Spec("option", unit, doc, default is None, above, at_least, flag=flag), default)
+
+
+def text(doc: str, *, default: str = MISSING) -> Any:  # type: ignore[assignment]
+    """A path or a name."""
+    return _field(Spec("text", "", doc), default)
+
+
+def function(doc: str) -> Any:
+    """A Python function; a model file cannot hold one."""
+    return _field(Spec("function", "", doc), MISSING)
+
+
+REGISTRY: dict[Role, dict[str, type]] = {role: {} for role in Role}
+
+C = TypeVar("C", bound=type)
+
+
+@dataclass_transform(
+    kw_only_default=True,
+    frozen_default=True,
+    field_specifiers=(port, param, flag, curve, signal, law, option, text, function),
+)
+def component(role: Role, *, states: tuple[State, ...] = ()) -> Callable[[C], C]:
+    """Freeze a declaration as a dataclass and register it under its kind, the stem of its module."""
+
+    def register(cls: C) -> C:
+        frozen: Any = dataclass(frozen=True)(cls)
+        kind = cls.__module__.rpartition(".")[2]
+        frozen.kind, frozen.role, frozen.states = kind, role, states
+        REGISTRY[role][kind] = frozen
+        return cls
+
+    return register
+
+
+def specs(cls: type, *what: str) -> Iterator[tuple[Field[Any], Spec]]:
+    """The declared fields of a component, in order; optionally only some sorts."""
+    for item in fields(cls):
+        spec = item.metadata.get("spec")
+        if spec is not None and (not what or spec.what in what):
+            yield item, spec
+
+
+def kinds(role: Role) -> list[str]:
+    """The kinds of a role in the order of their number in the compiled core."""
+    return sorted(REGISTRY[role])
+
+
+COMPILED_ROLES = (Role.TORQUE, Role.CONTACT, Role.LAW)
+
+
+def schema_text() -> str:
+    """All that the compiled core must agree on, as text."""
+    lines = []
+    for role in COMPILED_ROLES:
+        for kind in kinds(role):
+            cls = REGISTRY[role][kind]
+            names = ",".join(f"{f.name}:{s.what}[{s.unit}]" for f, s in specs(cls, "param", "curve", "signal"))
+            lines.append(f"{role.value} {kind} {names} {len(cls.states)}")
+    return "\n".join(lines)
+
+
+def schema_hash(extra: str = "") -> int:
+    """63-bit fingerprint of every declaration and of the System layout."""
+    digest = hashlib.sha256((schema_text() + extra).encode()).digest()
+    return int.from_bytes(digest[:8], "little") >> 1
