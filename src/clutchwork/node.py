@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 
 class Domain(Enum):
@@ -42,9 +45,9 @@ class Law:
 
 
 class Segment(NamedTuple):
-    """One piece of a signal; with s = t - start its value is
+    """One piece of a signal.
 
-    c0 + c1 s + c2 s^2 + c3 s^3 + amplitude exp(-decay s) sin(omega s + phase).
+    With s = t - start its value is c0 + c1 s + c2 s^2 + c3 s^3 + amplitude exp(-decay s) sin(omega s + phase).
     """
 
     start: float
@@ -74,4 +77,6 @@ class Signal:
 # what an input accepts
 SignalLike: TypeAlias = "float | Signal"
 # (x, y) pairs of a curve
-Points: TypeAlias = "tuple[tuple[float, float], ...] | list[tuple[float, float]]"
+Points: TypeAlias = "Sequence[tuple[float, float]]"
+# what the gain of a contact may be in, besides m3 for a pressure: per N or per share, on shafts or on masses
+GAIN_UNITS = ("m", "m2", "N m", "N", "1")

@@ -8,10 +8,12 @@ The C++ header of the same stem holds the equations; `tools/gen_registry.py` pai
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator
 from dataclasses import MISSING, Field, dataclass, field, fields
 from enum import Enum
-from typing import Any, TypeVar, dataclass_transform
+from typing import TYPE_CHECKING, Any, TypeVar, dataclass_transform
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
 
 
 class Role(Enum):
@@ -73,8 +75,8 @@ class Spec:
         )
 
 
-def _field(spec: Spec, default: Any) -> Any:
-    return field(default=default, metadata={"spec": spec}, kw_only=True)
+def _field(spec: Spec, default: Any, kw_only: bool = True) -> Any:
+    return field(default=default, metadata={"spec": spec}, kw_only=kw_only)
 
 
 def port(doc: str, *, default: None = MISSING, domain: str = "") -> Any:  # type: ignore[assignment]
@@ -93,10 +95,11 @@ def param(
     at_most: float | None = None,
     units: tuple[str, ...] = (),
     whole: bool = False,
+    kw_only: bool = True,
 ) -> Any:
     """A constant number in SI units: one scalar of the C++ `Params`, in order of declaration."""
     bounds = (above, at_least, below, at_most)
-    return _field(Spec("param", unit, doc, default is None, *bounds, units=units, whole=whole), default)
+    return _field(Spec("param", unit, doc, default is None, *bounds, units=units, whole=whole), default, kw_only)
 
 
 def flag(doc: str, *, default: bool = MISSING) -> Any:  # type: ignore[assignment]
@@ -104,9 +107,17 @@ def flag(doc: str, *, default: bool = MISSING) -> Any:  # type: ignore[assignmen
     return _field(Spec("param", "1", doc, flag=True), default)
 
 
-def curve(unit_x: str, unit_y: str, doc: str, *, units: tuple[str, ...] = (), rising: str = "strictly") -> Any:
+def curve(
+    unit_x: str,
+    unit_y: str,
+    doc: str,
+    *,
+    units: tuple[str, ...] = (),
+    rising: str = "strictly",
+    kw_only: bool = True,
+) -> Any:
     """A piecewise linear function as (x, y) points with x increasing: a `Curve` of the C++ `Params`."""
-    return _field(Spec("curve", unit_y, doc, unit_x=unit_x, units=units, rising=rising), MISSING)
+    return _field(Spec("curve", unit_y, doc, unit_x=unit_x, units=units, rising=rising), MISSING, kw_only)
 
 
 def signal(
@@ -146,14 +157,14 @@ def option(
     return _field(Spec("option", unit, doc, default is None, above, at_least, flag=flag), default)
 
 
-def text(doc: str, *, default: str = MISSING) -> Any:  # type: ignore[assignment]
+def text(doc: str, *, default: str = MISSING, kw_only: bool = True) -> Any:  # type: ignore[assignment]
     """A path or a name."""
-    return _field(Spec("text", "", doc), default)
+    return _field(Spec("text", "", doc), default, kw_only)
 
 
-def function(doc: str) -> Any:
+def function(doc: str, *, kw_only: bool = True) -> Any:
     """A Python function; a model file cannot hold one."""
-    return _field(Spec("function", "", doc), MISSING)
+    return _field(Spec("function", "", doc), MISSING, kw_only)
 
 
 REGISTRY: dict[Role, dict[str, type]] = {role: {} for role in Role}
@@ -200,7 +211,7 @@ def schema_text() -> str:
     lines = []
     for role in COMPILED_ROLES:
         for kind in kinds(role):
-            cls = REGISTRY[role][kind]
+            cls: Any = REGISTRY[role][kind]
             names = ",".join(f"{f.name}:{s.what}[{s.unit}]" for f, s in specs(cls, "param", "curve", "signal"))
             lines.append(f"{role.value} {kind} {names} {len(cls.states)}")
     return "\n".join(lines)

@@ -1,0 +1,32 @@
+"""Train of pulses."""
+
+from __future__ import annotations
+
+from clutchwork.node import Segment, Signal
+from clutchwork.schema import Role, component, param
+
+
+@component(Role.SIGNAL)
+class Pulse(Signal):
+    """`offset`, and `offset + height` for `width` seconds once in every `period`, for the first time at `start`."""
+
+    height: float = param("*", "height of a pulse")
+    period: float = param("s", "time from one pulse to the next", above=0.0)
+    width: float = param("s", "duration of a pulse, shorter than the period", above=0.0)
+    start: float = param("s", "time of the first pulse", default=0.0)
+    offset: float = param("*", "value between pulses", default=0.0)
+
+    def problems(self) -> list[tuple[str, str, str]]:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        if self.width < self.period:
+            return []
+        return [("width", f"is {self.width:g} s, not below period = {self.period:g} s", "shorten the pulse")]
+
+    def segments(self) -> tuple[Segment, ...]:
+        """A low piece and a high one, repeated; low comes first, so it holds before the first pulse too."""
+        low = self.start - (self.period - self.width)
+        return (Segment(low, self.offset), Segment(self.start, self.offset + self.height))
+
+    def repeats(self) -> float:
+        """Period [s]."""
+        return self.period
