@@ -1,0 +1,158 @@
+"""Documentation is run: every Python block in order, every model file, every link and every cited equation."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+GUIDE = sorted((ROOT / "docs" / "guide").glob("*.md"))
+THEORY = sorted((ROOT / "docs" / "theory").glob("*.md"))
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "CONTRIBUTING.md",
+    *ROOT.glob("docs/*.md"),
+    *GUIDE,
+    *THEORY,
+    *ROOT.glob("decisions/*.md"),
+]
+SOURCES = [
+    path for folder in ("src", "cpp", "tests", "interfaces") for path in (ROOT / folder).rglob("*") if path.is_file()
+]
+
+
+def blocks(path: Path, language: str) -> list[str]:
+    """The fenced blocks of a page in one language."""
+    return re.findall(rf"^```{language}\n(.*?)^```", path.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+
+
+def named(path: Path) -> str:
+    """Path below the root, as the name of a test."""
+    return str(path.relative_to(ROOT))
+
+
+@pytest.fixture
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty working folder and pictures without a screen."""
+    pytest.importorskip("matplotlib").use("agg")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run_blocks(path: Path) -> dict[str, Any]:
+    """Run the Python blocks of a page one after the other and return what they define."""
+    names: dict[str, Any] = {}
+    for number, source in enumerate(blocks(path, "python"), 1):
+        exec(compile(source, f"{path.name}, block {number}", "exec"), names)
+    return names
+
+
+def test_the_program_in_the_readme(elsewhere: Path) -> None:
+    source = blocks(ROOT / "README.md", "python")[0]
+    assert len(source.splitlines()) <= 12
+    run = run_blocks(ROOT / "README.md")["run"]
+    # 1 N m s of impulse while the pressure rises, 16 N m s are needed at 0.16 kg m2 and 100 rad/s
+    assert run.events[-1].time == pytest.approx(0.2 + 15.0 / 10.0, abs=1e-6)
+    assert run["load.speed"][-1] == pytest.approx(20.0, rel=1e-6)
+    assert run["c1.heat"][-1] == pytest.approx(800.0, rel=1e-5)
+    assert (elsewhere / "engagement.png").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("path", [path for path in GUIDE if blocks(path, "python")], ids=named)
+def test_the_programs_of_the_guide(path: Path, elsewhere: Path) -> None:
+    run_blocks(path)
+
+
+def test_the_model_files_of_the_guide(elsewhere: Path) -> None:
+    import clutchwork as cw
+
+    page = ROOT / "docs" / "guide" / "model-files.md"
+    (elsewhere / "pressures.csv").write_text("time,c1\n0.0,0.0\n1.0,2e5\n")
+    models = [text for text in blocks(page, "toml") if "[shafts" in text or "[[shafts" in text]
+    assert models
+    for number, text in enumerate(models):
+        (elsewhere / f"model{number}.toml").write_text(text)
+        driveline = cw.Driveline.load(elsewhere / f"model{number}.toml")
+        assert driveline.check() == []
+        assert driveline.simulate(0.1).status == "done"
+
+
+def test_every_status_is_explained() -> None:
+    from clutchwork.layout import STATUS
+
+    page = (ROOT / "docs" / "guide" / "results.md").read_text(encoding="utf-8")
+    internal = {"done", "rows_full", "events_full", "no_mode", "bad_system"}
+    assert [name for name, *_ in STATUS if name not in internal and f"`{name}`" not in page] == []
+
+
+def test_every_option_is_explained() -> None:
+    from dataclasses import fields
+
+    from clutchwork.options import Options
+
+    page = (ROOT / "docs" / "guide" / "start.md").read_text(encoding="utf-8")
+    assert [item.name for item in fields(Options) if f"`{item.name}`" not in page] == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "concept", "arguments"), [("laws", "FrictionLaw", "Stribeck"), ("elements", "TorqueElement", "EddyBrake")]
+)
+def test_the_component_of_the_extension_page_fits_the_core(
+    kind: str, concept: str, arguments: str, tmp_path: Path
+) -> None:
+    compiler = shutil.which(os.environ.get("CXX", "c++"))
+    assert compiler, "no C++ compiler"
+    number = 0 if kind == "laws" else 1
+    page = ROOT / "docs" / "extend.md"
+    source = blocks(page, "cpp")[number] + f"\nstatic_assert(clutchwork::{concept}<clutchwork::{kind}::{arguments}>);\n"
+    # dual numbers must pass too, for they give the derivatives
+    function = "slide" if kind == "laws" else "torque"
+    source += (
+        f"using E = clutchwork::{kind}::{arguments};\nusing D = clutchwork::Dual<double, 2>;\n"
+        f"D probe(const E::Params<double>& p, const clutchwork::At<D>& at) {{ return E::{function}(p, at); }}\n"
+    )
+    (tmp_path / "probe.cpp").write_text(source)
+    command = [compiler, "-std=c++20", "-fsyntax-only", f"-I{ROOT / 'cpp' / 'include'}", str(tmp_path / "probe.cpp")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    # the declaration is complete Python
+    compile(blocks(page, "python")[number], "declaration", "exec")
+
+
+@pytest.mark.parametrize("path", PAGES, ids=named)
+def test_links_lead_somewhere(path: Path) -> None:
+    links = re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8"))
+    local = [
+        link for link in links if "://" not in link and "/reference/" not in link and not link.startswith("reference/")
+    ]
+    assert [link for link in local if not (path.parent / link).exists()] == []
+
+
+def labels(path: Path) -> list[str]:
+    """Labels of the numbered equations of a page, in order."""
+    return re.findall(r"^\$\$ \(([a-z]+-\d+)\)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+
+
+@pytest.mark.parametrize("path", [path for path in THEORY if path.stem != "index"], ids=named)
+def test_labels_of_equations_are_their_numbers(path: Path) -> None:
+    assert labels(path) == [f"{path.stem}-{number}" for number in range(1, len(labels(path)) + 1)]
+
+
+def test_cited_equations_exist() -> None:
+    known = {path.name: len(labels(path)) for path in THEORY}
+    missing = []
+    for path in SOURCES:
+        if path.suffix not in {".py", ".hpp", ".cpp", ".h"}:
+            continue
+        text = path.read_text(encoding="utf-8")
+        for page, numbers in re.findall(r"docs/theory/([\w-]+\.md)(?:[ ,]*\(([\d, ]+)\))?", text):
+            cited = [int(number) for number in re.findall(r"\d+", numbers)]
+            if page not in known or any(number > known[page] for number in cited):
+                missing.append(f"{path.name}: {page} {numbers}")
+    assert missing == []
