@@ -10,14 +10,24 @@ import sys
 from collections.abc import Iterator
 from dataclasses import MISSING, Field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import clutchwork  # noqa: F401  importing the package fills the registry
 from clutchwork.schema import REGISTRY, Role, Spec, specs
 
-# (file, title, introduction, roles, folder of the C++ headers)
+
+class Page(NamedTuple):
+    """One page: file, title, introduction, heading of each role, folder of the C++ headers."""
+
+    name: str
+    title: str
+    introduction: str
+    roles: dict[Role, str]
+    headers: str
+
+
 PAGES = (
-    (
+    Page(
         "elements",
         "Elements",
         "A component of the driveline. Ports name the shafts that it joins; `torque` is what it applies to its follower"
@@ -30,14 +40,14 @@ PAGES = (
         },
         "elements",
     ),
-    (
+    Page(
         "laws",
         "Friction laws",
         "Coefficient of friction over slip, for the field `friction` of a contact.",
         {Role.LAW: ""},
         "laws",
     ),
-    (
+    Page(
         "signals",
         "Signals",
         "A value over time, for every field of the kind *signal*. A plain number is a constant signal.",
@@ -52,7 +62,7 @@ SORTS = {"param": "number", "alternative": "signal", "option": "setting", "law":
 def write(folder: Path) -> list[Path]:
     """Write all pages and return their paths."""
     folder.mkdir(parents=True, exist_ok=True)
-    return [_write(folder / f"{name}.md", "\n".join(_page(*page))) for name, *page in PAGES]
+    return [_write(folder / f"{page.name}.md", "\n".join(_page(page))) for page in PAGES]
 
 
 def _write(path: Path, text: str) -> Path:
@@ -62,14 +72,14 @@ def _write(path: Path, text: str) -> Path:
     return path
 
 
-def _page(title: str, introduction: str, roles: dict[Role, str], headers: str) -> Iterator[str]:
-    yield f"# {title}\n\n{introduction}\n"
-    for role, heading in roles.items():
+def _page(page: Page) -> Iterator[str]:
+    yield f"# {page.title}\n\n{page.introduction}\n"
+    for role, heading in page.roles.items():
         if heading:
             yield f"## {heading}\n"
         level = "###" if heading else "##"
         for kind, cls in sorted(REGISTRY[role].items()):
-            yield from _component(level, kind, cls, headers)
+            yield from _component(level, kind, cls, page.headers)
 
 
 def _component(level: str, kind: str, cls: type, headers: str) -> Iterator[str]:
