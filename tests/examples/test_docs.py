@@ -74,7 +74,7 @@ def test_the_model_files_of_the_guide(elsewhere: Path) -> None:
 
     page = ROOT / "docs" / "guide" / "model-files.md"
     (elsewhere / "pressures.csv").write_text("time,c1\n0.0,0.0\n1.0,2e5\n")
-    models = [text for text in blocks(page, "toml") if "[shafts" in text or "[[shafts" in text]
+    models = [text for text in blocks(page, "toml") if "[[shaft]]" in text]
     assert models
     for number, text in enumerate(models):
         (elsewhere / f"model{number}.toml").write_text(text)
