@@ -42,7 +42,7 @@ class ModelError(ClutchworkError, ValueError):
         super().__init__("\n".join([head, *(f"  {problem}" for problem in self.problems)]))
 
 
-class FileProblem(ClutchworkError, ValueError):
+class FileError(ClutchworkError, ValueError):
     """A file beside a model that cannot be used."""
 
     def __init__(self, quantity: str, message: str, remedy: str) -> None:

@@ -43,6 +43,10 @@ class Component:
 class Law:
     """A friction law; it has no name of its own."""
 
+    def sliding(self) -> float | None:
+        """Kinetic coefficient at vanishing slip; None: the compiled core is asked."""
+        return None
+
 
 class Segment(NamedTuple):
     """One piece of a signal.

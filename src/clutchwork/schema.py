@@ -198,6 +198,13 @@ def specs(cls: type, *what: str) -> Iterator[tuple[Field[Any], Spec]]:
             yield item, spec
 
 
+def inputs(cls: type) -> Iterator[tuple[list[str], Spec]]:
+    """The inputs of a component in order: the names under which each can be given, and its spec."""
+    others = [(item.name, spec.instead_of) for item, spec in specs(cls, "alternative")]
+    for item, spec in specs(cls, "signal"):
+        yield [item.name, *(name for name, stands_for in others if stands_for == item.name)], spec
+
+
 def kinds(role: Role) -> list[str]:
     """The kinds of a role in the order of their number in the compiled core."""
     return sorted(REGISTRY[role])

@@ -8,9 +8,9 @@ from functools import cached_property
 from math import isfinite
 from pathlib import Path
 
-from clutchwork.errors import FileProblem, near
+from clutchwork.errors import FileError, near
 from clutchwork.node import Segment, Signal
-from clutchwork.schema import Role, component, text
+from clutchwork.schema import Role, component, param, text
 from clutchwork.signals.table import pieces
 
 
@@ -19,12 +19,13 @@ class Column(Signal):
     """Measured or prepared values: one column of a CSV file, linear over its time column, held outside.
 
     The first line of the file names the columns; the separator is a comma. Equal times make a jump.
-    In a model file the path is relative to that file. A file that cannot be used raises `FileProblem`.
+    In a model file the path is relative to that file. A file that cannot be used raises `FileError`.
     """
 
     path: str = text("CSV file", kw_only=False)
     column: str = text("name of the column with the values", kw_only=False)
     time: str = text("name of the column with the times [s]", default="time", kw_only=False)
+    scale: float = param("1", "factor on the values, 1e5 for a file in bar", default=1.0)
     folder: str = field(default="", kw_only=True, repr=False, compare=False)
 
     @cached_property
@@ -35,29 +36,27 @@ class Column(Signal):
             with path.open(newline="", encoding="utf-8-sig") as stream:
                 lines = list(csv.reader(stream))
         except FileNotFoundError:
-            raise FileProblem("path", f"{self.path!r} does not exist", f"put the file into {path.parent}") from None
+            raise FileError("path", f"{self.path!r} does not exist", f"put the file into {path.parent}") from None
         except (OSError, UnicodeDecodeError, csv.Error) as error:
-            raise FileProblem("path", f"{self.path!r} cannot be read: {error}", "give a CSV text file") from None
+            raise FileError("path", f"{self.path!r} cannot be read: {error}", "give a CSV text file") from None
         return tuple(self._pairs(lines))
 
     def _pairs(self, lines: list[list[str]]) -> list[tuple[float, float]]:
         if not lines:
-            raise FileProblem("path", f"{self.path!r} is empty", "give a header line and at least one line of numbers")
+            raise FileError("path", f"{self.path!r} is empty", "give a header line and at least one line of numbers")
         header = [name.strip() for name in lines[0]]
         places = [self._place(header, quantity) for quantity in ("time", "column")]
         # lines that are empty, as at the end of many files, carry nothing
         rows = [(number, line) for number, line in enumerate(lines[1:], 2) if any(cell.strip() for cell in line)]
         if not rows:
-            raise FileProblem(
-                "path", f"{self.path!r} has no line of numbers", "give at least one line below the header"
-            )
+            raise FileError("path", f"{self.path!r} has no line of numbers", "give at least one line below the header")
         pairs = [
             (self._number(n, line, places[0], header), self._number(n, line, places[1], header)) for n, line in rows
         ]
         for (number, _), (t, _), (t_next, _) in zip(rows[1:], pairs, pairs[1:], strict=False):
             if t_next < t:
                 where = f"line {number} of {self.path!r}: time {t_next:g} s comes after {t:g} s"
-                raise FileProblem("time", where, "sort the file by time")
+                raise FileError("time", where, "sort the file by time")
         return pairs
 
     def _place(self, header: list[str], quantity: str) -> int:
@@ -65,7 +64,7 @@ class Column(Signal):
         if name in header:
             return header.index(name)
         remedy = f"the columns are {', '.join(header)}" + near(name, header)
-        raise FileProblem(quantity, f"{self.path!r} has no column {name!r}", remedy)
+        raise FileError(quantity, f"{self.path!r} has no column {name!r}", remedy)
 
     def _number(self, number: int, line: list[str], place: int, header: list[str]) -> float:
         cell = line[place].strip() if place < len(line) else ""
@@ -77,13 +76,13 @@ class Column(Signal):
             return value
         quantity = "column" if header[place] == self.column else "time"
         where = f"line {number} of {self.path!r}, column {header[place]!r}: {cell!r} is not a finite number"
-        raise FileProblem(quantity, where, "write a number, with a point for the decimals")
+        raise FileError(quantity, where, "write a number, with a point for the decimals")
 
     def problems(self) -> list[tuple[str, str, str]]:
         """What is wrong with the file, as (quantity, what is wrong, remedy)."""
         try:
             _ = self.points
-        except FileProblem as problem:
+        except FileError as problem:
             return [(problem.quantity, problem.message, problem.remedy)]
         return []
 

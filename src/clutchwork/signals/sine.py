@@ -10,7 +10,10 @@ from clutchwork.schema import Role, component, param
 
 @component(Role.SIGNAL)
 class Sine(Signal):
-    """`offset + amplitude exp(-damping s) sin(2 pi frequency s + phase)` with s = t - start; `offset` before `start`."""
+    """`offset + amplitude exp(-damping s) sin(2 pi frequency s + phase)`, with s = t - start.
+
+    Before `start` it is `offset`.
+    """
 
     amplitude: float = param("*", "amplitude")
     frequency: float = param("Hz", "frequency", at_least=0.0)

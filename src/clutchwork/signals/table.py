@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from clutchwork.node import Points, Segment, Signal
@@ -27,7 +28,7 @@ def pieces(points: Points) -> Iterator[Segment]:
     first, last = points[0], points[-1]
     if first[0] > 0.0:
         yield Segment(0.0, first[1])
-    for (t, y), (t_next, y_next) in zip(points, points[1:], strict=False):
+    for (t, y), (t_next, y_next) in pairwise(points):
         if t_next > t:
             yield Segment(t, y, (y_next - y) / (t_next - t))
     yield Segment(last[0], last[1])

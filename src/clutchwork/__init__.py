@@ -1,0 +1,114 @@
+"""Drivelines with clutches that lock and break away exactly.
+
+    import clutchwork as cw
+
+    d = cw.Driveline("two discs")
+    engine = d.shaft("engine", inertia=0.2, speed=100.0)
+    load = d.shaft("load", inertia=0.8)
+    lining = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Clutch("c1", base=load, follower=engine, friction=lining, gain=1.0, normal_force=100.0))
+    run = d.simulate(2.0)
+
+Elements, friction laws and signals are published from their folders: a new file there is a new name here.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from clutchwork import elements as elements
+from clutchwork import laws as laws
+from clutchwork import signals as signals
+from clutchwork.driveline import Driveline as Driveline
+from clutchwork.errors import ClutchworkError as ClutchworkError
+from clutchwork.errors import ModelError as ModelError
+from clutchwork.errors import Problem as Problem
+from clutchwork.errors import near
+from clutchwork.layout import layout_text
+from clutchwork.node import Domain as Domain
+from clutchwork.node import Law as Law
+from clutchwork.node import Node as Node
+from clutchwork.node import Signal as Signal
+from clutchwork.schema import REGISTRY, schema_hash
+
+if TYPE_CHECKING:
+    # what type checkers and editors shall know by name; at run time the registry decides
+    from clutchwork.elements.bearing_friction import BearingFriction as BearingFriction
+    from clutchwork.elements.brake import Brake as Brake
+    from clutchwork.elements.clutch import Clutch as Clutch
+    from clutchwork.elements.damper import Damper as Damper
+    from clutchwork.elements.double_planetary import DoublePlanetary as DoublePlanetary
+    from clutchwork.elements.gear import Gear as Gear
+    from clutchwork.elements.linear_torque import LinearTorque as LinearTorque
+    from clutchwork.elements.one_way_clutch import OneWayClutch as OneWayClutch
+    from clutchwork.elements.planetary import Planetary as Planetary
+    from clutchwork.elements.prescribed_speed import PrescribedSpeed as PrescribedSpeed
+    from clutchwork.elements.quadratic_torque import QuadraticTorque as QuadraticTorque
+    from clutchwork.elements.resisting_torque import ResistingTorque as ResistingTorque
+    from clutchwork.elements.rolling_wheel import RollingWheel as RollingWheel
+    from clutchwork.elements.speed_torque import SpeedTorque as SpeedTorque
+    from clutchwork.elements.spring import Spring as Spring
+    from clutchwork.elements.spring_damper import SpringDamper as SpringDamper
+    from clutchwork.elements.torque import Torque as Torque
+    from clutchwork.failure import SimulationError as SimulationError
+    from clutchwork.failure import StoppedEarly as StoppedEarly
+    from clutchwork.laws.coefficient_table import CoefficientTable as CoefficientTable
+    from clutchwork.laws.coulomb import Coulomb as Coulomb
+    from clutchwork.laws.exponential import Exponential as Exponential
+    from clutchwork.options import Options as Options
+    from clutchwork.signals.column import Column as Column
+    from clutchwork.signals.constant import Constant as Constant
+    from clutchwork.signals.pulse import Pulse as Pulse
+    from clutchwork.signals.ramp import Ramp as Ramp
+    from clutchwork.signals.sampled import Sampled as Sampled
+    from clutchwork.signals.sine import Sine as Sine
+    from clutchwork.signals.step import Step as Step
+    from clutchwork.signals.table import Table as Table
+    from clutchwork.simulate import simulate as simulate
+    from clutchwork.system import System as System
+    from clutchwork.trajectory import Trajectory as Trajectory
+
+__version__ = "0.1.0"
+
+# names that are loaded when they are first used, with their module
+_LAZY = {
+    "Options": "options",
+    "SimulationError": "failure",
+    "StoppedEarly": "failure",
+    "System": "system",
+    "Trajectory": "trajectory",
+    "simulate": "simulate",
+}
+
+_DECLARED = {cls.__name__: cls for kinds in REGISTRY.values() for cls in kinds.values()}
+globals().update(_DECLARED)
+
+_FIXED = ("ClutchworkError", "Domain", "Driveline", "Law", "ModelError", "Node", "Problem", "Signal")
+__all__ = sorted([*_FIXED, *_LAZY, *_DECLARED])
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LAZY:
+        value = getattr(import_module(f"clutchwork.{_LAZY[name]}"), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"clutchwork has no {name!r}{near(name, __all__)}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
+def _refuse_stale_core() -> None:
+    """Stop with the remedy when the compiled core is missing or was built from other declarations."""
+    remedy = "build it in the project folder: make setup, or pip install -e ."
+    try:
+        from clutchwork import _core
+    except ImportError as error:
+        raise ImportError(f"the compiled core of clutchwork cannot be loaded ({error}); {remedy}") from error
+    if _core.schema_hash() != schema_hash(layout_text()):
+        raise ImportError(f"the compiled core of clutchwork was built from other declarations; {remedy}")
+
+
+_refuse_stale_core()

@@ -1,0 +1,240 @@
+"""Checks of single components against their declarations: types, bounds, curves, friction laws.
+
+What concerns the driveline as a whole is in `assemble.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import MISSING, dataclass
+from math import isfinite
+from numbers import Real
+from typing import Any
+
+from clutchwork.errors import Problem, near
+from clutchwork.node import Component, Domain, Law, Node, Signal
+from clutchwork.schema import REGISTRY, Role, Spec, inputs, specs
+
+
+class Broken:
+    """Stands for a value whose mistake has been reported already."""
+
+
+BROKEN = Broken()
+
+
+@dataclass(frozen=True)
+class At:
+    """Place of a value: path of the element, name of the quantity, its unit."""
+
+    path: str
+    quantity: str
+    unit: str = ""
+
+    def problem(self, message: str, value: str = "", remedy: str = "") -> Problem:
+        """A problem at this place."""
+        return Problem(self.path, self.quantity, message, value, remedy)
+
+    def inner(self, name: str, unit: str = "") -> At:
+        """The place of a field of the value here."""
+        return At(self.path, f"{self.quantity}.{name}" if self.quantity else name, unit)
+
+
+def label(component: Component) -> str:
+    """Path of an element in messages."""
+    return f'element "{component.name}" ({type(component).kind})'  # type: ignore[attr-defined]
+
+
+def component_problems(component: Component) -> Iterator[Problem]:
+    """All mistakes of one element, its friction law and its signals."""
+    yield from object_problems(component, At(label(component), ""))
+
+
+def object_problems(thing: Any, at: At) -> Iterator[Problem]:
+    """All mistakes of a declared object: an element, a law or a signal."""
+    found = list(value_problems(type(thing), vars(thing), at))
+    yield from found
+    # rules between fields only make sense once each field does
+    rules = getattr(thing, "problems", None)
+    if rules is not None and not found:
+        for name, message, remedy in rules():
+            yield at.inner(name).problem(message, remedy=remedy)
+
+
+def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
+    """Mistakes of the values for the fields of a declaration, some of which may be missing."""
+    for item, spec in specs(cls):
+        place = at.inner(item.name, at.unit if spec.unit == "*" else spec.unit)
+        value = values.get(item.name, item.default)
+        if value is MISSING:
+            yield place.problem("is missing", remedy=f"give {_wanted(spec, place.unit)}: {spec.doc}")
+        elif value is not BROKEN and not (value is None and spec.optional):
+            yield from CHECKS[spec.what](value, spec, place)
+    yield from _choice_problems(cls, values, at)
+
+
+def _wanted(spec: Spec, unit: str) -> str:
+    return {
+        "port": "a shaft",
+        "law": f"a friction law ({', '.join(REGISTRY[Role.LAW])})",
+        "curve": f"points in [{spec.unit_x}] and [{unit}]",
+        "text": "a text",
+    }.get(spec.what, f"a value in [{unit}]")
+
+
+def _choice_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
+    """Signals that can be given in one of several ways: exactly one, or none where there is a default."""
+    for names, spec in inputs(cls):
+        given = [name for name in names if values.get(name) is not None]
+        if len(names) > 1 and len(given) > 1:
+            yield at.inner(given[1]).problem(f"is given beside {given[0]!r}", remedy="give only one of them")
+        if len(names) > 1 and not given and spec.otherwise is None:
+            choice = " or ".join(names)
+            yield at.inner(names[0]).problem("is missing", remedy=f"give {choice}: {spec.doc} [{spec.unit}]")
+
+
+def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """A finite number within its bounds."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        yield at.problem(f"must be a number in [{at.unit}]", value=repr(value), remedy="write it without quotes")
+        return
+    number, shown = float(value), f"{value} {at.unit}".strip()
+    if not isfinite(number):
+        yield at.problem("must be finite", value=shown, remedy="give a number")
+    elif not spec.allows(number):
+        yield at.problem(f"must be {spec.bound} {at.unit}".rstrip(), value=shown, remedy=f"{spec.doc}: check its sign")
+    elif spec.whole and number != int(number):
+        yield at.problem("must be a whole number", value=shown, remedy=f"{spec.doc}: give a count")
+
+
+def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if not spec.flag:
+        yield from number_problems(value, spec, at)
+    elif not isinstance(value, bool) and value not in (0, 1):
+        yield at.problem("must be true or false", value=repr(value), remedy=spec.doc)
+
+
+def _port(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if not isinstance(value, Node):
+        remedy = "give what `shaft`, `mass` or `housing` of the driveline handed out"
+        yield at.problem("must be a shaft, a mass or the housing", value=repr(value), remedy=remedy)
+    elif spec.domain and not value.fixed and value.domain is not Domain(spec.domain):
+        wanted = "a shaft" if spec.domain == "rotation" else "a mass"
+        yield at.problem(f"must be {wanted}", value=repr(value.name), remedy=f"{spec.doc} is in {spec.domain}")
+
+
+def _curve(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if isinstance(value, str) or not hasattr(value, "__len__") or len(value) == 0:
+        yield at.problem("must be a list of points", value=repr(value), remedy=f"write [[x, y], ...]: {spec.doc}")
+        return
+    before = None
+    for number, point in enumerate(value, 1):
+        place = At(at.path, f"{at.quantity}, point {number}", at.unit)
+        if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
+            yield place.problem("must be a pair of numbers", value=repr(point), remedy="write [x, y]")
+            return
+        wrong = [p for v, unit in zip(point, (spec.unit_x, at.unit), strict=True) for p in _plain(v, place, unit)]
+        if wrong:
+            yield from wrong
+            return
+        x = float(point[0])
+        if before is not None and (x < before or (x == before and spec.rising == "strictly")):
+            fault = "comes after" if x < before else "stands twice, after"
+            shown = f"{x:g} {spec.unit_x}"
+            yield place.problem(
+                f"{fault} {before:g} {spec.unit_x}", value=shown, remedy="sort the points; x must increase"
+            )
+            return
+        before = x
+
+
+def _plain(value: Any, place: At, unit: str) -> Iterator[Problem]:
+    yield from number_problems(value, Spec("param", unit, ""), At(place.path, place.quantity, unit))
+
+
+def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if isinstance(value, Signal):
+        yield from object_problems(value, at)
+    elif isinstance(value, Real) and not isinstance(value, bool):
+        yield from number_problems(value, spec, at)
+    else:
+        remedy = f"give one of {', '.join(REGISTRY[Role.SIGNAL])}"
+        yield at.problem(f"must be a number in [{at.unit}] or a signal", value=repr(value), remedy=remedy)
+
+
+def _law(value: Any, _: Spec, at: At) -> Iterator[Problem]:
+    if not isinstance(value, Law):
+        remedy = f"give one of {', '.join(REGISTRY[Role.LAW])}"
+        yield at.problem("must be a friction law", value=repr(value), remedy=remedy)
+        return
+    found = list(object_problems(value, at))
+    yield from found or _peak(value, at)
+
+
+def _peak(law: Any, at: At) -> Iterator[Problem]:
+    """A kinetic coefficient above the static one has no motion that follows from it."""
+    kinetic = law.sliding()
+    if kinetic is None:
+        from clutchwork.pools import coefficients
+
+        kinetic, static = coefficients(law, 0.0)
+    else:
+        static = law.static
+    # equal values may differ by round-off
+    if kinetic > static * (1 + 1e-12):
+        message = f"is below the kinetic coefficient at vanishing slip, {kinetic:g}"
+        yield at.inner("static").problem(message, value=f"{static:g}", remedy=f"raise it to at least {kinetic:g}")
+
+
+def _text(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if not isinstance(value, str) or not value:
+        yield at.problem("must be a text", value=repr(value), remedy=spec.doc)
+
+
+def _function(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if not callable(value):
+        yield at.problem("must be a Python function", value=repr(value), remedy=spec.doc)
+
+
+CHECKS: dict[str, Callable[[Any, Spec, At], Iterator[Problem]]] = {
+    "param": _param,
+    "option": _param,
+    "port": _port,
+    "curve": _curve,
+    "signal": _signal,
+    "alternative": _signal,
+    "law": _law,
+    "text": _text,
+    "function": _function,
+}
+
+
+def ports(component: Component) -> dict[str, Node]:
+    """Nodes at the ports of an element; an optional port that is not given is the housing."""
+    from clutchwork.node import HOUSING
+
+    return {item.name: getattr(component, item.name) or HOUSING for item, _ in specs(type(component), "port")}
+
+
+def connection_problems(component: Component, nodes: Sequence[Node]) -> Iterator[Problem]:
+    """Ports that are on foreign nodes, on one and the same node, or of two kinds of motion."""
+    at, joined = At(label(component), ""), ports(component)
+    if not all(isinstance(node, Node) for node in joined.values()):
+        return
+    known = {id(node) for node in nodes}
+    for name, node in joined.items():
+        if not node.fixed and id(node) not in known:
+            found = near(node.name, [n.name for n in nodes])
+            yield at.inner(name).problem("is of another driveline", repr(node.name), f"create it in this one{found}")
+    moving = {name: node for name, node in joined.items() if not node.fixed}
+    if not moving:
+        yield at.problem("joins nothing but the housing", remedy="attach a port to a shaft")
+    elif len(joined) == 2 and len({id(node) for node in joined.values()}) == 1:
+        names = " and ".join(joined)
+        yield at.problem(
+            f"{names} are both on {next(iter(joined.values())).name!r}", remedy="attach them to two shafts"
+        )
+    free = [name for _item, spec in specs(type(component), "port") if not spec.domain for name in [_item.name]]
+    if len({moving[name].domain for name in free if name in moving}) > 1:
+        kinds = ", ".join(f"{name} is in {moving[name].domain.value}" for name in free if name in moving)
+        yield at.problem(f"joins a shaft and a mass: {kinds}", remedy="put a `RollingWheel` between them")

@@ -1,0 +1,402 @@
+"""Model files, TOML or JSON of the same shape: read with all mistakes at once, and written so that they read back.
+
+    name = "two discs"
+    [[shaft]]
+    name = "engine"
+    inertia = 0.2                       # SI, or a text with a unit: "2000 kg cm2"
+    [[element]]
+    name = "c1"
+    type = "clutch"                     # kind of element, then its ports and parameters
+    base = "engine"
+    follower = "load"
+    gain = 0.1
+    pressure = {type = "column", path = "pressures.csv", column = "c1", unit = "bar"}
+    friction = {type = "coulomb", static = 0.12, kinetic = 0.1}
+    [simulation]
+    t_end = 2.0
+
+Nothing in a model file is evaluated.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import MISSING
+from pathlib import Path
+from typing import Any
+
+from clutchwork.checks import BROKEN, At, label, value_problems
+from clutchwork.driveline import NODE_FIELDS, Driveline, model_problems, node_path
+from clutchwork.errors import ModelError, Problem, near
+from clutchwork.node import HOUSING, Component, Domain, Node
+from clutchwork.quantity import QuantityError, curve_in_si, factor_to_si, in_si
+from clutchwork.schema import REGISTRY, Role, Spec, specs
+from clutchwork.signals.column import Column
+
+FORMAT = 1
+TOP = ("format", "name", "description", "shaft", "mass", "element", "simulation")
+ELEMENTS = (Role.TORQUE, Role.CONTACT, Role.GEAR, Role.MOTION)
+SIMULATION = {
+    "t_end": Spec("param", "s", "end time", above=0.0),
+    "dt": Spec("param", "s", "spacing of the output", above=0.0),
+    "rtol": Spec("param", "1", "relative tolerance", above=0.0),
+    "atol": Spec("param", "1", "absolute tolerance", above=0.0),
+    "max_step": Spec("param", "s", "largest step", above=0.0),
+    "method": Spec("text", "", "auto, rodas5p or dopri5"),
+}
+
+
+def element_kinds() -> dict[str, Any]:
+    """All kinds of elements that a model file may name."""
+    return {kind: cls for role in ELEMENTS for kind, cls in REGISTRY[role].items()}
+
+
+# --- read ---
+
+
+def load(path: str | Path) -> Driveline:
+    """Read a model file; ModelError lists all its mistakes."""
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        problem = Problem("file", "", f"cannot be read: {reason}", remedy="give a TOML or JSON file in UTF-8")
+        raise ModelError([problem], str(path)) from None
+    return from_dict(_parsed(path, text), path.parent, str(path))
+
+
+def _parsed(path: Path, text: str) -> Any:
+    if path.suffix.lower() not in (".toml", ".json"):
+        problem = Problem("file", "", "must end in .toml or .json", repr(path.name), "rename it")
+        raise ModelError([problem], str(path))
+    try:
+        if path.suffix.lower() == ".json":
+            return json.loads(text, object_pairs_hook=_once, parse_constant=_no_constant)
+        import tomllib
+
+        return tomllib.loads(text)
+    except ValueError as error:
+        problem = Problem("file", "", f"is no {path.suffix[1:].upper()}: {error}", remedy="correct that place")
+        raise ModelError([problem], str(path)) from None
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    made: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in made:
+            raise ValueError(f"key {key!r} stands twice in one object")
+        made[key] = value
+    return made
+
+
+def _no_constant(name: str) -> float:
+    raise ValueError(f"{name} is no number of a model file")
+
+
+def from_dict(data: Any, folder: str | Path = "", source: str = "") -> Driveline:
+    """A driveline from the content of a model file; CSV paths are relative to the folder."""
+    reader = Reader(str(folder))
+    driveline = reader.driveline(data)
+    problems = reader.problems + model_problems(driveline.nodes, driveline.elements, reader.incomplete)
+    if problems:
+        raise ModelError(problems, source or driveline.name)
+    return driveline
+
+
+class Reader:
+    """Turns plain data into a driveline and collects what is wrong with it."""
+
+    def __init__(self, folder: str) -> None:
+        self.folder = folder
+        self.problems: list[Problem] = []
+        self.nodes: dict[str, Node] = {HOUSING.name: HOUSING}
+        self.incomplete: list[str] = []  # nodes at elements that could not be made
+
+    def driveline(self, data: Any) -> Driveline:
+        """Everything that can be made of the data."""
+        if not isinstance(data, Mapping):
+            self._report(At("file", ""), "must be a table", remedy="see the guide on model files")
+            return Driveline()
+        self._unknown(data, TOP, At("file", ""))
+        if data.get("format", FORMAT) != FORMAT:
+            remedy = f"this version reads format {FORMAT}"
+            self._report(At("file", "format"), "is not known", repr(data["format"]), remedy)
+        driveline = Driveline(self._text(data, "name", At("file", ""), "driveline"))
+        for kind, domain in (("shaft", Domain.ROTATION), ("mass", Domain.TRANSLATION)):
+            for place, entry in self._entries(data, kind):
+                self._node(driveline, entry, domain, kind, place)
+        for place, entry in self._entries(data, "element"):
+            self._element(driveline, entry, place)
+        driveline.simulation.update(self._simulation(data.get("simulation", {})))
+        return driveline
+
+    def _report(self, at: At, message: str, value: str = "", remedy: str = "") -> Any:
+        self.problems.append(at.problem(message, value, remedy))
+        return BROKEN
+
+    def _unknown(self, data: Mapping[str, Any], known: Any, at: At) -> None:
+        for key in data:
+            if key not in known:
+                remedy = f"known are {', '.join(known)}"
+                self._report(at.inner(str(key)), "is not known here" + near(key, known), remedy=remedy)
+
+    def _entries(self, data: Mapping[str, Any], kind: str) -> list[tuple[int, Mapping[str, Any]]]:
+        entries = data.get(kind, [])
+        if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
+            self._report(At("file", kind), "must be a list of tables", remedy=f"write [[{kind}]] above each")
+            return []
+        return list(enumerate(entries, 1))
+
+    def _text(self, data: Mapping[str, Any], key: str, at: At, default: str = "") -> str:
+        value = data.get(key, default)
+        if isinstance(value, str) and value:
+            return value
+        message = "must be a text" if key in data else "is missing"
+        self._report(at.inner(key), message, repr(value) if key in data else "", f"give a {key}")
+        return default
+
+    def _node(self, driveline: Driveline, entry: Mapping[str, Any], domain: Domain, kind: str, place: int) -> None:
+        name = self._text(entry, "name", At(f"{kind} number {place}", ""))
+        known, at = NODE_FIELDS[domain], At(node_path(kind, name or f"number {place}"), "")
+        self._unknown(entry, ("name", *known), at)
+        values: list[Any] = [
+            self._number(entry[key], spec, at.inner(key, spec.unit)) if key in entry else None
+            for key, spec in known.items()
+        ]
+        # a mistake is reported already: stand-ins let the rest be checked
+        inertia, speed, angle = (
+            stand_in if v is BROKEN else v for v, stand_in in zip(values, (1.0, None, 0.0), strict=True)
+        )
+        node = driveline.add_node(Node(name, domain, 0.0 if inertia is None else inertia, speed, angle or 0.0))
+        self.nodes.setdefault(name, node)
+
+    def _element(self, driveline: Driveline, entry: Mapping[str, Any], place: int) -> None:
+        name = self._text(entry, "name", At(f"element number {place}", ""))
+        path, known = f'element "{name}"' if name else f"element number {place}", element_kinds()
+        kind = self._text(entry, "type", At(path, ""))
+        before = len(self.problems)
+        if kind and kind not in known:
+            remedy = f"known are {', '.join(known)}"
+            self._report(At(path, "type"), "is not known" + near(kind, known), repr(kind), remedy)
+        elif kind:
+            values = self._values(known[kind], entry, At(f"{path} ({kind})", ""), ("name", "type"))
+            if name and len(self.problems) == before:
+                driveline.add(known[kind](name, **values))
+                return
+        self.incomplete += [value for value in entry.values() if isinstance(value, str)]
+
+    def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
+        """Values of the fields of a declaration, in SI; mistakes are reported."""
+        known = {item.name: spec for item, spec in specs(cls)}
+        self._unknown({key: entry[key] for key in entry if key not in taken}, known, at)
+        values = {
+            key: self._value(entry[key], spec, at.inner(key, at.unit if spec.unit == "*" else spec.unit))
+            for key, spec in known.items()
+            if key in entry
+        }
+        self.problems += value_problems(cls, values, at)
+        return values
+
+    def _value(self, value: Any, spec: Spec, at: At) -> Any:
+        if spec.what == "port":
+            return self._port(value, at)
+        if spec.what == "law":
+            return self._typed(value, Role.LAW, at)
+        if spec.what in ("signal", "alternative"):
+            is_signal = isinstance(value, Mapping) and "type" in value
+            return self._signal(value, spec, at) if is_signal else self._number(value, spec, at)
+        if spec.what == "curve":
+            return self._converted(lambda: curve_in_si(value, spec, at.unit), at)
+        if spec.what == "function":
+            return self._report(at, "cannot stand in a model file", remedy="give it in Python")
+        if spec.what == "text" or spec.flag:
+            return value
+        return self._number(value, spec, at)
+
+    def _number(self, value: Any, spec: Spec, at: At) -> Any:
+        return self._converted(lambda: in_si(value, at.unit, spec.units, whole=spec.whole), at)
+
+    def _converted(self, convert: Any, at: At) -> Any:
+        try:
+            return convert()
+        except QuantityError as bad:
+            return self._report(at, bad.message, bad.value, bad.remedy)
+
+    def _port(self, value: Any, at: At) -> Any:
+        if isinstance(value, str) and value in self.nodes:
+            return self.nodes[value]
+        remedy = f"known are {', '.join(self.nodes)}"
+        return self._report(at, "is no shaft of this model" + near(str(value), self.nodes), repr(value), remedy)
+
+    def _typed(self, value: Any, role: Role, at: At, taken: tuple[str, ...] = ("type",)) -> Any:
+        """A law or a signal from a table with its type."""
+        known = REGISTRY[role]
+        if not isinstance(value, Mapping) or "type" not in value:
+            remedy = f'write {{type = "...", ...}} with one of {", ".join(known)}'
+            return self._report(at, f"must be a table with the type of a {role.value}", repr(value), remedy)
+        kind = value["type"]
+        if kind not in known:
+            remedy = f"known are {', '.join(known)}"
+            return self._report(at.inner("type"), "is not known" + near(str(kind), known), repr(kind), remedy)
+        before = len(self.problems)
+        values = self._values(known[kind], value, at, taken)
+        return known[kind](**values) if len(self.problems) == before else BROKEN
+
+    def _signal(self, value: Mapping[str, Any], spec: Spec, at: At) -> Any:
+        """A signal; with `unit` its values are in that unit."""
+        factor: Any = 1.0
+        if "unit" in value:
+            factor = self._converted(lambda: factor_to_si(value["unit"], at.unit, spec.units), at.inner("unit"))
+        signal = self._typed(value, Role.SIGNAL, at, ("type", "unit"))
+        if signal is BROKEN or factor is BROKEN:
+            return BROKEN
+        if isinstance(signal, Column):
+            return Column(signal.path, signal.column, signal.time, scale=signal.scale * factor, folder=self.folder)
+        return scaled(signal, factor) if factor != 1.0 else signal
+
+    def _simulation(self, data: Any) -> dict[str, Any]:
+        at = At("simulation", "")
+        if not isinstance(data, Mapping):
+            return self._report(at, "must be a table", repr(data), "write [simulation] above its lines") and {}
+        self._unknown(data, SIMULATION, at)
+        made = {}
+        for key, spec in SIMULATION.items():
+            if key in data:
+                place = at.inner(key, spec.unit)
+                made[key] = data[key] if spec.what == "text" else self._number(data[key], spec, place)
+                if made[key] is not BROKEN:
+                    self.problems += _simulation_problems(made[key], spec, place)
+        return made
+
+
+def _simulation_problems(value: Any, spec: Spec, at: At) -> list[Problem]:
+    from clutchwork.checks import CHECKS
+    from clutchwork.options import METHODS
+
+    found = list(CHECKS[spec.what](value, spec, at))
+    if spec.what == "text" and not found and value not in METHODS:
+        found.append(at.problem("is not known" + near(value, METHODS), repr(value), f"known are {', '.join(METHODS)}"))
+    return found
+
+
+def scaled(signal: Any, factor: float) -> Any:
+    """A signal with all values times a factor."""
+    values = {item.name: getattr(signal, item.name) for item, _ in specs(type(signal))}
+    for item, spec in specs(type(signal)):
+        if spec.unit == "*" and spec.what == "curve":
+            values[item.name] = [(x, y * factor) for x, y in values[item.name]]
+        elif spec.unit == "*":
+            values[item.name] *= factor
+    return type(signal)(**values)
+
+
+# --- write ---
+
+
+def save(driveline: Driveline, path: str | Path) -> None:
+    """Write a model file, TOML or JSON by its ending; CSV files stay where they are."""
+    path = Path(path)
+    data = to_dict(driveline, folder=path.parent)
+    if path.suffix.lower() == ".json":
+        text = json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+    elif path.suffix.lower() == ".toml":
+        text = toml(data)
+    else:
+        problem = Problem("file", "", "must end in .toml or .json", repr(path.name), "rename it")
+        raise ModelError([problem], str(path))
+    path.write_text(text, encoding="utf-8")
+
+
+def to_dict(driveline: Driveline, *, folder: str | Path | None = None, embed: bool = False) -> dict[str, Any]:
+    """The content of a model file.
+
+    Paths of CSV files become relative to the folder; with `embed` their values are written in their place.
+    ModelError names what a model file cannot hold.
+    """
+    writer = Writer(None if folder is None else str(folder), embed)
+    data: dict[str, Any] = {"format": FORMAT, "name": driveline.name}
+    for key, domain in (("shaft", Domain.ROTATION), ("mass", Domain.TRANSLATION)):
+        data[key] = [writer.node(node) for node in driveline.nodes if node.domain is domain]
+    data["element"] = [writer.element(element) for element in driveline.elements]
+    data["simulation"] = dict(driveline.simulation)
+    if writer.problems:
+        raise ModelError(writer.problems, driveline.name)
+    return {key: value for key, value in data.items() if value not in ([], {})}
+
+
+class Writer:
+    """Turns elements into plain data."""
+
+    def __init__(self, folder: str | None, embed: bool) -> None:
+        self.folder, self.embed = folder, embed
+        self.problems: list[Problem] = []
+
+    def node(self, node: Node) -> dict[str, Any]:
+        """A shaft or a mass; what has its default value is left out."""
+        names = NODE_FIELDS[node.domain]
+        values = dict(zip(names, (node.inertia, node.speed, node.angle), strict=True))
+        given = {key: float(value) for key, value in values.items() if value is not None and (value or key == "speed")}
+        return {"name": node.name, **given}
+
+    def element(self, element: Component) -> dict[str, Any]:
+        """An element with its type, ports and parameters."""
+        kind = type(element).kind  # type: ignore[attr-defined]
+        return {"name": element.name, "type": kind, **self._fields(element, label(element))}
+
+    def _fields(self, thing: Any, path: str) -> dict[str, Any]:
+        made = {}
+        for item, spec in specs(type(thing)):
+            value = getattr(thing, item.name)
+            if value is not None and (item.default is MISSING or value != item.default):
+                made[item.name] = self._value(value, spec, At(path, item.name))
+        return made
+
+    def _value(self, value: Any, spec: Spec, at: At) -> Any:
+        if spec.what == "port":
+            return value.name
+        if spec.what == "function":
+            message = "is a Python function, which a model file cannot hold"
+            self.problems.append(at.problem(message, remedy="give a table, or keep the model in Python"))
+            return None
+        if spec.what == "curve":
+            return [[float(x), float(y)] for x, y in value]
+        if isinstance(value, Column) and self.embed:
+            return {"type": "table", "points": [list(pair) for pair in value.points]}
+        if hasattr(value, "__dataclass_fields__"):
+            fields_ = self._fields(value, at.path)
+            if isinstance(value, Column):
+                fields_["path"] = self._path(value)
+            return {"type": value.kind, **fields_}
+        return value if isinstance(value, str | bool | int) else float(value)
+
+    def _path(self, column: Column) -> str:
+        full = Path(column.folder, column.path)
+        if self.folder is None or full.is_absolute():
+            return str(full)
+        return Path(os.path.relpath(full, self.folder)).as_posix()
+
+
+def toml(data: Mapping[str, Any]) -> str:
+    """A model as TOML text."""
+    lines = [f"{key} = {_toml(value)}" for key, value in data.items() if not isinstance(value, list | Mapping)]
+    for key, value in data.items():
+        for table in value if isinstance(value, list) else [value] if isinstance(value, Mapping) else []:
+            head = f"[[{key}]]" if isinstance(value, list) else f"[{key}]"
+            lines += ["", head, *(f"{name} = {_toml(entry)}" for name, entry in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key} = {_toml(entry)}" for key, entry in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return re.sub("\x7f", r"\\u007f", json.dumps(value, ensure_ascii=False))
+    return repr(value)

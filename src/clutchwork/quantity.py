@@ -1,0 +1,87 @@
+"""Numbers at the border: plain, as text with a unit, or as a table {value, unit}, turned into SI."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from clutchwork import units
+from clutchwork.errors import ClutchworkError, near
+
+if TYPE_CHECKING:
+    from clutchwork.schema import Spec
+
+
+class QuantityError(ClutchworkError, ValueError):
+    """A value that is no quantity of the wanted unit."""
+
+    def __init__(self, message: str, value: str, remedy: str) -> None:
+        self.message, self.value, self.remedy = message, value, remedy
+        super().__init__(f"{value}: {message}; {remedy}")
+
+
+def in_si(value: Any, unit: str, others: tuple[str, ...] = (), *, whole: bool = False) -> Any:
+    """The number in SI. What is no text and no table is handed back for the checks that follow.
+
+    Parameters: unit, the SI unit that is wanted; others, further ones that the quantity may have; whole, whether
+    an integer stays one.
+    """
+    if isinstance(value, Mapping):
+        unknown = [key for key in value if key not in ("value", "unit")]
+        if unknown or "value" not in value:
+            raise QuantityError("must be a number", repr(dict(value)), 'write a number, or {value = 1.0, unit = "..."}')
+        number = in_si(value["value"], unit, others)
+        if "unit" not in value or isinstance(number, bool) or not isinstance(number, int | float):
+            return number
+        return number * factor_to_si(value["unit"], unit, others, dict(value))
+    if isinstance(value, str):
+        parts = units.split(value)
+        if parts is None:
+            raise QuantityError(
+                "is no number", repr(value), f"write a number in [{unit}], or a text such as '1.5 {unit}'"
+            )
+        if not parts[1]:
+            raise QuantityError("is a text without unit", repr(value), "write the number without quotes")
+        return parts[0] * factor_to_si(parts[1], unit, others, value)
+    if isinstance(value, int) and not isinstance(value, bool) and not whole:
+        return float(value)
+    return value
+
+
+def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), shown: object = None) -> float:
+    """Factor from a given unit to the wanted SI unit; QuantityError, which shows the value, where they do not fit."""
+    value = repr(given if shown is None else shown)
+    wanted = " or ".join(f"[{name}]" for name in (unit, *others))
+    if not isinstance(given, str):
+        raise QuantityError("must be a unit", value, f"write it as text, such as {unit!r}")
+    try:
+        factor, powers = units.parse(given)
+    except ValueError as error:
+        word = str(error)
+        remedy = f"give it in {wanted}"
+        raise QuantityError(f"has the unknown unit {word!r}{near(word, units.known())}", value, remedy) from None
+    if all(powers != units.parse(name).powers for name in (unit, *others)):
+        raise QuantityError("is in a unit that does not fit", value, f"give it in {wanted}")
+    return factor
+
+
+def curve_in_si(value: Any, spec: Spec, unit: str) -> Any:
+    """Points in SI from a list of pairs, or from a table {points, unit_x, unit}."""
+    if not isinstance(value, Mapping):
+        return _pairs(value)
+    unknown = [key for key in value if key not in ("points", "unit_x", "unit")]
+    if unknown or "points" not in value:
+        raise QuantityError(
+            "must be a list of points", repr(dict(value)), "write {points = [[x, y], ...], unit_x, unit}"
+        )
+    x = factor_to_si(value["unit_x"], spec.unit_x) if "unit_x" in value else 1.0
+    y = factor_to_si(value["unit"], unit, spec.units) if "unit" in value else 1.0
+    pairs = _pairs(value["points"])
+    numbers = all(isinstance(v, int | float) and not isinstance(v, bool) for pair in pairs for v in pair)
+    return [(a * x, b * y) for a, b in pairs] if numbers else pairs
+
+
+def _pairs(value: Any) -> Any:
+    if not isinstance(value, list) or not all(isinstance(point, list) and len(point) == 2 for point in value):
+        return value
+    return [tuple(point) for point in value]

@@ -1,0 +1,145 @@
+"""The frozen System: flat arrays that the compiled core reads, and the names that belong to them."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.errors import ClutchworkError, near
+from clutchwork.layout import COUNTS, FIELDS, layout_text
+from clutchwork.node import Component, Node, Signal
+from clutchwork.schema import schema_hash
+
+MAGIC = b"CLUTCHWK"
+TYPES: dict[str, np.dtype[Any]] = {"f8": np.dtype("<f8"), "i4": np.dtype("<i4")}
+Array = NDArray[Any]
+
+
+class SystemFormatError(ClutchworkError, ValueError):
+    """Bytes or a file that hold no System of this version."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """One signal of a System: "c1.pressure", its unit, and what drives it."""
+
+    name: str
+    unit: str
+    signal: Signal
+
+
+@dataclass(frozen=True)
+class Gearing:
+    """One rigid row of a gear: sum over its ports of coefficient * speed = 0."""
+
+    gear: Component
+    ports: Mapping[str, tuple[int, float]]  # port -> (node or -1 for the housing, coefficient)
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """A driveline ready to run; never changes, so any number of runs and threads may share it.
+
+    `arrays` holds what `layout.FIELDS` lists; each is also an attribute: `system.mass`.
+    Elements, contacts, motions and nodes stand in the order of their arrays.
+    """
+
+    name: str
+    arrays: Mapping[str, Array]
+    nodes: tuple[Node, ...] = ()
+    elements: tuple[Component, ...] = ()
+    contacts: tuple[Component, ...] = ()
+    motions: tuple[Component, ...] = ()
+    gears: tuple[Gearing, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    independent: tuple[str, ...] = ()  # names of the nodes with independent speeds
+    parameters: Mapping[str, int] = field(default_factory=dict)  # "c1.gain" -> place in params
+    notes: tuple[str, ...] = ()
+    model: Mapping[str, Any] = field(default_factory=dict)  # the driveline as in a model file
+
+    def __getattr__(self, name: str) -> Array:
+        try:
+            return self.__dict__["arrays"][name]  # type: ignore[no-any-return]
+        except KeyError:
+            raise AttributeError(f"a System has no {name!r}{near(name, [n for n, *_ in FIELDS])}") from None
+
+    @cached_property
+    def counts(self) -> dict[str, int]:
+        """Sizes as `layout.COUNTS` lists them."""
+        sizes = {name: 0 for name, _ in COUNTS}
+        for name, _, shape, _ in FIELDS:
+            for size, length in zip(shape, self.arrays[name].shape, strict=True):
+                if isinstance(size, str):
+                    sizes[size] = max(sizes[size], length)
+        return sizes
+
+    def to_bytes(self) -> bytes:
+        """The System as the compiled core reads it: little endian, every array aligned to 8 bytes."""
+        head = MAGIC + struct.pack("<q", schema_hash(layout_text()))
+        head += struct.pack(f"<{len(COUNTS)}q", *(self.counts[name] for name, _ in COUNTS))
+        parts = [head]
+        for name, kind, _, _ in FIELDS:
+            data = np.ascontiguousarray(self.arrays[name], dtype=TYPES[kind]).tobytes()
+            parts.append(data + bytes(-len(data) % 8))
+        return b"".join(parts)
+
+    @classmethod
+    def from_bytes(cls, data: bytes, name: str = "system") -> System:
+        """A System without names from the bytes of `to_bytes`."""
+        head = len(MAGIC) + 8 + 8 * len(COUNTS)
+        if len(data) < head or data[: len(MAGIC)] != MAGIC:
+            raise SystemFormatError("these bytes hold no System; take those of System.to_bytes")
+        if struct.unpack_from("<q", data, len(MAGIC))[0] != schema_hash(layout_text()):
+            raise SystemFormatError("this System was assembled by another version; assemble the driveline again")
+        sizes = dict(zip((n for n, _ in COUNTS), struct.unpack_from(f"<{len(COUNTS)}q", data, 16), strict=True))
+        arrays, start = {}, head
+        for item, kind, shape, _ in FIELDS:
+            lengths = [size if isinstance(size, int) else sizes[size] for size in shape]
+            count = int(np.prod(lengths))
+            if start + count * TYPES[kind].itemsize > len(data):
+                raise SystemFormatError(f"these bytes end within {item!r}; the file is cut off")
+            arrays[item] = np.frombuffer(data, TYPES[kind], count, start).reshape(lengths)
+            start += -(-count * TYPES[kind].itemsize // 8) * 8
+        return cls(name=name, arrays=frozen(arrays))
+
+    def save(self, path: str | Path) -> None:
+        """Write arrays and model to a .npz file; nothing in it is code."""
+        if not self.model:
+            raise SystemFormatError(
+                "this System has a controller in Python or no names; save its driveline or to_bytes()"
+            )
+        stored = {"model": json.dumps(dict(self.model), allow_nan=False), "independent": json.dumps(self.independent)}
+        text: dict[str, Any] = {key: np.frombuffer(value.encode(), np.uint8) for key, value in stored.items()}
+        content = np.frombuffer(self.to_bytes(), np.uint8)
+        with Path(path).open("wb") as stream:
+            np.savez_compressed(stream, content=content, **text)
+
+    @classmethod
+    def load(cls, path: str | Path) -> System:
+        """Read a file that `save` wrote."""
+        from clutchwork.driveline import Driveline
+
+        try:
+            with np.load(Path(path), allow_pickle=False) as stored:
+                content, model, independent = (stored[key].tobytes() for key in ("content", "model", "independent"))
+        except (KeyError, ValueError, OSError) as error:
+            raise SystemFormatError(f"{path}: no System can be read: {error}; write it with System.save") from None
+        named = Driveline.from_dict(json.loads(model)).assemble(independent=json.loads(independent))
+        plain = cls.from_bytes(content, named.name)
+        return replace(named, arrays=plain.arrays)
+
+
+def frozen(arrays: Mapping[str, Array]) -> Mapping[str, Array]:
+    """The arrays, no longer writeable."""
+    for array in arrays.values():
+        array.flags.writeable = False
+    return MappingProxyType(dict(arrays))
