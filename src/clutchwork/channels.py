@@ -1,0 +1,184 @@
+"""Every signal of a System by name: its unit and how it follows from the output rows of the core.
+
+Nothing is computed before it is asked for. A torque is what its element puts on its follower (or shaft); power is
+torque times rate, the work done on the driveline; heat of a contact is minus its work.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork import reactions
+from clutchwork.errors import near
+from clutchwork.layout import MODES
+from clutchwork.node import Domain
+from clutchwork.wiring import HOUSING, Branch, Wiring
+
+Array = NDArray[Any]
+Rows = NDArray[np.float64]
+Evaluate = Callable[[Rows], Array]
+
+LOCKED = next(number for number, name in MODES.items() if name == "locked")
+STATE_NAMES = np.array([MODES[number] for number in sorted(MODES)])
+FIRST_MODE = min(MODES)
+
+SPEED = {Domain.ROTATION: "rad/s", Domain.TRANSLATION: "m/s"}
+ANGLE = {Domain.ROTATION: "rad", Domain.TRANSLATION: "m"}
+ACCELERATION = {Domain.ROTATION: "rad/s2", Domain.TRANSLATION: "m/s2"}
+TORQUE = {Domain.ROTATION: "N m", Domain.TRANSLATION: "N"}
+PLACE = {Domain.ROTATION: "angle", Domain.TRANSLATION: "position"}
+REACTION = {Domain.ROTATION: "housing.torque", Domain.TRANSLATION: "housing.force"}
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One signal: its unit and its evaluation on a matrix of output rows."""
+
+    unit: str
+    evaluate: Evaluate
+
+
+class Channels(Mapping[str, Channel]):
+    """All signals of a System by name; a misspelt name is answered with near ones."""
+
+    def __init__(self, wiring: Wiring, *, angles: bool = True, work: bool = True) -> None:
+        self._wiring = wiring
+        self._left_out = _left_out(angles, work)
+        self._channels = {name: channel for name, channel in self._all() if not name.endswith(tuple(self._left_out))}
+
+    def __getitem__(self, name: str) -> Channel:
+        try:
+            return self._channels[name]
+        except KeyError:
+            raise KeyError(self._unknown(name)) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._channels)
+
+    def __len__(self) -> int:
+        return len(self._channels)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._channels
+
+    def _unknown(self, name: str) -> str:
+        for ending, option in self._left_out.items():
+            if name.endswith(ending):
+                return f"{name} was not computed: run with {option}=True"
+        return f"no signal {name!r}{near(name, list(self._channels))}"
+
+    def _all(self) -> Iterator[tuple[str, Channel]]:
+        yield from self._nodes()
+        for index, branch in enumerate(self._wiring.elements):
+            yield from self._element(branch, index)
+        for index, branch in enumerate(self._wiring.contacts):
+            yield from self._contact(branch, index)
+        yield from self._rigid()
+        start = self._start("input")
+        for index, (name, unit) in enumerate(self._wiring.inputs):
+            yield name, _column(start + index, unit)
+
+    def _start(self, part: str) -> int:
+        return int(self._wiring.columns[part].start)
+
+    def _nodes(self) -> Iterator[tuple[str, Channel]]:
+        for index, node in enumerate(self._wiring.nodes):
+            domain = node.domain
+            yield f"{node.name}.speed", _column(self._start("speed") + index, SPEED[domain])
+            yield f"{node.name}.{PLACE[domain]}", _column(self._start("angle") + index, ANGLE[domain])
+            yield f"{node.name}.acceleration", _column(self._start("acceleration") + index, ACCELERATION[domain])
+
+    def _element(self, branch: Branch, index: int) -> Iterator[tuple[str, Channel]]:
+        torque, rate = self._start("element_torque") + index, _linear(self._rate(branch))
+        yield f"{branch.name}.torque", _column(torque, TORQUE[branch.domain])
+        yield f"{branch.name}.rate", Channel(SPEED[branch.domain], rate)
+        yield f"{branch.name}.power", Channel("W", lambda rows: rows[:, torque] * rate(rows))
+        yield f"{branch.name}.work", _column(self._start("element_work") + index, "J")
+        yield from self._states(branch)
+
+    def _states(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
+        for name, unit, index in branch.states:
+            column = self._start("state") + index
+            yield f"{branch.name}.{name}", _column(column, unit)
+            if name == "spring_torque":
+                yield f"{branch.name}.twist", _scaled(column, 1.0 / branch.component.stiffness, ANGLE[branch.domain])
+
+    def _contact(self, branch: Branch, index: int) -> Iterator[tuple[str, Channel]]:
+        torque, mode = self._start("contact_torque") + index, self._start("contact_mode") + index
+        work, slip = self._start("contact_work") + index, _slip(_linear(self._rate(branch)), mode)
+        yield f"{branch.name}.torque", _column(torque, TORQUE[branch.domain])
+        yield f"{branch.name}.slip", Channel(SPEED[branch.domain], slip)
+        yield f"{branch.name}.power", Channel("W", lambda rows: rows[:, torque] * slip(rows))
+        yield f"{branch.name}.work", _column(work, "J")
+        yield f"{branch.name}.heat", _scaled(work, -1.0, "J")
+        yield f"{branch.name}.mode", Channel("1", lambda rows: rows[:, mode].astype(int))
+        yield f"{branch.name}.state", Channel("", lambda rows: STATE_NAMES[rows[:, mode].astype(int) - FIRST_MODE])
+        yield f"{branch.name}.capacity", _column(self._start("contact_capacity") + index, TORQUE[branch.domain])
+        yield from self._states(branch)
+
+    def _rigid(self) -> Iterator[tuple[str, Channel]]:
+        wiring, made = self._wiring, reactions.multipliers(self._wiring)
+        yield from _gear_torques(wiring, made)
+        for index, branch in enumerate(wiring.motions):
+            torque, rate = _linear(made[len(wiring.gears) + index]), _linear(self._rate(branch))
+            yield f"{branch.name}.torque", Channel(TORQUE[branch.domain], torque)
+            yield f"{branch.name}.power", _power(torque, rate)
+            yield f"{branch.name}.work", _column(self._start("prescribed_work") + index, "J")
+        for domain in Domain:
+            if domain is Domain.ROTATION or any(node.domain is domain for node in wiring.nodes):
+                yield REACTION[domain], Channel(TORQUE[domain], _linear(reactions.on_housing(wiring, made, domain)))
+
+    def _rate(self, branch: Branch) -> Array:
+        """Vector that turns an output row into the rate of a branch."""
+        vector = np.zeros(self._wiring.row_size)
+        for node, coefficient in branch.direction.items():
+            if node != HOUSING:
+                vector[self._start("speed") + node] += coefficient
+        return vector
+
+
+def _left_out(angles: bool, work: bool) -> dict[str, str]:
+    """Endings of the signals that a run did not integrate, with the option that turns them on."""
+    endings = {} if angles else {".angle": "angles", ".position": "angles"}
+    return endings if work else endings | {".work": "work", ".heat": "work"}
+
+
+def _gear_torques(wiring: Wiring, made: Array) -> Iterator[tuple[str, Channel]]:
+    """Torque that a gear puts on the member at each port; several rows of one gear add up."""
+    totals: dict[str, tuple[Array, Domain]] = {}
+    for index, row in enumerate(wiring.gears):
+        for port, (_, coefficient) in row.ports.items():
+            name = f"{row.name}.torque_{port}"
+            before = totals[name][0] if name in totals else np.zeros(wiring.row_size)
+            totals[name] = (before + coefficient * made[index], row.domains[port])
+    for name, (vector, domain) in totals.items():
+        yield name, Channel(TORQUE[domain], _linear(vector))
+
+
+def _column(column: int, unit: str) -> Channel:
+    return Channel(unit, lambda rows: rows[:, column])
+
+
+def _scaled(column: int, factor: float, unit: str) -> Channel:
+    return Channel(unit, lambda rows: factor * rows[:, column])
+
+
+def _linear(vector: Array) -> Evaluate:
+    """Product with a constant vector; columns with factor 0 are left out, for they may be infinite."""
+    used = np.flatnonzero(vector)
+    factors = vector[used]
+    return lambda rows: rows[:, used] @ factors
+
+
+def _power(torque: Evaluate, rate: Evaluate) -> Channel:
+    return Channel("W", lambda rows: torque(rows) * rate(rows))
+
+
+def _slip(rate: Evaluate, mode: int) -> Evaluate:
+    """Slip of a contact; exactly zero while it is locked."""
+    return lambda rows: np.where(rows[:, mode] == LOCKED, 0.0, rate(rows))

@@ -1,0 +1,132 @@
+"""Where the energy of a run went.
+
+    work of the sources = change of kinetic + change of elastic energy + heat + energy lost in impulses + residual
+
+The work integrals come from the solver itself, so the residual measures what the integration lost or made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.events import Events
+from clutchwork.text import columns
+from clutchwork.wiring import Branch, Wiring
+
+SPRING_STATE = "spring_torque"
+
+
+@dataclass(frozen=True)
+class EnergyBalance:
+    """Energies between the first and the last instant of a trajectory, all in J."""
+
+    sources: Mapping[str, float]  # work that each source put in; negative for a load
+    kinetic: float  # change
+    elastic: float  # change, all springs
+    heat: Mapping[str, float]  # per contact and damper
+    impulses: float  # lost where speeds jumped
+
+    @property
+    def input(self) -> float:
+        """Net work of all sources and prescribed speeds [J]."""
+        return sum(self.sources.values())
+
+    @property
+    def residual(self) -> float:
+        """What the balance misses [J]."""
+        return self.input - self.kinetic - self.elastic - sum(self.heat.values()) - self.impulses
+
+    @property
+    def turnover(self) -> float:
+        """Sum of all energies that moved, regardless of direction [J]: what a residual is small against."""
+        parts = [*self.sources.values(), *self.heat.values(), self.kinetic, self.elastic, self.impulses]
+        return 0.5 * sum(abs(part) for part in parts)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain numbers for JSON."""
+        return {
+            "input_J": self.input,
+            "sources_J": dict(self.sources),
+            "kinetic_J": self.kinetic,
+            "elastic_J": self.elastic,
+            "heat_J": dict(self.heat),
+            "impulses_J": self.impulses,
+            "residual_J": self.residual,
+        }
+
+    def __str__(self) -> str:
+        """A table for reading."""
+        lines = [(f"  {name}", f"{work:.3f}") for name, work in self.sources.items()]
+        lines.insert(0, ("work of sources", f"{self.input:.3f}"))
+        lines += [("kinetic energy, change", f"{self.kinetic:.3f}"), ("elastic energy, change", f"{self.elastic:.3f}")]
+        lines += [("heat", f"{sum(self.heat.values()):.3f}")]
+        lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.heat.items()]
+        lines += [("lost in impulses", f"{self.impulses:.3f}")] if self.impulses else []
+        share = self.residual / self.turnover if self.turnover else 0.0
+        lines += [("residual", f"{self.residual:.3e}"), ("residual / turnover", f"{share:.1e}")]
+        return columns([("energy", "J"), *lines], right={1})
+
+
+def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> EnergyBalance:
+    """Balance between the first and the last output row."""
+    ends = rows[[0, -1]]
+    sources, heat, elastic = {}, {}, 0.0
+    for branch, work in _works(wiring, ends, "element_work", wiring.elements):
+        stored = _elastic(wiring, ends, branch)
+        elastic += stored
+        if is_source(branch):
+            sources[branch.name] = work
+        elif is_lossy(branch):
+            heat[branch.name] = -work - stored
+    sources |= {branch.name: work for branch, work in _works(wiring, ends, "prescribed_work", wiring.motions)}
+    heat |= {branch.name: -work for branch, work in _works(wiring, ends, "contact_work", wiring.contacts)}
+    return EnergyBalance(sources, _kinetic(wiring, ends), elastic, heat, _impulses(events))
+
+
+def is_spring(branch: Branch) -> bool:
+    """Whether an element stores elastic energy: its state is stiffness times twist."""
+    return any(name == SPRING_STATE for name, *_ in branch.states)
+
+
+def is_lossy(branch: Branch) -> bool:
+    """Whether an element turns work into heat: it has a damping."""
+    return hasattr(branch.component, "damping")
+
+
+def is_source(branch: Branch) -> bool:
+    """Whether the work of an element counts as work from outside: drives and loads."""
+    return not (is_spring(branch) or is_lossy(branch))
+
+
+def _impulses(events: Events) -> float:
+    """Energy lost where speeds jumped; contacts that lock in one instant share one impulse."""
+    jumps = {(e.time, e.energy_before, e.energy_after) for e in events if e.cause == "impulse"}
+    return sum(before - after for _, before, after in jumps)
+
+
+def _works(
+    wiring: Wiring, ends: NDArray[np.float64], part: str, branches: tuple[Branch, ...]
+) -> list[tuple[Branch, float]]:
+    gained = ends[1, wiring.columns[part]] - ends[0, wiring.columns[part]]
+    return [(branch, float(work)) for branch, work in zip(branches, gained, strict=True)]
+
+
+def _kinetic(wiring: Wiring, ends: NDArray[np.float64]) -> float:
+    speeds = ends[:, wiring.columns["speed"]]
+    inertia = np.array([node.inertia for node in wiring.nodes])
+    # as a product of sum and difference, which keeps digits when little changed
+    return float(0.5 * np.sum(inertia * (speeds[1] - speeds[0]) * (speeds[1] + speeds[0])))
+
+
+def _elastic(wiring: Wiring, ends: NDArray[np.float64], branch: Branch) -> float:
+    total = 0.0
+    for name, _, index in branch.states:
+        if name == SPRING_STATE:
+            torque = ends[:, wiring.columns["state"].start + index]
+            total += 0.5 * (torque[1] - torque[0]) * (torque[1] + torque[0]) / branch.component.stiffness
+    return float(total)

@@ -1,0 +1,172 @@
+"""The panels of a picture; each draws one view of a run on given axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.channels import LOCKED
+from clutchwork.node import Domain
+from clutchwork.plot.style import EVENT_LINE, looks
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from clutchwork.events import Event
+    from clutchwork.trajectory import Trajectory
+
+MOST_CURVES = 24
+# (unit in the result, from this size on, unit in the picture, factor)
+SCALES = (("Pa", 1e5, "MPa", 1e-6), ("N m", 5e3, "kN m", 1e-3), ("N", 5e3, "kN", 1e-3))
+
+
+def speeds(axes: Axes, run: Trajectory, domain: Domain) -> None:
+    """Speeds of all members of one domain over time."""
+    for name, look in member_looks(run, domain).items():
+        axes.plot(run.time, run[f"{name}.speed"], label=name, **look)
+    unit = "rad/s" if domain is Domain.ROTATION else "m/s"
+    axes.set_ylabel(f"speed, {unit}")
+    legend(axes, "member")
+
+
+def zoom(axes: Axes, run: Trajectory, event: Event) -> None:
+    """Speeds near one lock-up, cut to the members that meet there."""
+    left, right = window(run, event)
+    part = fine(run, left, right)
+    low, high = _meeting(part, event)
+    domain = _branch(run, event.element).domain
+    for name, look in member_looks(run, domain).items():
+        speed = part[f"{name}.speed"]
+        if np.max(speed) >= low and np.min(speed) <= high:
+            axes.plot(part.time, speed, label=name, **look)
+    axes.axvline(event.time, **EVENT_LINE)
+    axes.annotate(
+        f"{event.element} locks at {event.time:.4f} s", (event.time, 1.0), (4, -4), xycoords=("data", "axes fraction"),
+        textcoords="offset points", va="top", fontsize=7.5,
+    )  # fmt: skip
+    axes.set_xlim(left, right)
+    axes.set_ylim(low, high)
+    axes.set_ylabel("speed, rad/s" if domain is Domain.ROTATION else "speed, m/s")
+    legend(axes, "member")
+
+
+def inputs(axes: Axes, run: Trajectory) -> None:
+    """What presses the contacts together."""
+    names = driven(run)
+    factor, unit = scale(run, list(names.values()))
+    for (contact, signal), look in zip(names.items(), contact_looks(run, names).values(), strict=True):
+        axes.plot(run.time, factor * run[signal], label=contact, **look)
+    what = {"MPa": "pressure", "Pa": "pressure", "1": "normal force, share of full"}.get(unit, "normal force")
+    axes.set_ylabel(what if unit == "1" else f"{what}, {unit}")
+    axes.margins(y=0.08)
+    legend(axes, "contact")
+
+
+def torques(axes: Axes, run: Trajectory) -> None:
+    """Torques of the contacts: thin while slipping, thick while locked."""
+    names = busy(run)
+    factor, unit = scale(run, [f"{name}.torque" for name in names])
+    for name, look in contact_looks(run, names).items():
+        torque = factor * run[f"{name}.torque"]
+        axes.plot(run.time, torque, **{**look, "linewidth": 0.9}, label=name)
+        is_locked = run[f"{name}.mode"] == LOCKED
+        axes.plot(run.time, np.where(is_locked, torque, np.nan), **{**look, "linewidth": 2.4})
+    axes.axhline(0.0, color="#B0B0B0", linewidth=0.5, zorder=1)
+    axes.set_ylabel(f"torque on follower, {unit}")
+    legend(axes, "thick: locked")
+
+
+def locks(axes: Axes, run: Trajectory) -> None:
+    """Bars over time: full while locked, pale while slipping under load, none while open."""
+    names = busy(run)
+    for row, (name, look) in enumerate(contact_looks(run, names).items()):
+        locked, slipping = run[f"{name}.mode"] == LOCKED, np.abs(run[f"{name}.mode"]) == 1
+        loaded = slipping & (run[f"{name}.torque"] != 0.0)
+        axes.broken_barh(spans(run.time, loaded), (row - 0.36, 0.72), facecolor=look["color"], alpha=0.25, linewidth=0)
+        axes.broken_barh(spans(run.time, locked), (row - 0.36, 0.72), facecolor=look["color"], linewidth=0)
+    axes.set_yticks(range(len(names)), names)
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.grid(visible=False, axis="y")
+    axes.text(1.012, 0.5, "full: locked\npale: slipping", transform=axes.transAxes, va="center", fontsize=7.0)
+
+
+def member_looks(run: Trajectory, domain: Domain) -> dict[str, dict[str, Any]]:
+    """Colour and dashes of every member, the same in all panels."""
+    names = [node.name for node in run.wiring.nodes if node.domain is domain]
+    return dict(zip(names[:MOST_CURVES], looks(), strict=False))
+
+
+def contact_looks(run: Trajectory, names: Any) -> dict[str, dict[str, Any]]:
+    """Colour of the chosen contacts, the same in all panels."""
+    all_looks = dict(zip(busy(run), looks(), strict=False))
+    return {name: {**all_looks[name], "linestyle": "-"} for name in names}
+
+
+def busy(run: Trajectory) -> list[str]:
+    """Contacts that carry torque at some time."""
+    names = [branch.name for branch in run.wiring.contacts]
+    return [name for name in names if np.any(run[f"{name}.torque"] != 0.0)][:MOST_CURVES]
+
+
+def driven(run: Trajectory) -> dict[str, str]:
+    """Contacts that carry torque, with the signal that presses each."""
+    names = [name for name, _ in run.wiring.inputs]
+    found = {c: [n for n in names if n in (f"{c}.pressure", f"{c}.normal_force")] for c in busy(run)}
+    return {contact: signals[0] for contact, signals in found.items() if signals}
+
+
+def scale(run: Trajectory, names: list[str]) -> tuple[float, str]:
+    """Factor and unit in which some signals of one unit are shown."""
+    unit = run.units[names[0]] if names else "1"
+    largest = max((float(np.max(np.abs(run[name]), initial=0.0)) for name in names), default=0.0)
+    for from_unit, size, to_unit, factor in SCALES:
+        if unit == from_unit and largest >= size:
+            return factor, to_unit
+    return 1.0, unit
+
+
+def spans(time: NDArray[np.float64], holds: NDArray[np.bool_]) -> list[tuple[float, float]]:
+    """(begin, duration) of the stretches in which a condition holds."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], holds, [False]]).astype(int)))
+    last = len(time) - 1
+    pairs = zip(edges[::2], edges[1::2], strict=True)
+    return [(float(time[first]), float(time[min(stop, last)] - time[first])) for first, stop in pairs]
+
+
+def legend(axes: Axes, title: str) -> None:
+    """Legend to the right of the axes, where it covers nothing."""
+    handles, _ = axes.get_legend_handles_labels()
+    if handles:
+        columns = 1 + (len(handles) - 1) // 9
+        axes.legend(
+            loc="upper left", bbox_to_anchor=(1.0, 1.02), borderaxespad=0.3, title=title, title_fontsize=7.5,
+            alignment="left", ncols=columns, handlelength=2.4, labelspacing=0.3, columnspacing=0.8,
+        )  # fmt: skip
+
+
+def window(run: Trajectory, event: Event) -> tuple[float, float]:
+    """Stretch of time around an event that shows the lock-up [s]."""
+    half = 0.04 * (run.time[-1] - run.time[0])
+    return max(float(run.time[0]), event.time - half), min(float(run.time[-1]), event.time + half)
+
+
+def fine(run: Trajectory, left: float, right: float) -> Trajectory:
+    """The run on a fine grid in a window, events included; a run that stopped early as it is."""
+    if not run.finished:
+        return run
+    inside = [e.time for e in run.events if left <= e.time <= right]
+    return run.at(np.concatenate([np.linspace(left, right, 801), inside, inside]))
+
+
+def _meeting(part: Trajectory, event: Event) -> tuple[float, float]:
+    """Range of speed that holds the members of a contact around its lock-up."""
+    names = [part.wiring.nodes[i].name for i in _branch(part, event.element).direction if i >= 0]
+    values = np.concatenate([part[f"{name}.speed"] for name in names])
+    pad = 0.12 * (float(np.ptp(values)) or 1.0)
+    return float(np.min(values)) - pad, float(np.max(values)) + pad
+
+
+def _branch(run: Trajectory, name: str) -> Any:
+    return next(branch for branch in run.wiring.contacts if branch.name == name)

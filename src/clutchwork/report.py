@@ -1,0 +1,116 @@
+"""What the command line tells about a run or a model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.ratios import Phase, gears
+from clutchwork.text import columns
+from clutchwork.wiring import wiring
+
+if TYPE_CHECKING:
+    from clutchwork.events import Events
+    from clutchwork.system import System
+    from clutchwork.trajectory import Trajectory
+
+MOST_LINES = 40
+
+
+def run_text(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] | None) -> str:
+    """Events, gears, energy and effort of a run."""
+    parts = [event_text(run.events)]
+    if phases and shafts is not None:
+        parts.append(phase_text(phases, shafts))
+    if run.options.work:
+        parts.append(str(run.energy))
+    parts.append(effort_text(run))
+    return "\n\n".join(parts)
+
+
+def event_text(events: Events) -> str:
+    """The events, the first ones when there are many."""
+    text = str(events[:MOST_LINES])
+    return text + (f"\n... and {len(events) - MOST_LINES} more" if len(events) > MOST_LINES else "")
+
+
+def phase_text(phases: Sequence[Phase], shafts: tuple[str, str]) -> str:
+    """Which contacts were locked when, and the ratio that they gave."""
+    head = ("from s", "to s", "locked", f"{shafts[0]}/{shafts[1]} by gears", "at the end")
+    lines = [
+        (f"{p.begin:.6f}", f"{p.end:.6f}", " ".join(p.closed) or "-", number(p.kinematic), number(p.measured))
+        for p in phases[:MOST_LINES]
+    ]
+    return columns([head, *lines], right={0, 1, 3, 4})
+
+
+def effort_text(run: Trajectory) -> str:
+    """Steps and time that the run took."""
+    s = run.statistics
+    return (
+        f"{run.time[-1]:g} s computed in {1e3 * s['core_seconds']:.3f} ms"
+        f" ({1e3 * s['seconds']:.1f} ms with all signals at {len(run)} instants),"
+        f" {s.get('steps', 0):g} steps, {s.get('rejected', 0):g} rejected, {len(run.events)} events"
+    )
+
+
+def run_data(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] | None) -> dict[str, Any]:
+    """The same as plain data for JSON."""
+    return {
+        "status": run.status,
+        "message": run.message,
+        "time_s": float(run.time[-1]) if len(run) else 0.0,
+        "events": [_finite(asdict(event)) for event in run.events],
+        "ratio_of": list(shafts) if shafts else None,
+        "phases": [_finite(asdict(phase)) for phase in phases],
+        "energy": run.energy.as_dict() if run.options.work and len(run) else None,
+        "final": {name: float(run[name][-1]) for name in run.names if name.endswith(".speed") and len(run)},
+        "statistics": dict(run.statistics),
+    }
+
+
+def model_text(system: System, shafts: tuple[str, str] | None) -> str:
+    """Size of a model and the ratios that its contacts can give."""
+    size = ", ".join(f"{count} {name}" for name, count in sizes(system).items())
+    lines = [(" ".join(closed) or "-", number(value)) for closed, value in gears(system, shafts)] if shafts else []
+    if not lines or shafts is None:
+        return size
+    return f"{size}\n\n{columns([('closed', f'{shafts[0]}/{shafts[1]}'), *lines], right={1})}"
+
+
+def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]:
+    """The same as plain data for JSON."""
+    found = gears(system, shafts) if shafts else ()
+    return {
+        "sizes": sizes(system),
+        "ratio_of": list(shafts) if shafts else None,
+        "gears": [{"closed": list(closed), "ratio": value} for closed, value in found],
+    }
+
+
+def sizes(system: System) -> dict[str, int]:
+    """How much of what a model has."""
+    parts = wiring(system)
+    return {
+        "shafts and masses": len(parts.nodes),
+        "independent speeds": int(system.basis.shape[1]),
+        "gear rows": len(parts.gears),
+        "torque elements": len(parts.elements),
+        "contacts": len(parts.contacts),
+        "prescribed speeds": len(parts.motions),
+        "inputs": len(parts.inputs),
+    }
+
+
+def _finite(data: dict[str, Any]) -> dict[str, Any]:
+    """JSON has no infinity."""
+    return {name: None if isinstance(x, float) and not math.isfinite(x) else x for name, x in data.items()}
+
+
+def number(value: float | None) -> str:
+    """A ratio in words."""
+    if value is None:
+        return "free"
+    return f"{value:.4f}" if math.isfinite(value) else "held"

@@ -1,0 +1,121 @@
+"""Who is joined to what in a System, as the evaluation of results needs it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.checks import ports
+from clutchwork.layout import ROW
+from clutchwork.node import Component, Domain, Node
+
+if TYPE_CHECKING:
+    from clutchwork.system import System
+
+HOUSING = -1  # index that stands for the housing, which is no node of the system
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A torque element, a contact or a prescribed speed: name, component and direction over the nodes."""
+
+    name: str
+    component: Any
+    direction: Mapping[int, float]  # node index or HOUSING -> coefficient of its speed in the rate
+    domain: Domain
+    states: tuple[tuple[str, str, int], ...] = ()  # (name, unit, index among all states)
+
+
+@dataclass(frozen=True)
+class GearRow:
+    """One rigid row of a gear: sum of coefficient * speed = 0."""
+
+    name: str
+    ports: Mapping[str, tuple[int, float]]  # port -> (node index or HOUSING, coefficient)
+    domains: Mapping[str, Domain]  # port -> rotation or translation
+
+
+@dataclass(frozen=True)
+class Wiring:
+    """The connections of a System and where each quantity stands in an output row."""
+
+    nodes: tuple[Node, ...]
+    elements: tuple[Branch, ...]
+    contacts: tuple[Branch, ...]
+    motions: tuple[Branch, ...]
+    gears: tuple[GearRow, ...]
+    inputs: tuple[tuple[str, str], ...]  # (name, unit)
+    columns: Mapping[str, slice]
+
+    @property
+    def row_size(self) -> int:
+        """Numbers in one output row."""
+        return max((part.stop for part in self.columns.values()), default=0)
+
+    def spread(self, branches: tuple[Branch, ...]) -> NDArray[np.float64]:
+        """Torque on every node per torque of every branch, shape (nodes, branches)."""
+        matrix = np.zeros((len(self.nodes), len(branches)))
+        for column, branch in enumerate(branches):
+            for node, coefficient in branch.direction.items():
+                if node != HOUSING:
+                    matrix[node, column] += coefficient
+        return matrix
+
+
+def wiring(system: System) -> Wiring:
+    """The connections of a System."""
+    places = {id(node): index for index, node in enumerate(system.nodes)}
+    gears = [GearRow(row.gear.name, dict(row.ports), _domains(row.gear)) for row in system.gears]
+    return Wiring(
+        nodes=system.nodes,
+        elements=_with_states([_branch(component, places) for component in system.elements]),
+        contacts=tuple(_branch(component, places) for component in system.contacts),
+        motions=tuple(_branch(component, places) for component in system.motions),
+        gears=tuple(gears),
+        inputs=tuple((item.name, item.unit) for item in system.inputs),
+        columns=row_columns(system.counts),
+    )
+
+
+def row_columns(sizes: Mapping[str, int]) -> dict[str, slice]:
+    """Where each part of layout.ROW stands, for the given sizes."""
+    columns, start = {}, 0
+    for name, size in ROW:
+        columns[name] = slice(start, start + sizes[size])
+        start += sizes[size]
+    return columns
+
+
+def _branch(component: Component, places: Mapping[int, int]) -> Branch:
+    """Direction follower - base or shaft - base, over the nodes and the housing."""
+    joined = ports(component)
+    moving, base = joined.get("follower") or joined["shaft"], joined.get("base")
+    ends = [(moving, 1.0)] + ([(base, -1.0)] if base is not None else [(None, -1.0)])
+    direction: dict[int, float] = {}
+    for node, factor in ends:
+        index = HOUSING if node is None else places.get(id(node), HOUSING)
+        direction[index] = direction.get(index, 0.0) + factor
+    known = next((node for node, _ in ends if node is not None and not node.fixed), moving)
+    return Branch(component.name, component, direction, known.domain)
+
+
+def _with_states(branches: list[Branch]) -> tuple[Branch, ...]:
+    """The same with the names and places of the states that they own."""
+    made, first = [], 0
+    for branch in branches:
+        own = tuple(branch.component.states)
+        states = tuple((state.name, state.unit, first + k) for k, state in enumerate(own))
+        made.append(replace(branch, states=states))
+        first += len(own)
+    return tuple(made)
+
+
+def _domains(gear: Component) -> dict[str, Domain]:
+    """Kind of motion at every port; the housing takes that of its fellow ports."""
+    joined = ports(gear)
+    moving = next((node.domain for node in joined.values() if not node.fixed), Domain.ROTATION)
+    return {port: moving if node.fixed else node.domain for port, node in joined.items()}
