@@ -1,0 +1,114 @@
+#pragma once
+#include <clutchwork/phase.hpp>
+
+/// The whole run: modes, smooth phase, switch, until the end time.
+namespace clutchwork {
+
+/// Whether an explicit step is limited by accuracy and not by stability in the present phase.
+template <class T>
+bool explicit_suits(const Workspace<T>& ws) {
+  if (ws.options.method != Method::automatic) return ws.options.method == Method::dopri5;
+  const int nv = int(ws.sys.speeds);
+  double damping = 0, stiffness = 0;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const T* row = ws.direction + ws.branch[k].direction * nv;
+    const double mobility = value(dot(nv, row, row));
+    damping += mobility * abs(value(ws.partial[k].by_rate));
+    for (int s = 0; s < ws.branch[k].states; ++s) {
+      const int i = ws.branch[k].state + s;
+      stiffness += mobility * abs(value(ws.f_state[i] * ws.g_rate[i]));
+    }
+  }
+  const double fastest = damping + sqrt(stiffness), h = ws.last_step > 0 ? ws.last_step : 1e-3;
+  return fastest * h < 1.0;
+}
+
+template <class Form>
+Status run_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink) {
+  // speeds without inertia are algebraic: only the implicit method carries them
+  bool algebraic = false;
+  for (int i = 0; i < ws.sys.speeds; ++i) algebraic = algebraic || ws.sys.massless[i] != 0;
+  if (!algebraic && explicit_suits(ws)) return smooth_phase<Form, Dopri5>(ws, t_end, sink);
+  return smooth_phase<Form, Rodas5P>(ws, t_end, sink);
+}
+
+/// Exact sizes for small systems, one sparse form for the rest.
+template <class T, int NZ = 0, int NS = 0>
+Status dispatch(Workspace<T>& ws, double t_end, Sink& sink) {
+  if (ws.sparse) return run_phase<SparseForm<T>>(ws, t_end, sink);
+  if constexpr (NZ > small_speeds) {
+    return Status::no_mode;
+  } else if constexpr (NS > small_states) {
+    return dispatch<T, NZ + 1, 0>(ws, t_end, sink);
+  } else {
+    if (ws.nz == NZ && ws.sys.states == NS) return run_phase<SmallForm<T, NZ, NS>>(ws, t_end, sink);
+    return dispatch<T, NZ, NS + 1>(ws, t_end, sink);
+  }
+}
+
+/// State at time zero. False when the mass matrix is not positive definite.
+template <class T>
+bool start(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  if (!prepare_geometry(ws)) return false;
+  for (int i = 0; i < sys.speeds; ++i) ws.v[i] = T(sys.initial_speed[i]);
+  for (int i = 0; i < sys.states; ++i) ws.state[i] = T(sys.initial_state[i]);
+  for (int i = 0; i < sys.nodes; ++i) ws.angle[i] = T(sys.initial_angle[i]);
+  for (int d = 0; d < ws.n_directions; ++d) ws.work[d] = T(0), ws.piece[d] = 0;
+  for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_work[p] = T(0);
+  load_inputs(ws, ws.time);
+  input_slopes_at(ws, ws.time);
+  for (int c = 0; c < sys.contacts; ++c) {
+    ws.forced[c] = ws.held[c] = ws.loaded[c] = 0;
+    const double slip = value(rate_of(ws, int(sys.elements) + c));
+    ws.mode[c] = abs(slip) <= slip_tolerance(ws) ? open : slip > 0 ? forward : backward;
+  }
+  for (int d = 0; d < sys.elements; ++d) {
+    if (edge_count(ws, d) > 0) ws.piece[d] = piece_of(ws, d, value(rate_of(ws, d)));
+  }
+  refresh_loads(ws);
+  ws.located = -1;
+  ws.cause = Cause::initial;
+  ws.started = true;
+  return true;
+}
+
+/// Signals or parameters were set from outside: decide the modes anew, like at a knot.
+template <class T>
+void take_outside(Workspace<T>& ws) {
+  ws.input_changed = false;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int k = ws.branch_of[ws.sys.elements + c];
+    ws.mode_before[c] = ws.mode[c];
+    ws.torque_before[c] = ws.mode[c] == locked ? ws.torque[ws.sys.elements + c] : T(0);
+    if (k >= 0 && k < ws.n_branches) ws.torque_before[c] = contact_torque(ws, ws.branch[k], rate_of(ws, ws.branch[k].direction));
+    ws.slip_slope[c] = T(0);
+  }
+  for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];
+  load_inputs(ws, ws.time);
+  input_slopes_at(ws, ws.time);
+  refresh_loads(ws);
+  ws.located = -1;
+  ws.cause = Cause::input;
+  switch_modes(ws);
+}
+
+/// Integrate to t_end, filling rows and events on the way.
+template <class T>
+Status advance(Workspace<T>& ws, double t_end, Sink& sink) {
+  if (!ws.started) {
+    if (!start(ws)) return Status::bad_system;
+    const Status status = switch_modes(ws);
+    if (status != Status::running) return status;
+  }
+  while (true) {
+    if (ws.input_changed) take_outside(ws);
+    if (ws.fresh_phase) enter_mode(ws);
+    Status status = dispatch(ws, t_end, sink);
+    if (status != Status::running) return status;
+    status = switch_modes(ws);
+    if (status != Status::running) return status;
+  }
+}
+
+}  // namespace clutchwork

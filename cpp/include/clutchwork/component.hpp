@@ -1,0 +1,81 @@
+#pragma once
+#include <clutchwork/dual.hpp>
+#include <concepts>
+
+/// What an element or a friction law provides: parameters and pure functions of one rate, own states and inputs.
+namespace clutchwork {
+
+/// Compile-time name of a component.
+template <class E>
+struct Tag {
+  using type = E;
+};
+
+/// Parameter that is a piecewise linear function: a range of the pool of points.
+template <class T>
+struct Curve {
+  T first;  ///< [1] number of the first point
+  T count;  ///< [1] number of points
+};
+
+/// Where a component is evaluated.
+template <class S>
+struct At {
+  S rate;                ///< [rad/s] rate of an element; slip of a contact in the direction in which it slips
+  const S* state;        ///< own states
+  const S* input;        ///< own inputs, in the order of declaration
+  int piece;             ///< number of the smooth piece of the rate
+  const double* points;  ///< pool of curves: x, y, slope to the next point
+};
+
+/// Number of kinks inside a curve, where one linear piece follows another.
+template <class T>
+CLUTCHWORK_INLINE int curve_edges(const Curve<T>& c) {
+  const int n = int(value(c.count));
+  return n > 2 ? n - 2 : 0;
+}
+
+/// Abscissa of kink number i.
+template <class T>
+CLUTCHWORK_INLINE double curve_edge(const Curve<T>& c, const double* points, int i) {
+  return points[3 * (int(value(c.first)) + i + 1)];
+}
+
+/// Value of a curve on one of its pieces, continued linearly beyond it.
+template <class T, class S>
+CLUTCHWORK_INLINE S curve_value(const Curve<T>& c, const double* points, S x, int piece) {
+  const double* p = points + 3 * (int(value(c.first)) + piece);
+  return (x - S(p[0])) * S(p[2]) + S(p[1]);
+}
+
+/// Torque as a function of rate, states and inputs, plus the rates of the states.
+template <class E>
+concept TorqueElement = requires(const typename E::template Params<double>& p, const At<double>& at, double* rates) {
+  { E::torque(p, at) } -> std::same_as<double>;
+  { E::state_rates(p, at, rates) } -> std::same_as<void>;
+  { E::inputs } -> std::convertible_to<int>;
+};
+
+/// Friction contact: the load that multiplies the coefficient of its law, and whether it is a freewheel.
+template <class E>
+concept ContactElement = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::load(p, at) } -> std::same_as<double>;
+  { E::one_way } -> std::convertible_to<bool>;
+  { E::inputs } -> std::convertible_to<int>;
+};
+
+/// Friction coefficient: kinetic over slip (slip >= 0, continued smoothly below), static at rest.
+template <class L>
+concept FrictionLaw = requires(const typename L::template Params<double>& p, const At<double>& at) {
+  { L::slide(p, at) } -> std::same_as<double>;
+  { L::hold(p) } -> std::same_as<double>;
+};
+
+/// A component whose function of the rate has kinks.
+template <class E, class T>
+concept Kinked = requires(const typename E::template Params<T>& p, const double* points) {
+  { E::edges(p) } -> std::same_as<int>;
+  { E::edge(p, points, 0) } -> std::same_as<double>;
+};
+
+}  // namespace clutchwork

@@ -1,0 +1,144 @@
+#pragma once
+#include <clutchwork/scalar.hpp>
+
+/// Small dense kernels on row-major views; sizes from 1 to a few hundred, no heap.
+namespace clutchwork {
+
+template <class T>
+CLUTCHWORK_INLINE T dot(int n, const T* a, const T* b) {
+  T s = T(0);
+  for (int i = 0; i < n; ++i) s += a[i] * b[i];
+  return s;
+}
+
+template <class T>
+CLUTCHWORK_INLINE void axpy(int n, T a, const T* x, T* y) {
+  for (int i = 0; i < n; ++i) y[i] += a * x[i];
+}
+
+/// Lower Cholesky factor in place; false when a pivot is not positive.
+template <class T>
+bool cholesky(int n, T* a, int stride) {
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      T s = a[i * stride + j];
+      for (int k = 0; k < j; ++k) s -= a[i * stride + k] * a[j * stride + k];
+      if (i != j) {
+        a[i * stride + j] = s / a[j * stride + j];
+      } else {
+        if (!(value(s) > 0)) return false;
+        a[i * stride + i] = sqrt(s);
+      }
+    }
+  }
+  return true;
+}
+
+/// x := L^-1 x.
+template <class T>
+void forward_solve(int n, const T* l, int stride, T* x) {
+  for (int i = 0; i < n; ++i) {
+    T s = x[i];
+    for (int k = 0; k < i; ++k) s -= l[i * stride + k] * x[k];
+    x[i] = s / l[i * stride + i];
+  }
+}
+
+/// x := L^-T x.
+template <class T>
+void backward_solve(int n, const T* l, int stride, T* x) {
+  for (int i = n - 1; i >= 0; --i) {
+    T s = x[i];
+    for (int k = i + 1; k < n; ++k) s -= l[k * stride + i] * x[k];
+    x[i] = s / l[i * stride + i];
+  }
+}
+
+/// Inverse of a small general matrix in place by Gauss-Jordan with row pivoting; false when singular.
+template <class T>
+bool invert(int n, T* a, int* pivot) {
+  for (int c = 0; c < n; ++c) {
+    int p = c;
+    for (int r = c + 1; r < n; ++r) {
+      if (abs(value(a[r * n + c])) > abs(value(a[p * n + c]))) p = r;
+    }
+    if (value(a[p * n + c]) == 0) return false;
+    pivot[c] = p;
+    for (int j = 0; j < n && p != c; ++j) {
+      const T swap = a[c * n + j];
+      a[c * n + j] = a[p * n + j];
+      a[p * n + j] = swap;
+    }
+    const T inverse = T(1) / a[c * n + c];
+    a[c * n + c] = T(1);
+    for (int j = 0; j < n; ++j) a[c * n + j] *= inverse;
+    for (int r = 0; r < n; ++r) {
+      if (r == c) continue;
+      const T factor = a[r * n + c];
+      a[r * n + c] = T(0);
+      for (int j = 0; j < n; ++j) a[r * n + j] -= factor * a[c * n + j];
+    }
+  }
+  for (int c = n - 1; c >= 0; --c) {
+    if (pivot[c] == c) continue;
+    for (int r = 0; r < n; ++r) {
+      const T swap = a[r * n + c];
+      a[r * n + c] = a[r * n + pivot[c]];
+      a[r * n + pivot[c]] = swap;
+    }
+  }
+  return true;
+}
+
+/// Orthonormal basis of R^n whose first `rank` columns span the given rows, by pivoted Householder reflections.
+/// rows: m x n, overwritten. q: n x n, its column j is q[i * n + j]. order: m, pivot order. Returns the rank.
+template <class T>
+int orthonormal_split(int m, int n, T* rows, T* q, int* order, T* norms) {
+  for (int i = 0; i < n * n; ++i) q[i] = T(0);
+  for (int i = 0; i < n; ++i) q[i * n + i] = T(1);
+  for (int r = 0; r < m; ++r) {
+    order[r] = r;
+    norms[r] = sqrt(dot(n, rows + r * n, rows + r * n));
+  }
+  int rank = 0;
+  for (; rank < m && rank < n; ++rank) {
+    // the row with the largest part outside the span so far, relative to its length
+    int best = -1;
+    T best_share = T(1e-10);
+    for (int r = rank; r < m; ++r) {
+      const T* x = rows + order[r] * n;
+      const T length = sqrt(dot(n - rank, x + rank, x + rank));
+      if (norms[order[r]] > T(0) && length / norms[order[r]] > best_share) {
+        best = r;
+        best_share = length / norms[order[r]];
+      }
+    }
+    if (best < 0) break;
+    const int swap = order[rank];
+    order[rank] = order[best];
+    order[best] = swap;
+    // reflect the pivot row onto axis `rank`
+    T* u = rows + order[rank] * n;
+    const T length = sqrt(dot(n - rank, u + rank, u + rank));
+    const T alpha = u[rank] > T(0) ? -length : length;
+    T pivot_row = alpha;
+    u[rank] -= alpha;
+    const T beta = T(2) / dot(n - rank, u + rank, u + rank);
+    for (int r = 0; r < m; ++r) {
+      T* x = rows + r * n;
+      if (x == u) continue;
+      const T s = beta * dot(n - rank, u + rank, x + rank);
+      axpy(n - rank, -s, u + rank, x + rank);
+    }
+    for (int i = 0; i < n; ++i) {
+      T* x = q + i * n;
+      const T s = beta * dot(n - rank, u + rank, x + rank);
+      axpy(n - rank, -s, u + rank, x + rank);
+    }
+    u[rank] = pivot_row;
+    for (int j = rank + 1; j < n; ++j) u[j] = T(0);
+  }
+  return rank;
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,165 @@
+#pragma once
+#include <clutchwork/form.hpp>
+
+/// The smooth motion inside a mode: torques, derivatives, multipliers. y = (z, states).
+namespace clutchwork {
+
+/// Part of the rate of a branch that the prescribed speeds give, and its time derivative.
+template <class T>
+CLUTCHWORK_INLINE T offset_rate(const Workspace<T>& ws, int k) {
+  const int np = int(ws.sys.prescribed);
+  return np == 0 ? T(0) : dot(np, ws.offset + k * np, ws.prescribed);
+}
+template <class T>
+CLUTCHWORK_INLINE T offset_slope(const Workspace<T>& ws, int k) {
+  const int np = int(ws.sys.prescribed);
+  return np == 0 ? T(0) : dot(np, ws.offset + k * np, ws.prescribed_slope);
+}
+
+/// d := (sum of row' torque, state rates) at (t, y). The first part is M dz/dt.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void evaluate(Form& form, double t, const T* y, T* d) {
+  Workspace<T>& ws = form.ws;
+  inputs_at(ws, t);
+  const int nz = form.nz();
+  for (int i = 0; i < nz; ++i) d[i] = T(0);
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const T rate = form.rate(k, y) + offset_rate(ws, k);
+    form.push(k, branch_torque(ws, ws.branch[k], rate, y + nz, d + nz), d);
+  }
+}
+
+/// As evaluate, keeping rates and torques of the branches for output and guards.
+template <class Form, class T = typename Form::Scalar>
+void observe(Form& form, double t, const T* y, T* d, T* rate, T* torque) {
+  Workspace<T>& ws = form.ws;
+  inputs_at(ws, t);
+  const int nz = form.nz();
+  for (int i = 0; i < nz; ++i) d[i] = T(0);
+  for (int k = 0; k < ws.n_branches; ++k) {
+    rate[k] = form.rate(k, y) + offset_rate(ws, k);
+    torque[k] = branch_torque(ws, ws.branch[k], rate[k], y + nz, d + nz);
+    form.push(k, torque[k], d);
+  }
+}
+
+/// evaluate plus all partial derivatives; dt := derivative of d by time.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void linearize(Form& form, double t, const T* y, T* d, T* dt, Edge<T>& edge) {
+  Workspace<T>& ws = form.ws;
+  inputs_at(ws, t);
+  input_slopes_at(ws, t);
+  const int nz = form.nz(), n = form.n();
+  for (int i = 0; i < n; ++i) d[i] = T(0);
+  for (int i = 0; i < n; ++i) dt[i] = T(0);
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const Branch<T>& b = ws.branch[k];
+    edge.rate[k] = form.rate(k, y) + offset_rate(ws, k);
+    const StatePartials<T> out{ws.f_state + b.state, ws.g_rate + b.state, ws.g_time + b.state, ws.g_state + ws.block[k]};
+    const Partial<T> p = branch_partial(ws, b, edge.rate[k], offset_slope(ws, k), y + nz, d + nz, out);
+    ws.partial[k] = p;
+    form.push(k, p.torque, d);
+    if (value(p.by_time) != 0) form.push(k, p.by_time, dt);
+    for (int s = 0; s < b.states; ++s) dt[nz + b.state + s] = out.g_time[s];
+  }
+  for (int k = ws.n_branches; k < ws.n_rates; ++k) edge.rate[k] = form.rate(k, y) + offset_rate(ws, k);
+  ++ws.statistics.jacobians;
+}
+
+/// Slopes of the rates along the motion: edge.slope, from dz/dt.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void slopes(Form& form, const T* velocity, Edge<T>& edge) {
+  Workspace<T>& ws = form.ws;
+  for (int k = 0; k < ws.n_rates; ++k) edge.slope[k] = form.rate(k, velocity) + offset_slope(ws, k);
+}
+
+/// Torque of locked contact a for given branch torques.
+template <class T>
+CLUTCHWORK_INLINE T multiplier(const Workspace<T>& ws, int a, const T* torque) {
+  T s = dot(ws.n_branches, ws.reach + a * ws.n_branches, torque);
+  for (int p = 0; p < ws.sys.prescribed; ++p) s += ws.reach_prescribed[a * ws.sys.prescribed + p] * ws.prescribed_slope[p];
+  return s;
+}
+
+/// Multipliers of the locked contacts, their drift and their capacities at the point that was linearized last.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
+  Workspace<T>& ws = form.ws;
+  const int m = ws.n_locked, nb = ws.n_branches;
+  if (m == 0) return;
+  T* drift = ws.torque;
+  for (int a = 0; a < m; ++a) edge.multiplier[a] = edge.drift[a] = T(0);
+  const T* states = d + form.nz();
+  for (int k = 0; k < nb; ++k) {
+    const Branch<T>& b = ws.branch[k];
+    const Partial<T>& p = ws.partial[k];
+    drift[k] = p.by_rate * (edge.slope[k] - offset_slope(ws, k)) + p.by_time;
+    for (int s = 0; s < b.states; ++s) drift[k] += ws.f_state[b.state + s] * states[b.state + s];
+  }
+  for (int a = 0; a < m; ++a) {
+    const T* reach = ws.reach + a * nb;
+    T x = T(0), dx = T(0);
+    for (int k = 0; k < nb; ++k) {
+      x += reach[k] * ws.partial[k].torque;
+      dx += reach[k] * drift[k];
+    }
+    for (int p = 0; p < ws.sys.prescribed; ++p) {
+      x += ws.reach_prescribed[a * ws.sys.prescribed + p] * ws.prescribed_slope[p];
+    }
+    edge.multiplier[a] = x;
+    edge.drift[a] = dx;
+    edge.capacity[a] = capacity_of(ws, ws.locked[a]);
+  }
+}
+
+/// v = Z z + Y u.
+template <class Form, class T = typename Form::Scalar>
+void expand(Form& form, const T* z, T* v, bool offset = true) {
+  Workspace<T>& ws = form.ws;
+  const int nv = int(ws.sys.speeds), np = int(ws.sys.prescribed), nz = form.nz();
+  for (int i = 0; i < nv; ++i) {
+    T s = T(0);
+    if constexpr (Form::small) {
+      for (int j = 0; j < nz; ++j) s += ws.z_basis[i * nz + j] * z[j];
+    } else {
+      for (int e = ws.exp_first[i]; e < ws.exp_first[i + 1]; ++e) s += ws.exp_val[e] * z[ws.exp_col[e]];
+    }
+    for (int p = 0; p < np && offset; ++p) s += ws.y_basis[i * np + p] * ws.prescribed[p];
+    v[i] = s;
+  }
+}
+
+/// Weighted RMS norm of an error in (v, states), relative to the larger of two points.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE double error_norm(Form& form, const T* error, const T* a, const T* b) {
+  const Workspace<T>& ws = form.ws;
+  const double rtol = ws.options.rtol, atol = ws.options.atol;
+  const int nv = int(ws.sys.speeds), nz = form.nz(), ns = form.ns();
+  double sum = 0;
+  int count = ns;
+  if constexpr (Form::small) {
+    for (int i = 0; i < nv; ++i) {
+      T e = T(0), va = T(0), vb = T(0);
+      for (int j = 0; j < nz; ++j) {
+        const T z = ws.z_basis[i * nz + j];
+        e += z * error[j], va += z * a[j], vb += z * b[j];
+      }
+      const double x = value(e) / (atol + rtol * larger(abs(value(va)), abs(value(vb))));
+      sum += x * x;
+    }
+    count += nv;
+  } else {
+    for (int i = 0; i < nz; ++i) {
+      const double x = value(error[i]) / (atol + rtol * larger(abs(value(a[i])), abs(value(b[i]))));
+      sum += x * x;
+    }
+    count += nz;
+  }
+  for (int i = nz; i < nz + ns; ++i) {
+    const double x = value(error[i]) / (atol + rtol * larger(abs(value(a[i])), abs(value(b[i]))));
+    sum += x * x;
+  }
+  return count > 0 ? sqrt(sum / count) : 0.0;
+}
+
+}  // namespace clutchwork

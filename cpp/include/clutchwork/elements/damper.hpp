@@ -1,0 +1,23 @@
+#pragma once
+#include <clutchwork/component.hpp>
+
+namespace clutchwork::elements {
+
+/// Linear viscous damper.
+struct Damper {
+  template <class T>
+  struct Params {
+    T damping;  ///< [N m s/rad]
+  };
+  static constexpr int states = 0;
+  static constexpr int inputs = 0;
+
+  template <class T, class S>
+  static S torque(const Params<T>& p, const At<S>& at) {
+    return -(p.damping * at.rate);
+  }
+  template <class T, class S>
+  static void state_rates(const Params<T>&, const At<S>&, S*) {}
+};
+
+}  // namespace clutchwork::elements

@@ -1,0 +1,36 @@
+#pragma once
+#include <clutchwork/component.hpp>
+
+namespace clutchwork::elements {
+
+/// Torque quadratic in speed: odd in the speed, or even when it acts in the same direction at all speeds.
+struct QuadraticTorque {
+  template <class T>
+  struct Params {
+    T nominal_torque;  ///< [N m]
+    T nominal_speed;   ///< [rad/s]
+    T same_direction;  ///< [1]
+  };
+  static constexpr int states = 0;
+  static constexpr int inputs = 0;
+
+  template <class T, class S>
+  static S torque(const Params<T>& p, const At<S>& at) {
+    const S x = at.rate / p.nominal_speed;
+    const bool flip = p.same_direction == T(0) && (at.piece == 0) == (p.nominal_speed > T(0));
+    return flip ? -(p.nominal_torque * x * x) : p.nominal_torque * x * x;
+  }
+  template <class T, class S>
+  static void state_rates(const Params<T>&, const At<S>&, S*) {}
+
+  template <class T>
+  static int edges(const Params<T>& p) {
+    return p.same_direction == T(0) ? 1 : 0;
+  }
+  template <class T>
+  static double edge(const Params<T>&, const double*, int) {
+    return 0.0;
+  }
+};
+
+}  // namespace clutchwork::elements

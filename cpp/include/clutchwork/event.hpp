@@ -1,0 +1,124 @@
+#pragma once
+#include <clutchwork/output.hpp>
+
+/// What happens at an instant: decide the modes anew and report every change.
+namespace clutchwork {
+
+/// Torque of a contact right after the decision.
+template <class T>
+T torque_after(const Workspace<T>& ws, int c) {
+  const int d = int(ws.sys.elements) + c;
+  if (!ws.loaded[c]) return T(0);
+  if (ws.mode[c] == locked) return ws.torque[d];
+  return contact_torque(ws, make_branch(ws, d, ws.mode[c], false), rate_of(ws, d));
+}
+
+/// Slip acceleration of every contact right after the decision, into `out`.
+template <class T>
+void accelerations_after(Workspace<T>& ws, T* out) {
+  const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements), nv = int(ws.sys.speeds);
+  int* stuck = ws.iscratch;
+  T* q = ws.scratch + ws.sys.states + 1;
+  for (int c = 0; c < nc; ++c) stuck[c] = ws.mode[c] == locked;
+  free_motion(ws, stuck, q);
+  for (int c = 0; c < nc; ++c) {
+    if (ws.mode[c] == locked && ws.loaded[c]) axpy(nv, ws.torque[ne + c], ws.direction + (ne + c) * nv, q);
+  }
+  for (int c = 0; c < nc; ++c) out[c] = ws.mode[c] == locked ? T(0) : slip_acceleration(ws, c, q);
+}
+
+/// Append one event to the buffer.
+template <class T>
+void record(Workspace<T>& ws, int c, int from, int to, Cause cause, double acceleration, double before, double after,
+            double energy_before, double energy_after) {
+  double* e = ws.events + event_size * ws.n_events++;
+  const double values[event_size] = {ws.time,      double(c), double(from), double(to),    double(int(cause)),
+                                     acceleration, before,    after,        energy_before, energy_after};
+  for (int i = 0; i < event_size; ++i) e[i] = values[i];
+  ++ws.statistics.events;
+}
+
+/// Torques and slip accelerations of the contacts at the end of a phase, for the report.
+template <class Form>
+void note_before(Form& form, Step<Form>& step, double s) {
+  auto& ws = form.ws;
+  const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements);
+  const auto shot = take_snapshot(form, step, s);
+  for (int c = 0; c < nc; ++c) {
+    const int k = ws.branch_of[ne + c];
+    ws.torque_before[c] = ws.output_torque[ne + c];
+    ws.slip_slope[c] = k >= 0 ? form.rate(k, shot.d) + offset_slope(ws, k) : 0.0;
+    ws.mode_before[c] = ws.mode[c];
+  }
+}
+
+/// Too many events within a microsecond?
+template <class T>
+bool stands_still(Workspace<T>& ws) {
+  if (ws.time - ws.stand_time > 1e-6) {
+    ws.stand_time = ws.time;
+    ws.stand_events = 0;
+  }
+  return ++ws.stand_events > 50;
+}
+
+/// Flags that follow from the signals: which contacts are closed, which loads vary.
+template <class T>
+bool refresh_loads(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  bool changed = false;
+  ws.n_watch = 0;
+  for (int c = 0; c < sys.contacts; ++c) {
+    const int closed = is_loaded(ws, c) || contact_one_way(ws, c);
+    changed = changed || closed != ws.loaded[c];
+    ws.loaded[c] = closed;
+    const int count = visit_contact(sys.contact_kind[c], [](auto tag) { return decltype(tag)::type::inputs; });
+    for (int i = 0; i < count; ++i) {
+      if (!ws.signal[sys.input_refs[sys.contact_input[c] + i]].varying) continue;
+      ws.watch[ws.n_watch++] = c;
+      break;
+    }
+  }
+  return changed;
+}
+
+/// Decide the modes at the present instant and report what changed.
+template <class T>
+Status switch_modes(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  const int nc = int(sys.contacts), ne = int(sys.elements);
+  const bool at_start = ws.cause == Cause::initial;
+  ws.detail_component = ws.located >= 0 ? ne + ws.located : -1;
+  if (ws.located >= 0 && stands_still(ws)) return Status::zeno;
+  if (ws.statistics.events > ws.options.max_events) return Status::too_many_events;
+
+  // forced break-aways last while time stands
+  if (abs(ws.time - ws.forced_time) > 4e-16 * abs(ws.time)) {
+    for (int c = 0; c < nc; ++c) ws.forced[c] = 0;
+    ws.forced_time = ws.time;
+  }
+  if (ws.cause == Cause::slip_zero && ws.located >= 0) ws.forced[ws.located] = 0;
+
+  const double before = kinetic_energy(ws);
+  if (!at_start) prescribed_jump(ws);
+  if (!settle_impulses(ws, at_start) || !settle_contacts(ws, ws.located)) return Status::no_mode;
+  if (at_start || sys.elements > 0) {
+    for (int d = 0; d < ne; ++d) ws.piece[d] = edge_count(ws, d) > 0 ? piece_of(ws, d, value(rate_of(ws, d))) : 0;
+  }
+  ws.fresh_phase = true;
+  if (at_start) return Status::running;
+
+  const double after = kinetic_energy(ws);
+  T* acceleration = ws.qp_w;
+  accelerations_after(ws, acceleration);
+  for (int c = 0; c < nc; ++c) {
+    if (ws.mode[c] == ws.mode_before[c]) continue;
+    const Cause cause = c == ws.located || ws.located < 0 ? ws.cause : Cause::consequence;
+    const double hits = value(ws.mode[c] == locked ? ws.slip_slope[c] : acceleration[c]);
+    record(ws, c, ws.mode_before[c], ws.mode[c], cause, hits, value(ws.torque_before[c]), value(torque_after(ws, c)), before,
+           after);
+  }
+  return Status::running;
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,189 @@
+#pragma once
+#include <clutchwork/sparse.hpp>
+
+/// Two forms of the same reduced motion M dz/dt = sum of row' torque, behind one set of functions.
+namespace clutchwork {
+
+/// Up to a handful of speeds: M = 1, dense rows, sizes known to the compiler.
+template <class T, int NZ, int NS>
+struct SmallForm {
+  using Scalar = T;
+  static constexpr bool small = true;
+  static constexpr int fixed_size = NZ + NS;
+  Workspace<T>& ws;
+  T w[NZ > 0 ? NZ * NZ : 1];
+
+  explicit SmallForm(Workspace<T>& workspace) : ws(workspace) {}
+  static constexpr int nz() { return NZ; }
+  static constexpr int ns() { return NS; }
+  static constexpr int n() { return NZ + NS; }
+
+  CLUTCHWORK_INLINE T rate(int k, const T* z) const {
+    const T* r = ws.row_z + k * NZ;
+    T s = T(0);
+    for (int i = 0; i < NZ; ++i) s += r[i] * z[i];
+    return s;
+  }
+  CLUTCHWORK_INLINE void push(int k, T torque, T* q) const {
+    const T* r = ws.row_z + k * NZ;
+    for (int i = 0; i < NZ; ++i) q[i] += r[i] * torque;
+  }
+  CLUTCHWORK_INLINE void add_mass_times(T factor, const T* x, T* y) const {
+    for (int i = 0; i < NZ; ++i) y[i] += factor * x[i];
+  }
+  CLUTCHWORK_INLINE void solve_mass(T*) const {}
+
+  /// w := inverse of scale M - sum row' stiff row (symmetric).
+  CLUTCHWORK_INLINE bool factor(T scale, const T* stiff) {
+    for (int i = 0; i < NZ * NZ; ++i) w[i] = T(0);
+    for (int k = 0; k < ws.n_branches; ++k) {
+      if (value(stiff[k]) == 0) continue;
+      const T* r = ws.row_z + k * NZ;
+      for (int i = 0; i < NZ; ++i) {
+        const T s = stiff[k] * r[i];
+        for (int j = 0; j <= i; ++j) w[i * NZ + j] -= s * r[j];
+      }
+    }
+    for (int i = 0; i < NZ; ++i) w[i * NZ + i] += scale;
+    return invert_symmetric();
+  }
+  CLUTCHWORK_INLINE void solve(T* b) const {
+    T x[NZ > 0 ? NZ : 1];
+    for (int i = 0; i < NZ; ++i) {
+      T s = T(0);
+      for (int j = 0; j < NZ; ++j) s += w[i * NZ + j] * b[j];
+      x[i] = s;
+    }
+    for (int i = 0; i < NZ; ++i) b[i] = x[i];
+  }
+
+ private:
+  // Gauss-Jordan without pivoting on the symmetric matrix, whose lower half is given
+  CLUTCHWORK_INLINE bool invert_symmetric() {
+    for (int i = 0; i < NZ; ++i) {
+      for (int j = 0; j < i; ++j) w[j * NZ + i] = w[i * NZ + j];
+    }
+    for (int c = 0; c < NZ; ++c) {
+      if (value(w[c * NZ + c]) == 0) return false;
+      const T inverse = T(1) / w[c * NZ + c];
+      for (int j = 0; j < NZ; ++j) w[c * NZ + j] = j == c ? inverse : w[c * NZ + j] * inverse;
+      for (int r = 0; r < NZ; ++r) {
+        if (r == c) continue;
+        const T factor = w[r * NZ + c];
+        for (int j = 0; j < NZ; ++j) w[r * NZ + j] = j == c ? -factor * inverse : w[r * NZ + j] - factor * w[c * NZ + j];
+      }
+    }
+    return true;
+  }
+};
+
+/// Any size: compressed rows, reduced mass, LDL' in an envelope.
+template <class T>
+struct SparseForm {
+  using Scalar = T;
+  static constexpr bool small = false;
+  static constexpr int fixed_size = 0;
+  Workspace<T>& ws;
+  T* w;
+  bool mass_factored = false;
+
+  explicit SparseForm(Workspace<T>& workspace) : ws(workspace), w(workspace.envelope) {}
+  int nz() const { return ws.nz; }
+  int ns() const { return int(ws.sys.states); }
+  int n() const { return ws.nz + int(ws.sys.states); }
+
+  CLUTCHWORK_INLINE T rate(int k, const T* z) const {
+    T s = T(0);
+    for (int e = ws.sp_first[k]; e < ws.sp_first[k + 1]; ++e) s += ws.sp_val[e] * z[ws.sp_col[e]];
+    return s;
+  }
+  CLUTCHWORK_INLINE void push(int k, T torque, T* q) const {
+    for (int e = ws.sp_first[k]; e < ws.sp_first[k + 1]; ++e) q[ws.sp_col[e]] += ws.sp_val[e] * torque;
+  }
+  void add_mass_times(T factor, const T* x, T* y) const {
+    for (int i = 0; i < ws.nz; ++i) {
+      T s = T(0);
+      for (int e = ws.m_first[i]; e < ws.m_first[i + 1]; ++e) s += ws.m_val[e] * x[ws.m_col[e]];
+      y[i] += factor * s;
+    }
+  }
+  /// b := M^-1 b; needs its own factor, kept behind the one of the step.
+  void solve_mass(T* b) {
+    T* factor_of_mass = ws.envelope + envelope_size();
+    if (!mass_factored) {
+      assemble(factor_of_mass, T(1), nullptr);
+      for (int i = 0; i < ws.nz; ++i) {
+        if (value(factor_of_mass[ws.sky[i] + i]) == 0) factor_of_mass[ws.sky[i] + i] = T(1);
+      }
+      factor_envelope(factor_of_mass);
+      mass_factored = true;
+    }
+    solve_envelope(factor_of_mass, b);
+  }
+  bool factor(T scale, const T* stiff) {
+    assemble(w, scale, stiff);
+    return factor_envelope(w);
+  }
+  void solve(T* b) const { solve_envelope(w, b); }
+
+ private:
+  int envelope_size() const { return ws.nz == 0 ? 0 : ws.sky[ws.nz - 1] + ws.nz; }
+
+  void assemble(T* a, T scale, const T* stiff) const {
+    const int size = envelope_size();
+    for (int i = 0; i < size; ++i) a[i] = T(0);
+    for (int i = 0; i < ws.nz; ++i) {
+      for (int e = ws.m_first[i]; e < ws.m_first[i + 1] && ws.m_col[e] <= i; ++e) a[ws.sky[i] + ws.m_col[e]] = scale * ws.m_val[e];
+    }
+    for (int k = 0; stiff != nullptr && k < ws.n_branches; ++k) {
+      if (value(stiff[k]) == 0) continue;
+      for (int e = ws.sp_first[k]; e < ws.sp_first[k + 1]; ++e) {
+        const T s = stiff[k] * ws.sp_val[e];
+        T* row = a + ws.sky[ws.sp_col[e]];
+        for (int f = ws.sp_first[k]; f <= e; ++f) row[ws.sp_col[f]] -= s * ws.sp_val[f];
+      }
+    }
+  }
+
+  // LDL' row by row inside the envelope; the diagonal holds 1/d
+  bool factor_envelope(T* a) const {
+    const int* low = ws.pivot_of;
+    for (int i = 0; i < ws.nz; ++i) {
+      T* row = a + ws.sky[i];
+      for (int j = low[i]; j < i; ++j) {
+        const T* other = a + ws.sky[j];
+        const int start = larger(low[i], low[j]);
+        T s = row[j];
+        for (int k = start; k < j; ++k) s -= row[k] * other[k];
+        row[j] = s;
+      }
+      T d = row[i];
+      for (int j = low[i]; j < i; ++j) {
+        const T l = row[j] * a[ws.sky[j] + j];
+        d -= l * row[j];
+        row[j] = l;
+      }
+      if (value(d) == 0) return false;
+      row[i] = T(1) / d;
+    }
+    return true;
+  }
+
+  void solve_envelope(const T* a, T* b) const {
+    const int* low = ws.pivot_of;
+    for (int i = 0; i < ws.nz; ++i) {
+      const T* row = a + ws.sky[i];
+      T s = b[i];
+      for (int j = low[i]; j < i; ++j) s -= row[j] * b[j];
+      b[i] = s;
+    }
+    for (int i = 0; i < ws.nz; ++i) b[i] *= a[ws.sky[i] + i];
+    for (int i = ws.nz - 1; i >= 0; --i) {
+      const T* row = a + ws.sky[i];
+      const T s = b[i];
+      for (int j = low[i]; j < i; ++j) b[j] -= row[j] * s;
+    }
+  }
+};
+
+}  // namespace clutchwork

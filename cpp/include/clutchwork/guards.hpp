@@ -1,0 +1,216 @@
+#pragma once
+#include <clutchwork/integrator/dopri5.hpp>
+#include <clutchwork/integrator/rodas5p.hpp>
+
+/// Where inside a step something changes: docs/theory/events.md.
+namespace clutchwork {
+
+/// The first thing that happens inside a step.
+struct Hit {
+  enum What : int { nothing, line, multiplier, load } what = nothing;
+  int index = -1;  ///< guard, locked contact, or contact
+  double s = 1;    ///< where in the step, 0 to 1
+};
+
+/// Smallest root of a quartic in Bernstein form where it turns negative, or -1. b[0] counts as not negative.
+inline double first_negative(const double* b, double low, double high, double tolerance, int depth) {
+  int signs = 0;
+  bool negative = false;
+  for (int i = 1; i < 5; ++i) {
+    negative = negative || b[i] < -tolerance;
+    signs += (b[i] < 0) != (i == 1 ? false : b[i - 1] < 0);
+  }
+  if (!negative) return -1;
+  if (depth == 0) return low;
+  // split in the middle
+  double left[5], right[5], work[5];
+  for (int i = 0; i < 5; ++i) work[i] = b[i];
+  for (int k = 0; k < 5; ++k) {
+    left[k] = work[0];
+    right[4 - k] = work[4 - k];
+    for (int i = 0; i < 4 - k; ++i) work[i] = 0.5 * (work[i] + work[i + 1]);
+  }
+  (void)signs;
+  const double middle = 0.5 * (low + high);
+  const double found = first_negative(left, low, middle, tolerance, depth - 1);
+  if (found >= 0) return found;
+  if (left[4] < 0) return middle;
+  return first_negative(right, middle, high, tolerance, depth - 1);
+}
+
+/// Root of a decreasing-through-zero function on [low, high] with f(low) >= 0 > f(high), to round-off (ITP).
+template <class F>
+double locate(F&& f, double low, double f_low, double high, double f_high) {
+  if (f_low <= 0) return low;
+  for (int i = 0; i < 100 && high - low > 4e-16 * (1 + high); ++i) {
+    // false position, bisection every third time
+    double x = (low * f_high - high * f_low) / (f_high - f_low);
+    if (i % 3 == 2 || !(x > low && x < high)) x = 0.5 * (low + high);
+    if (x <= low || x >= high) break;
+    const double y = f(x);
+    if (y > 0) {
+      low = x, f_low = y;
+    } else if (y < 0) {
+      high = x, f_high = y;
+    } else {
+      return x;
+    }
+  }
+  return high;
+}
+
+/// First sample below zero among five inner points and the vertex of a parabola at the lowest; then its root.
+template <class F>
+double first_crossing(F&& f, double start, double end, double limit) {
+  double x[8], y[8];
+  int n = 0;
+  x[n] = 0, y[n++] = larger(start, 0.0);
+  for (int i = 1; i < 5; ++i) x[n] = 0.2 * i * limit, y[n] = f(x[n]), ++n;
+  x[n] = limit, y[n++] = limit == 1 ? end : f(limit);
+  int low = 0;
+  for (int i = 1; i < n; ++i) {
+    if (y[i] < 0) return locate(f, x[i - 1], y[i - 1], x[i], y[i]);
+    if (y[i] < y[low]) low = i;
+  }
+  if (low == 0 || low == n - 1) return -1;
+  // vertex through the lowest sample and its neighbours
+  const double step = x[low] - x[low - 1], d = y[low - 1] - 2 * y[low] + y[low + 1];
+  if (d <= 0) return -1;
+  const double vertex = x[low] + 0.5 * step * (y[low - 1] - y[low + 1]) / d, bottom = f(vertex);
+  if (bottom >= 0) return -1;
+  const int before = vertex > x[low] ? low : low - 1;
+  return locate(f, x[before], y[before], vertex, bottom);
+}
+
+/// Whether any prescribed speed varies, so that rates are no polynomials.
+template <class T>
+bool rates_bend(const Workspace<T>& ws) {
+  for (int p = 0; p < ws.sys.prescribed; ++p) {
+    if (ws.signal[ws.sys.prescribed_input[p]].varying) return true;
+  }
+  return false;
+}
+
+/// First crossing of a guard that is linear in the state, before `limit`; -1: none.
+template <class Form, class Integrator>
+double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, double g0, double g1, double limit) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  if (!step.dense) Integrator::prepare_dense(form, step);
+  const int k = guard.branch;
+  auto at = [&](double s) {
+    interpolate(form, step, s, step.point());
+    inputs_at(ws, step.t + s * step.h);
+    return guard.sign * (value(form.rate(k, step.point()) + offset_rate(ws, k)) - guard.level);
+  };
+  if (rates_bend(ws)) return first_crossing(at, g0, g1, limit);
+  // Bernstein coefficients of the quartic
+  const double q0 = guard.sign * value(form.rate(k, step.p(0))), q1 = guard.sign * value(form.rate(k, step.p(1))),
+               q2 = guard.sign * value(form.rate(k, step.p(2)));
+  const double a1 = g1 - g0 + q0, a2 = q1 - q0, a3 = q2 - q1;
+  double b[5] = {larger(g0, 0.0), g0 + a1 / 4, g0 + a1 / 2 + a2 / 6, g0 + 0.75 * a1 + a2 / 2 + a3 / 4, g1};
+  double scale = 0;
+  for (double x : b) scale = larger(scale, abs(x));
+  double low = 0, high = 1;
+  if (g1 >= 0 || b[1] < 0 || b[2] < 0 || b[3] < 0) {
+    const double rough = first_negative(b, 0.0, 1.0, 1e-9 * scale, 30);
+    if (rough < 0 && g1 >= 0) return -1;
+    if (rough >= 0) low = larger(0.0, rough - 1e-8), high = smaller(1.0, rough + 1e-8);
+  }
+  auto poly = [&](double s) { return (1 - s) * larger(g0, 0.0) + s * (g1 + (1 - s) * (q0 + s * (q1 + s * q2))); };
+  double f_low = poly(low), f_high = poly(high);
+  if (f_high >= 0) return high < 1 ? high : -1;
+  if (f_low < 0) low = 0, f_low = larger(g0, 0.0);
+  const double s = locate(poly, low, f_low, high, f_high);
+  return s <= limit ? s : -1;
+}
+
+/// Margin of a locked contact: how much torque is left before it slips.
+template <class T>
+CLUTCHWORK_INLINE double margin(const Workspace<T>& ws, int a, T torque, T capacity) {
+  return contact_one_way(ws, ws.locked[a]) ? value(torque + capacity) : value(capacity) - abs(value(torque));
+}
+
+/// Smallest margin of the watched locked contacts at s, and whose it is.
+template <class Form>
+double least_margin(Form& form, Step<Form>& step, double s, const int* watched, int n, int& who) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  interpolate(form, step, s, step.point());
+  const double t = step.t + s * step.h;
+  inputs_at(ws, t);
+  if (ws.sys.prescribed > 0) input_slopes_at(ws, t);
+  T* rates = ws.scratch;
+  observe(form, t, step.point(), step.slope(), rates, ws.torque);
+  double least = infinity;
+  for (int i = 0; i < n; ++i) {
+    const int a = watched[i];
+    const double m = margin(ws, a, multiplier(ws, a, ws.torque), capacity_of(ws, ws.locked[a]));
+    if (m < least) least = m, who = a;
+  }
+  ++ws.statistics.locations;
+  return least;
+}
+
+/// First guard that turns negative inside the step.
+template <class Form, class Integrator>
+CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  const double h = step.h;
+  const Edge<T>&e0 = ws.here, &e1 = ws.there;
+  Hit hit;
+
+  // slips and kinks: a cubic through values and slopes proves most of them clear
+  for (int i = 0; i < ws.n_lines; ++i) {
+    const LineGuard& g = ws.line[i];
+    const int k = g.branch;
+    const double g0 = g.sign * (value(e0.rate[k]) - g.level), g1 = g.sign * (value(e1.rate[k]) - g.level);
+    const double c0 = g0 + g.sign * h * value(e0.slope[k]) / 3, c1 = g1 - g.sign * h * value(e1.slope[k]) / 3;
+    if (g1 >= 0 && c0 >= 0 && c1 >= 0) continue;
+    const double s = line_crossing<Form, Integrator>(form, step, g, g0, g1, hit.s);
+    if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) hit = {Hit::line, i, s};
+  }
+
+  // torques of locked contacts: skipped while the margin exceeds what can change in the step
+  int* watched = ws.iscratch;
+  int n = 0;
+  double m0 = infinity, m1 = infinity;
+  for (int a = 0; a < ws.n_locked; ++a) {
+    const double before = margin(ws, a, e0.multiplier[a], e0.capacity[a]), after = margin(ws, a, e1.multiplier[a], e1.capacity[a]);
+    const double change = abs(value(e1.multiplier[a] - e0.multiplier[a])) + abs(value(e1.capacity[a] - e0.capacity[a]));
+    const double drift = h * larger(abs(value(e0.drift[a])), abs(value(e1.drift[a])));
+    if (smaller(before, after) > larger(change, drift)) continue;
+    watched[n++] = a;
+    m0 = smaller(m0, before), m1 = smaller(m1, after);
+  }
+  if (n > 0) {
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    int who = watched[0];
+    auto f = [&](double s) { return least_margin(form, step, s, watched, n, who); };
+    const double s = first_crossing(f, m0, m1, hit.s);
+    if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) {
+      f(s);
+      hit = {Hit::multiplier, who, s};
+    }
+  }
+
+  // loads that pass zero
+  for (int i = 0; i < ws.n_watch; ++i) {
+    const int c = ws.watch[i];
+    const double sign = ws.loaded[c] ? 1.0 : -1.0;
+    auto f = [&](double s) {
+      inputs_at(ws, step.t + s * h);
+      return sign * value(load_of(ws, c));
+    };
+    const double l0 = f(0), l1 = f(1);
+    const double s = first_crossing(f, l0, abs(l1) <= 1e-12 * abs(l0) ? 0.0 : l1, hit.s);
+    if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) {
+      if (!step.dense) Integrator::prepare_dense(form, step);
+      hit = {Hit::load, c, s};
+    }
+  }
+  return hit;
+}
+
+}  // namespace clutchwork

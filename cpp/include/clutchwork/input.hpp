@@ -1,0 +1,119 @@
+#pragma once
+#include <clutchwork/workspace.hpp>
+
+/// Signals over time: segments between knots, read through references so that a component finds its inputs in a row.
+namespace clutchwork {
+
+/// Value of a segment s seconds after its start.
+CLUTCHWORK_INLINE double segment_value(const double* c, double s) {
+  double x = c[0] + s * (c[1] + s * (c[2] + s * c[3]));
+  if (c[4] != 0) x += c[4] * (c[7] != 0 ? exp(-c[7] * s) : 1.0) * (c[5] != 0 ? sin(c[5] * s + c[6]) : sin(c[6]));
+  return x;
+}
+
+/// Time derivative of a segment s seconds after its start.
+CLUTCHWORK_INLINE double segment_slope(const double* c, double s) {
+  double x = c[1] + s * (2 * c[2] + s * 3 * c[3]);
+  if (c[4] != 0) {
+    const double phase = c[5] * s + c[6];
+    x += c[4] * exp(-c[7] * s) * (c[5] * cos(phase) - c[7] * sin(phase));
+  }
+  return x;
+}
+
+/// Start of segment k of signal i, the repeated ones included (k counts on through the cycles).
+inline double segment_start(const System& sys, int i, std::int64_t k) {
+  const int n = sys.input_count[i];
+  const double* times = sys.segment_time + sys.input_first[i];
+  if (sys.input_period[i] <= 0) return times[k];
+  return times[k % n] + double(k / n) * sys.input_period[i];
+}
+
+/// Whether signal i has a segment number k.
+inline bool segment_exists(const System& sys, int i, std::int64_t k) {
+  return k >= 0 && (sys.input_period[i] > 0 || k < sys.input_count[i]);
+}
+
+/// Put the cursor of signal i on the segment that holds at time t (right limit).
+template <class T>
+void seek(Workspace<T>& ws, int i, double t) {
+  const System& sys = ws.sys;
+  Signal& signal = ws.signal[i];
+  if (sys.input_count[i] == 0) {
+    signal.knot = infinity;
+    return;
+  }
+  while (segment_exists(sys, i, signal.segment + 1) && segment_start(sys, i, signal.segment + 1) <= t) ++signal.segment;
+  const bool started = segment_start(sys, i, signal.segment) <= t;
+  const int k = int(signal.segment % sys.input_count[i]);
+  signal.start = segment_start(sys, i, signal.segment);
+  signal.coef = sys.segment_coef + 8 * (sys.input_first[i] + k);
+  signal.knot = segment_exists(sys, i, signal.segment + 1) ? segment_start(sys, i, signal.segment + 1) : infinity;
+  signal.idle = false;
+  // before its start a periodic signal rests at the value of its last segment
+  if (!started && sys.input_period[i] > 0) {
+    signal.coef = sys.segment_coef + 8 * (sys.input_first[i] + sys.input_count[i] - 1);
+    signal.knot = signal.start;
+    signal.idle = true;
+  }
+  const double* c = signal.coef;
+  signal.varying = !signal.idle && (c[1] != 0 || c[2] != 0 || c[3] != 0 || (c[4] != 0 && (c[5] != 0 || c[7] != 0)));
+  signal.linear = c[2] == 0 && c[3] == 0 && (c[4] == 0 || (c[5] == 0 && c[7] == 0));
+}
+
+/// Value of signal i at time t on its present segment.
+template <class T>
+CLUTCHWORK_INLINE double signal_value(const Workspace<T>& ws, int i, double t) {
+  const Signal& signal = ws.signal[i];
+  if (signal.coef == nullptr) return signal.held;
+  const double s = signal.idle ? 0.0 : t - signal.start;
+  if (signal.linear && signal.coef[4] == 0) return signal.coef[0] + signal.coef[1] * s;
+  return segment_value(signal.coef, s);
+}
+
+/// Time derivative of signal i at time t on its present segment.
+template <class T>
+CLUTCHWORK_INLINE double signal_slope(const Workspace<T>& ws, int i, double t) {
+  const Signal& signal = ws.signal[i];
+  return signal.varying ? segment_slope(signal.coef, t - signal.start) : 0.0;
+}
+
+/// Values of all references at time t; only the varying ones are computed again.
+template <class T>
+CLUTCHWORK_INLINE void inputs_at(Workspace<T>& ws, double t) {
+  if (t == ws.input_time) return;
+  ws.input_time = t;
+  for (int k = 0; k < ws.n_varying; ++k) {
+    const int ref = ws.varying[k];
+    ws.u[ref] = T(signal_value(ws, ws.ref_signal[ref], t));
+  }
+}
+
+/// Time derivatives of all references at time t.
+template <class T>
+CLUTCHWORK_INLINE void input_slopes_at(Workspace<T>& ws, double t) {
+  for (int k = 0; k < ws.n_varying; ++k) {
+    const int ref = ws.varying[k];
+    ws.du[ref] = T(signal_slope(ws, ws.ref_signal[ref], t));
+  }
+}
+
+/// Take the right limit of every signal at time t: cursors, constants, the list of varying ones, the next knot.
+template <class T>
+void load_inputs(Workspace<T>& ws, double t) {
+  ws.n_varying = 0;
+  ws.next_knot = infinity;
+  for (int i = 0; i < ws.sys.inputs; ++i) {
+    seek(ws, i, t);
+    if (ws.signal[i].knot < ws.next_knot) ws.next_knot = ws.signal[i].knot;
+  }
+  for (int ref = 0; ref < ws.n_refs; ++ref) {
+    const int i = ws.ref_signal[ref];
+    ws.u[ref] = T(signal_value(ws, i, t));
+    ws.du[ref] = T(0);
+    if (ws.signal[i].varying) ws.varying[ws.n_varying++] = ref;
+  }
+  ws.input_time = t;
+}
+
+}  // namespace clutchwork

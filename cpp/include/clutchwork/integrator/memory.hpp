@@ -1,0 +1,74 @@
+#pragma once
+#include <clutchwork/dynamics.hpp>
+
+/// Memory of one step and its dense output, shared by both methods.
+namespace clutchwork {
+
+/// Rows of length n: on the stack when n is known to the compiler, else in the workspace.
+template <class T, int N>
+struct StepRows {
+  T data[20][N];
+  explicit StepRows(Workspace<T>&, int) {}
+  CLUTCHWORK_INLINE T* row(int i) { return data[i]; }
+};
+template <class T>
+struct StepRows<T, 0> {
+  T* data;
+  int n;
+  StepRows(Workspace<T>& ws, int size) : data(ws.stages), n(size) {}
+  CLUTCHWORK_INLINE T* row(int i) { return data + i * n; }
+};
+
+/// A finished step from y0 to y1 with a quartic between:
+/// (1-s) y0 + s y1 + s (1-s) (p0 + s p1 + s^2 p2), s in [0, 1].
+template <class Form>
+struct Step {
+  using T = typename Form::Scalar;
+  StepRows<T, Form::fixed_size> rows;
+  double t = 0, h = 0;
+  bool dense = false;
+
+  explicit Step(Form& form) : rows(form.ws, form.n()) {}
+  CLUTCHWORK_INLINE T* k(int i) { return rows.row(i); }
+  CLUTCHWORK_INLINE T* y0() { return rows.row(8); }
+  CLUTCHWORK_INLINE T* y1() { return rows.row(9); }
+  CLUTCHWORK_INLINE T* p(int i) { return rows.row(10 + i); }
+  CLUTCHWORK_INLINE T* f0() { return rows.row(13); }  // d at y0
+  CLUTCHWORK_INLINE T* f1() { return rows.row(14); }  // d at y1
+  CLUTCHWORK_INLINE T* dt0() { return rows.row(15); }
+  CLUTCHWORK_INLINE T* dt1() { return rows.row(16); }
+  CLUTCHWORK_INLINE T* u() { return rows.row(17); }
+  CLUTCHWORK_INLINE T* point() { return rows.row(18); }
+  CLUTCHWORK_INLINE T* slope() { return rows.row(19); }
+};
+
+/// The state at t + s h into `out`.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void interpolate(Form& form, Step<Form>& step, double s, T* out) {
+  const T x = T(s), r = T(1 - s);
+  const int n = form.n();
+  const T *a = step.y0(), *b = step.y1(), *p0 = step.p(0), *p1 = step.p(1), *p2 = step.p(2);
+  for (int i = 0; i < n; ++i) out[i] = r * a[i] + x * (b[i] + r * (p0[i] + x * (p1[i] + x * p2[i])));
+}
+
+/// Derivative of the interpolant by time into `out`.
+template <class Form, class T = typename Form::Scalar>
+void interpolate_slope(Form& form, Step<Form>& step, double s, T* out) {
+  const int n = form.n();
+  const T x = T(s), ih = T(1 / step.h);
+  for (int i = 0; i < n; ++i) {
+    const T p0 = step.p(0)[i], p1 = step.p(1)[i], p2 = step.p(2)[i];
+    const T a1 = step.y1()[i] - step.y0()[i] + p0, a2 = p1 - p0, a3 = p2 - p1, a4 = -p2;
+    out[i] = (a1 + x * (T(2) * a2 + x * (T(3) * a3 + x * T(4) * a4))) * ih;
+  }
+}
+
+/// Integral of the interpolant of component i from the start of the step to s.
+template <class Form, class T = typename Form::Scalar>
+T interpolant_integral(Step<Form>& step, int i, double s) {
+  const T x = T(s), p0 = step.p(0)[i], p1 = step.p(1)[i], p2 = step.p(2)[i], y0 = step.y0()[i];
+  const T a1 = step.y1()[i] - y0 + p0, a2 = p1 - p0, a3 = p2 - p1, a4 = -p2;
+  return T(step.h) * x * (y0 + x * (a1 / T(2) + x * (a2 / T(3) + x * (a3 / T(4) + x * a4 / T(5)))));
+}
+
+}  // namespace clutchwork

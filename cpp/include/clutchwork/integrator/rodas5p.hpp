@@ -1,0 +1,162 @@
+#pragma once
+#include <clutchwork/integrator/memory.hpp>
+
+/// Rodas5P: stiffly accurate Rosenbrock method of order 5(4) with dense output of order 4.
+/// G. Steinebach, BIT Numerical Mathematics 63, 27 (2023), doi 10.1007/s10543-023-00967-x.
+namespace clutchwork {
+
+struct Rodas5P {
+  static constexpr double gamma = 0.21193756319429014;
+  static constexpr double a[6][5] = {
+      {0},
+      {3.0},
+      {2.849394379747939, 0.45842242204463923},
+      {-6.954028509809101, 2.489845061869568, -10.358996098473584},
+      {2.8029986275628964, 0.5072464736228206, -0.3988312541770524, -0.04721187230404641},
+      {-7.502846399306121, 2.561846144803919, -11.627539656261098, -0.18268767659942256, 0.030198172008377946}};
+  static constexpr double c[8][7] = {
+      {0},
+      {-14.155112264123755},
+      {-17.97296035885952, -2.859693295451294},
+      {147.12150275711716, -1.41221402718213, 71.68940251302358},
+      {165.43517024871676, -0.4592823456491126, 42.90938336958603, -5.961986721573306},
+      {24.854864614690072, -3.0009227002832186, 47.4931110020768, 5.5814197821558125, -0.6610691825249471},
+      {30.91273214028599, -3.1208243349937974, 77.79954646070892, 34.28646028294783, -19.097331116725623,
+       -28.087943162872662},
+      {37.80277123390563, -3.2571969029072276, 112.26918849496327, 66.9347231244047, -40.06618937091002,
+       -54.66780262877968, -9.48861652309627}};
+  static constexpr double node[8] = {0, 0.6358126895828704, 0.4095798393397535, 0.9769306725060716, 0.4288403609558664,
+                                     1, 1, 1};
+  static constexpr double d[8] = {0.21193756319429014, -0.42387512638858027, -0.3384627126235924, 1.8046452872882734,
+                                  2.325825639765069, 0, 0, 0};
+  static constexpr double dense[3][8] = {
+      {25.948786856663858, -2.5579724845846235, 10.433815404888879, -2.3679251022685204, 0.524948541321073,
+       1.1241088310450404, 0.4272876194431874, -0.17202221070155493},
+      {-9.91568850695171, -0.9689944594115154, 3.0438037242978453, -24.495224566215796, 20.176138334709044,
+       15.98066361424651, -6.789040303419874, -6.710236069923372},
+      {11.419903575922262, 2.8879646145136994, 72.92137995996029, 80.12511834622643, -52.072871366152654,
+       -59.78993626266729, -0.15582684282751913, 4.883087185713722}};
+
+  /// Fold the states of the branches into effective dampings and factor. docs/theory/integrators.md
+  template <class Form, class T = typename Form::Scalar>
+  static CLUTCHWORK_INLINE bool factor(Form& form, T scale) {
+    Workspace<T>& ws = form.ws;
+    T* stiff = ws.scratch;
+    for (int k = 0; k < ws.n_branches; ++k) {
+      const Branch<T>& b = ws.branch[k];
+      stiff[k] = ws.partial[k].by_rate;
+      if (b.states == 0) continue;
+      T* inverse = ws.a_state + ws.block[k];
+      const T* g = ws.g_state + ws.block[k];
+      if (b.states == 1) {
+        inverse[0] = T(1) / (scale - g[0]);
+        stiff[k] += ws.f_state[b.state] * inverse[0] * ws.g_rate[b.state];
+        continue;
+      }
+      const int m = b.states;
+      for (int i = 0; i < m * m; ++i) inverse[i] = -g[i];
+      for (int i = 0; i < m; ++i) inverse[i * m + i] += scale;
+      if (!invert(m, inverse, ws.iscratch)) return false;
+      for (int i = 0; i < m; ++i) stiff[k] += ws.f_state[b.state + i] * dot(m, inverse + i * m, ws.g_rate + b.state);
+    }
+    return form.factor(scale, stiff);
+  }
+
+  /// b := (scale M - J)^-1 b, states condensed out and put back.
+  template <class Form, class T = typename Form::Scalar>
+  static CLUTCHWORK_INLINE void solve(Form& form, T* b) {
+    Workspace<T>& ws = form.ws;
+    const int nz = form.nz();
+    if (form.ns() == 0) {
+      form.solve(b);
+      return;
+    }
+    T* own = b + nz;
+    for (int k = 0; k < ws.n_branches; ++k) {
+      const Branch<T>& br = ws.branch[k];
+      if (br.states == 0) continue;
+      const T* inverse = ws.a_state + ws.block[k];
+      T push = T(0);
+      if (br.states == 1) {
+        own[br.state] *= inverse[0];
+        push = ws.f_state[br.state] * own[br.state];
+      } else {
+        T* tmp = ws.scratch + ws.n_directions;
+        for (int i = 0; i < br.states; ++i) tmp[i] = dot(br.states, inverse + i * br.states, own + br.state);
+        for (int i = 0; i < br.states; ++i) own[br.state + i] = tmp[i];
+        push = dot(br.states, ws.f_state + br.state, tmp);
+      }
+      form.push(k, push, b);
+    }
+    form.solve(b);
+    for (int k = 0; k < ws.n_branches; ++k) {
+      const Branch<T>& br = ws.branch[k];
+      if (br.states == 0) continue;
+      const T* inverse = ws.a_state + ws.block[k];
+      const T rate = form.rate(k, b);
+      for (int i = 0; i < br.states; ++i) own[br.state + i] += dot(br.states, inverse + i * br.states, ws.g_rate + br.state) * rate;
+    }
+  }
+
+  /// One step of length h from step.y0 with f0 and dt0 known; returns the error in units of the tolerance.
+  template <class Form, class T = typename Form::Scalar>
+  static CLUTCHWORK_INLINE double advance(Form& form, Step<Form>& step, double h) {
+    const int n = form.n(), nz = form.nz(), ns = form.ns();
+    const T ih = T(1 / h);
+    if (!factor(form, T(1 / (gamma * h)))) return infinity;
+    step.h = h;
+    step.dense = false;
+    T *u = step.u(), *y0 = step.y0();
+    T sum[Form::fixed_size > 0 ? Form::fixed_size : 1];
+    T* mix = Form::fixed_size > 0 ? sum : step.slope();
+    for (int s = 0; s < 8; ++s) {
+      T* k = step.k(s);
+      if (s == 0) {
+        for (int i = 0; i < n; ++i) u[i] = y0[i];
+        for (int i = 0; i < n; ++i) k[i] = step.f0()[i];
+      } else {
+        if (s < 6) {
+          for (int i = 0; i < n; ++i) {
+            T x = y0[i];
+            for (int j = 0; j < s; ++j) x += T(a[s][j]) * step.k(j)[i];
+            u[i] = x;
+          }
+        } else {
+          for (int i = 0; i < n; ++i) u[i] += step.k(s - 1)[i];
+        }
+        evaluate(form, step.t + node[s] * h, u, k);
+        for (int i = 0; i < n; ++i) {
+          T x = T(0);
+          for (int j = 0; j < s; ++j) x += T(c[s][j]) * step.k(j)[i];
+          mix[i] = x;
+        }
+        form.add_mass_times(ih, mix, k);
+        for (int i = nz; i < nz + ns; ++i) k[i] += ih * mix[i];
+      }
+      if (s < 5) {
+        const T hd = T(h * d[s]);
+        for (int i = 0; i < n; ++i) k[i] += hd * step.dt0()[i];
+      }
+      solve(form, k);
+    }
+    form.ws.statistics.evaluations += 7;
+    for (int i = 0; i < n; ++i) step.y1()[i] = u[i] + step.k(7)[i];
+    return error_norm(form, step.k(7), y0, step.y1());
+  }
+
+  /// Coefficients of the quartic.
+  template <class Form, class T = typename Form::Scalar>
+  static CLUTCHWORK_INLINE void prepare_dense(Form& form, Step<Form>& step) {
+    const int n = form.n();
+    for (int q = 0; q < 3; ++q) {
+      for (int i = 0; i < n; ++i) {
+        T x = T(0);
+        for (int s = 0; s < 8; ++s) x += T(dense[q][s]) * step.k(s)[i];
+        step.p(q)[i] = x;
+      }
+    }
+    step.dense = true;
+  }
+};
+
+}  // namespace clutchwork

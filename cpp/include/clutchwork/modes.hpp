@@ -1,0 +1,354 @@
+#pragma once
+#include <clutchwork/branch.hpp>
+#include <clutchwork/contacts.hpp>
+
+/// Which contacts stick, slip or are open, decided for all of them together: docs/theory/contacts.md.
+namespace clutchwork {
+
+/// Rate of a direction at the present speeds.
+template <class T>
+T rate_of(const Workspace<T>& ws, int d) {
+  const System& sys = ws.sys;
+  const bool element = d < sys.elements;
+  const std::int64_t k = element ? d : d - sys.elements;
+  const double* row = (element ? sys.element_rate : sys.contact_rate) + k * sys.speeds;
+  const double* given = (element ? sys.element_rate_prescribed : sys.contact_rate_prescribed) + k * sys.prescribed;
+  T r = T(0);
+  for (int i = 0; i < sys.speeds; ++i) r += T(row[i]) * ws.v[i];
+  for (int p = 0; p < sys.prescribed; ++p) r += T(given[p]) * ws.prescribed[p];
+  return r;
+}
+
+/// Share of prescribed speed p in the rate of a direction.
+template <class T>
+T prescribed_share(const Workspace<T>& ws, int d, int p) {
+  const System& sys = ws.sys;
+  if (d < sys.elements) return T(sys.element_rate_prescribed[d * sys.prescribed + p]);
+  return T(sys.contact_rate_prescribed[(d - sys.elements) * sys.prescribed + p]);
+}
+
+/// The branch of an element, or of a contact that slips with the given sign.
+template <class T>
+Branch<T> make_branch(const Workspace<T>& ws, int d, int sign, bool held) {
+  const System& sys = ws.sys;
+  Branch<T> b{};
+  b.direction = d;
+  b.sign = sign;
+  b.held = held;
+  b.piece = ws.piece[d];
+  if (d < sys.elements) {
+    b.kind = sys.element_kind[d];
+    b.law = -1;
+    b.params = ws.params + sys.element_param[d];
+    b.state = sys.element_state[d];
+    b.input = ws.u + sys.element_input[d];
+    b.input_slope = ws.du + sys.element_input[d];
+  } else {
+    const int c = d - int(sys.elements);
+    b.kind = sys.contact_kind[c];
+    b.law = sys.contact_law[c];
+    b.params = ws.params + sys.contact_param[c];
+    b.law_params = ws.params + sys.contact_law_param[c];
+    b.state = sys.contact_state[c];
+    b.input = ws.u + sys.contact_input[c];
+    b.input_slope = ws.du + sys.contact_input[c];
+  }
+  b.states = states_of<T>(b.kind, b.law);
+  return b;
+}
+
+/// Load of a contact now, negative included.
+template <class T>
+T load_of(const Workspace<T>& ws, int c) {
+  const System& sys = ws.sys;
+  return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], ws.u + sys.contact_input[c]);
+}
+
+/// Static torque of a contact now [N m].
+template <class T>
+T capacity_of(const Workspace<T>& ws, int c) {
+  return larger(load_of(ws, c), T(0)) * law_hold(ws.sys.contact_law[c], ws.params + ws.sys.contact_law_param[c]);
+}
+
+/// Whether a contact is closed: a load now, or one that is about to rise from zero.
+template <class T>
+bool is_loaded(const Workspace<T>& ws, int c) {
+  const System& sys = ws.sys;
+  const double load = value(load_of(ws, c));
+  if (load != 0) return load > 0;
+  Dual<T, 1> input[8];
+  const int count = visit_contact(sys.contact_kind[c], [](auto tag) { return decltype(tag)::type::inputs; });
+  for (int i = 0; i < count && i < 8; ++i) {
+    input[i] = Dual<T, 1>(ws.u[sys.contact_input[c] + i]);
+    input[i].d[0] = ws.du[sys.contact_input[c] + i];
+  }
+  return value(contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0]).d[0]) > 0;
+}
+
+/// Tolerance under which a slip counts as zero.
+template <class T>
+double slip_tolerance(const Workspace<T>& ws) {
+  double largest = 0;
+  for (int i = 0; i < ws.sys.speeds; ++i) {
+    if (abs(value(ws.v[i])) > largest) largest = abs(value(ws.v[i]));
+  }
+  return 1e-10 * (1 + largest);
+}
+
+/// Mass-weighted acceleration without contacts that may stick: L^-1 (forces - M_p du/dt).
+template <class T>
+void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
+  const System& sys = ws.sys;
+  const int nv = int(sys.speeds);
+  for (int i = 0; i < nv; ++i) q[i] = T(0);
+  for (int p = 0; p < sys.prescribed; ++p) axpy(nv, -ws.prescribed_slope[p], ws.prescribed_momentum + p * nv, q);
+  for (int d = 0; d < ws.n_directions; ++d) {
+    const int c = d - int(sys.elements);
+    int sign = 0;
+    if (c >= 0) {
+      if (!ws.loaded[c] || candidate[c]) continue;
+      sign = ws.mode[c];
+      if (sign != forward && sign != backward) continue;
+    }
+    const Branch<T> b = make_branch(ws, d, sign, false);
+    T* rates = ws.scratch;
+    axpy(nv, branch_torque(ws, b, rate_of(ws, d), ws.state, rates), ws.direction + d * nv, q);
+  }
+}
+
+/// Acceleration of a slip for mass-weighted acceleration q.
+template <class T>
+T slip_acceleration(const Workspace<T>& ws, int c, const T* q) {
+  const int d = int(ws.sys.elements) + c, nv = int(ws.sys.speeds);
+  T a = dot(nv, ws.direction + d * nv, q);
+  for (int p = 0; p < ws.sys.prescribed; ++p) a += prescribed_share(ws, d, p) * ws.prescribed_slope[p];
+  return a;
+}
+
+/// Gather the problem of the contacts in list[0..n): matrix and views.
+template <class T>
+BoundedProblem<T> gather(Workspace<T>& ws, const int* list, int n) {
+  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
+  for (int a = 0; a < n; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      const T s = dot(nv, ws.direction + (ne + list[a]) * nv, ws.direction + (ne + list[b]) * nv);
+      ws.qp_m[a * n + b] = ws.qp_m[b * n + a] = s;
+    }
+  }
+  return {n,        ws.qp_m,           ws.qp_g,           ws.qp_lo, ws.qp_hi,  ws.qp_w,
+          ws.qp_x,  ws.qp_x + nc,      ws.qp_x + 2 * nc,  ws.qp_f,  ws.qp_fix, ws.qp_fix + nc};
+}
+
+/// A contact without inertia on either side of its slip: prescribed speeds alone decide it.
+template <class T>
+bool is_rigid(const Workspace<T>& ws, int c) {
+  const int nv = int(ws.sys.speeds);
+  const T* row = ws.direction + (ws.sys.elements + c) * nv;
+  return value(dot(nv, row, row)) == 0;
+}
+
+/// Give every contact at zero slip its torque or its direction of slip. `located`: the contact whose guard was hit.
+template <class T>
+bool settle_contacts(Workspace<T>& ws, int located) {
+  const System& sys = ws.sys;
+  const int nc = int(sys.contacts), nv = int(sys.speeds);
+  const double tolerance = slip_tolerance(ws);
+  int* candidate = ws.iscratch;
+  int* list = ws.iscratch + nc;
+  T* q = ws.scratch + ws.sys.states + 1;
+  T* capacity = ws.qp_g + nc;
+
+  // who may stick
+  for (int c = 0; c < nc; ++c) {
+    const double slip = ws.mode[c] == locked ? 0.0 : value(rate_of(ws, int(sys.elements) + c));
+    const double reach = larger(tolerance, c == located ? sys.contact_tolerance[c] * (1 + 1e-9) : 0.0);
+    ws.held[c] = 0;
+    candidate[c] = ws.loaded[c] && (ws.mode[c] == locked || abs(slip) <= reach || c == located);
+    if (!ws.loaded[c]) {
+      if (abs(slip) > tolerance) ws.mode[c] = slip > 0 ? forward : backward;
+      else if (ws.mode[c] == locked) ws.mode[c] = open;
+    } else if (candidate[c] && ws.forced[c] != 0) {
+      candidate[c] = 0;
+      ws.mode[c] = ws.forced[c];
+    } else if (!candidate[c]) {
+      ws.mode[c] = slip > 0 ? forward : backward;
+    }
+    if (!candidate[c] && ws.loaded[c]) {
+      const int d = int(sys.elements) + c;
+      ws.piece[d] = piece_of(ws, d, abs(slip) > tolerance ? abs(slip) : 0.0);
+    }
+  }
+
+  // rounds: those at a bound that accelerate start to slip with their kinetic torque
+  for (int round = 0; round <= nc + 1; ++round) {
+    int n = 0;
+    for (int c = 0; c < nc; ++c) {
+      if (candidate[c]) list[n++] = c;
+    }
+    free_motion(ws, candidate, q);
+    BoundedProblem<T> p = gather(ws, list, n);
+    for (int a = 0; a < n; ++a) {
+      const int c = list[a];
+      capacity[a] = capacity_of(ws, c);
+      const bool one_way = contact_one_way(ws, c);
+      p.gradient[a] = slip_acceleration(ws, c, q);
+      p.lower[a] = -capacity[a];
+      p.upper[a] = one_way ? T(infinity) : capacity[a];
+      p.x[a] = T(0);
+      if (one_way) capacity[a] = T(infinity);
+      if (is_rigid(ws, c)) p.matrix[a * n + a] = T(1e-300);
+    }
+    capacity_weights(p, capacity);
+    for (int a = 0; a < n; ++a) {
+      if (is_rigid(ws, list[a])) p.lower[a] = p.upper[a] = T(0);
+    }
+    if (!solve(p)) return false;
+
+    // a bound torque with an acceleration cannot hold
+    bool moved = false;
+    for (int a = 0; a < n; ++a) {
+      const int c = list[a];
+      ws.mode[c] = locked;
+      const double pull = abs(value(p.gradient[a])) + abs(value(p.matrix[a * n + a] * p.x[a]));
+      double scale = pull;
+      for (int b = 0; b < n; ++b) scale = larger(scale, abs(value(p.matrix[a * n + b] * p.x[b])));
+      const double acceleration = value(p.slope[a]);
+      if (p.bound[a] == 0 || abs(acceleration) <= 1e-10 * scale) continue;
+      if (contact_one_way(ws, c) && acceleration < 0) continue;
+      ws.mode[c] = acceleration > 0 ? forward : backward;
+      ws.piece[sys.elements + c] = piece_of(ws, int(sys.elements) + c, 0.0);
+      candidate[c] = 0;
+      moved = true;
+    }
+    if (moved) continue;
+
+    // the located contact: held by others along the same direction, or forced to slip against its torque
+    bool again = false;
+    for (int a = 0; a < n && !again; ++a) {
+      const int c = list[a];
+      const double x = value(p.x[a]), upper = value(p.upper[a]), lower = value(p.lower[a]);
+      const double limit = x > 0 ? upper : -lower;
+      const bool at_limit = p.bound[a] != 0 || abs(x) >= limit * (1 - 1e-7);
+      if (!at_limit || is_rigid(ws, c)) continue;
+      // is its direction spanned by those that still have room?
+      T* rows = ws.scratch + sys.states + 1 + nv;
+      T* basis = rows + nc * nv;
+      int m = 0;
+      for (int b = 0; b < n; ++b) {
+        const double xb = value(p.x[b]), room = xb > 0 ? value(p.upper[b]) : -value(p.lower[b]);
+        if (b == a || p.bound[b] != 0 || abs(xb) >= room * (1 - 1e-7)) continue;
+        const T* row = ws.direction + (sys.elements + list[b]) * nv;
+        for (int i = 0; i < nv; ++i) rows[m * nv + i] = row[i];
+        ++m;
+      }
+      const int rank = orthonormal_split(m, nv, rows, basis, ws.iscratch + 2 * nc, ws.qp_f);
+      const T* row = ws.direction + (sys.elements + c) * nv;
+      double outside = 0;
+      for (int j = rank; j < nv; ++j) {
+        T s = T(0);
+        for (int i = 0; i < nv; ++i) s += basis[i * nv + j] * row[i];
+        outside += value(s * s);
+      }
+      const bool spanned = outside <= 1e-16 * value(dot(nv, row, row));
+      if (spanned && limit > 0) {
+        ws.held[c] = x > 0 ? 1 : -1;
+      } else if (c == located && limit > 0) {
+        ws.mode[c] = ws.forced[c] = x > 0 ? backward : forward;
+        if (contact_one_way(ws, c)) ws.mode[c] = ws.forced[c] = forward;
+        ws.piece[sys.elements + c] = piece_of(ws, int(sys.elements) + c, 0.0);
+        candidate[c] = 0;
+        again = true;
+      }
+    }
+    if (again) {
+      for (int c = 0; c < nc; ++c) ws.held[c] = 0;
+      continue;
+    }
+    for (int a = 0; a < n; ++a) {
+      ws.torque[sys.elements + list[a]] = p.x[a];
+    }
+    return true;
+  }
+  return false;
+}
+
+/// Impulses that bring inconsistent slips to rest: contacts declared locked and freewheels that run backward.
+template <class T>
+bool settle_impulses(Workspace<T>& ws, bool at_start) {
+  const System& sys = ws.sys;
+  const int nc = int(sys.contacts), nv = int(sys.speeds), ne = int(sys.elements);
+  const double tolerance = slip_tolerance(ws);
+  int* list = ws.iscratch;
+  int n = 0;
+  bool needed = false;
+  for (int c = 0; c < nc; ++c) {
+    const bool one_way = contact_one_way(ws, c), declared = at_start && sys.contact_initial[c] == 1;
+    if (!one_way && !declared) continue;
+    const double slip = value(rate_of(ws, ne + c));
+    if (is_rigid(ws, c) || (!declared && slip > tolerance)) continue;
+    list[n++] = c;
+    needed = needed || slip < -tolerance || (declared && slip > tolerance);
+  }
+  if (!needed) return true;
+  BoundedProblem<T> p = gather(ws, list, n);
+  T* capacity = ws.qp_g + nc;
+  for (int a = 0; a < n; ++a) {
+    const bool declared = at_start && sys.contact_initial[list[a]] == 1;
+    p.gradient[a] = rate_of(ws, ne + list[a]);
+    p.lower[a] = declared ? T(-infinity) : T(0);
+    p.upper[a] = capacity[a] = T(infinity);
+    p.x[a] = T(0);
+  }
+  capacity_weights(p, capacity);
+  if (!solve(p)) return false;
+  T* x = ws.scratch;
+  for (int i = 0; i < nv; ++i) x[i] = T(0);
+  for (int a = 0; a < n; ++a) {
+    axpy(nv, p.x[a], ws.direction + (ne + list[a]) * nv, x);
+    // work of an impulse: impulse times mean slip
+    ws.work[ne + list[a]] += p.x[a] * (p.gradient[a] + p.slope[a]) * T(0.5);
+  }
+  backward_solve(nv, ws.factor, nv, x);
+  for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
+  for (int a = 0; a < n; ++a) {
+    if (abs(value(p.slope[a])) <= tolerance) ws.mode[list[a]] = locked;
+  }
+  return true;
+}
+
+/// A jump of prescribed speeds: friction transmits no impulse, rigid parts follow.
+template <class T>
+void prescribed_jump(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  const int nv = int(sys.speeds), np = int(sys.prescribed);
+  bool any = false;
+  T* x = ws.scratch;
+  for (int i = 0; i < nv; ++i) x[i] = T(0);
+  for (int p = 0; p < np; ++p) {
+    const T jump = ws.prescribed[p] - ws.prescribed_before[p];
+    if (value(jump) == 0) continue;
+    any = true;
+    axpy(nv, -jump, ws.prescribed_momentum + p * nv, x);
+  }
+  if (!any) return;
+  backward_solve(nv, ws.factor, nv, x);
+  // impulse of each source: its column of inertia times the jumps of all node speeds
+  for (int n = 0; n < sys.nodes; ++n) {
+    T jump = T(0);
+    for (int i = 0; i < nv; ++i) jump += T(sys.basis[n * nv + i]) * x[i];
+    for (int p = 0; p < np; ++p) {
+      jump += T(sys.basis_prescribed[n * np + p]) * (ws.prescribed[p] - ws.prescribed_before[p]);
+    }
+    for (int p = 0; p < np; ++p) {
+      const T impulse = T(sys.basis_prescribed[n * np + p] * sys.inertia[n]) * jump;
+      ws.prescribed_work[p] += impulse * (ws.prescribed[p] + ws.prescribed_before[p]) * T(0.5);
+    }
+  }
+  for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
+  for (int c = 0; c < sys.contacts; ++c) {
+    const double slip = value(rate_of(ws, int(sys.elements) + c));
+    if (abs(slip) > slip_tolerance(ws)) ws.mode[c] = slip > 0 ? forward : backward;
+  }
+}
+
+}  // namespace clutchwork

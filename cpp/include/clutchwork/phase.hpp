@@ -1,0 +1,301 @@
+#pragma once
+#include <clutchwork/event.hpp>
+
+/// One smooth phase: from an event to the next one.
+namespace clutchwork {
+
+/// Reduced motion of the present modes; the state goes to ws.y.
+template <class T>
+void enter_mode(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  T* basis = ws.envelope;
+  split_locked(ws, basis);
+  invert_mobility(ws);
+  map_prescribed(ws, basis);
+  pack_branches(ws);
+  map_multipliers(ws);
+  ws.sparse = ws.nz > small_speeds || sys.states > small_states;
+  for (int i = 0; i < sys.speeds; ++i) ws.sparse = ws.sparse || sys.massless[i] != 0;
+  if (ws.sparse) {
+    reduce_rates(ws);
+    reduce_sparse(ws);
+  } else {
+    reduce_dense(ws, basis);
+    reduce_rates(ws);
+  }
+  for (int i = 0; i < sys.states; ++i) ws.y[ws.nz + i] = ws.state[i];
+  list_lines(ws);
+  ++ws.statistics.phases;
+}
+
+/// Speeds without inertia: Newton on their balance of torques. docs/theory/reduction.md
+template <class T>
+void balance_massless(SparseForm<T>& form, Step<SparseForm<T>>& step) {
+  Workspace<T>& ws = form.ws;
+  const int nz = form.nz();
+  bool any = false;
+  for (int i = 0; i < nz; ++i) any = any || ws.m_first[i] == ws.m_first[i + 1];
+  for (int round = 0; any && round < 8; ++round) {
+    linearize(form, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
+    T* stiff = ws.scratch;
+    for (int k = 0; k < ws.n_branches; ++k) stiff[k] = ws.partial[k].by_rate;
+    // a huge inertia holds all other speeds
+    if (!form.factor(T(1e30), stiff)) return;
+    T* b = step.slope();
+    for (int i = 0; i < nz; ++i) b[i] = ws.m_first[i] == ws.m_first[i + 1] ? step.f0()[i] : T(0);
+    form.solve(b);
+    for (int i = 0; i < nz; ++i) step.y0()[i] += b[i];
+  }
+}
+
+/// Derivatives, rates, slopes, multipliers at one end of the step.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void look(Form& form, Step<Form>& step, double t, const T* y, T* d, T* dt, Edge<T>& edge) {
+  linearize(form, t, y, d, dt, edge);
+  if constexpr (Form::small) {
+    slopes(form, d, edge);
+  } else {
+    T* velocity = step.slope();
+    for (int i = 0; i < form.nz(); ++i) velocity[i] = d[i];
+    form.solve_mass(velocity);
+    slopes(form, velocity, edge);
+  }
+  sense(form, d, edge);
+}
+
+/// A first step from the sizes of state and slope (E. Hairer, G. Wanner, Solving ODEs I, section II.4, shortened).
+template <class Form>
+double first_step(Form& form, Step<Form>& step, double span) {
+  auto& ws = form.ws;
+  if (ws.options.first_step > 0) return ws.options.first_step;
+  auto* velocity = step.slope();
+  for (int i = 0; i < form.n(); ++i) velocity[i] = step.f0()[i];
+  form.solve_mass(velocity);
+  const double size = error_norm(form, step.y0(), step.y0(), step.y0());
+  const double speed = error_norm(form, velocity, step.y0(), step.y0());
+  const double h = size < 1e-5 || speed < 1e-5 ? 1e-5 : 0.01 * size / speed;
+  return smaller(larger(h, 1e-9), 0.1 * span);
+}
+
+/// Present state from reduced coordinates to the workspace.
+template <class Form, class T = typename Form::Scalar>
+void export_state(Form& form, const T* y) {
+  Workspace<T>& ws = form.ws;
+  for (int i = 0; i < form.n(); ++i) ws.y[i] = y[i];
+  for (int i = 0; i < form.ns(); ++i) ws.state[i] = y[form.nz() + i];
+  inputs_at(ws, ws.time);
+  expand(form, y, ws.v);
+}
+
+/// Rows at the instant at which a phase starts.
+template <class Form>
+void emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
+  if (!(sink.steps ? fresh : sink.at < sink.count && sink.times[sink.at] <= form.ws.time)) return;
+  step.t = form.ws.time;
+  step.h = 0;
+  for (int i = 0; i < form.n(); ++i) {
+    step.y1()[i] = step.y0()[i];
+    step.p(0)[i] = step.p(1)[i] = step.p(2)[i] = 0;
+  }
+  if (!sink.steps) {
+    // a grid row here is the right limit of an event; further equal times wait for the end of the step
+    const std::int64_t size = form.ws.row.size;
+    while (sink.at < sink.count && sink.times[sink.at] <= form.ws.time) {
+      fill_row(form, step, 0.0, 0.0, sink.rows + size * sink.at++);
+    }
+    return;
+  }
+  emit(form, step, 0.0, sink);
+}
+
+/// Name the branch whose torque is not finite.
+template <class Form>
+void blame(Form& form, Step<Form>& step) {
+  auto& ws = form.ws;
+  ws.detail_component = -1;
+  observe(form, ws.time, step.y0(), step.slope(), ws.scratch, ws.torque);
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const double x = value(ws.torque[k]);
+    if (x - x == 0) continue;
+    ws.detail_component = ws.branch[k].direction;
+    ws.detail_value = x;
+    return;
+  }
+}
+
+/// After a knot: right limits of the signals; true when the modes must be decided again.
+template <class Form>
+bool pass_knot(Form& form, Step<Form>& step) {
+  auto& ws = form.ws;
+  using T = typename Form::Scalar;
+  for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];
+  load_inputs(ws, ws.time);
+  bool decide = refresh_loads(ws);
+  for (int p = 0; p < ws.sys.prescribed; ++p) decide = decide || value(ws.prescribed[p] - ws.prescribed_before[p]) != 0;
+  if (decide) return true;
+  look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
+  for (int a = 0; a < ws.n_locked; ++a) {
+    const T torque = ws.here.multiplier[a], capacity = ws.here.capacity[a];
+    if (margin(ws, a, torque, capacity) < -1e-9 * value(capacity + abs(torque))) return true;
+  }
+  return false;
+}
+
+/// Move the state to where a harmless guard was hit: next piece of a table, or an open contact passing zero.
+template <class Form>
+void pass_line(Form& form, const LineGuard& guard) {
+  auto& ws = form.ws;
+  auto& b = ws.branch[guard.branch];
+  if (guard.kind == LineGuard::edge) {
+    const int inner = b.law >= 0 ? b.sign : 1;
+    ws.piece[b.direction] += guard.sign == -inner ? 1 : -1;
+    b.piece = ws.piece[b.direction];
+  } else {
+    const int c = b.direction - int(ws.sys.elements), from = ws.mode[c];
+    ws.mode[c] = b.sign = -from;
+    const double e = kinetic_energy(ws);
+    record(ws, c, from, ws.mode[c], Cause::slip_zero, value(ws.here.slope[guard.branch]), 0.0, 0.0, e, e);
+  }
+  list_lines(ws);
+}
+
+/// Open contacts that were at rest and have started to move get their direction.
+template <class Form>
+void direct_open(Form& form, const Edge<typename Form::Scalar>& edge) {
+  auto& ws = form.ws;
+  bool changed = false;
+  for (int k = ws.n_branches; k < ws.n_rates; ++k) {
+    auto& b = ws.branch[k];
+    const double rate = value(edge.rate[k]);
+    if (b.sign != 0 || abs(rate) <= 1e-10) continue;
+    b.sign = rate > 0 ? forward : backward;
+    ws.mode[b.direction - int(ws.sys.elements)] = b.sign;
+    --ws.n_undirected;
+    changed = true;
+  }
+  if (changed) list_lines(ws);
+}
+
+/// Integrate until an event, the end time, or a full buffer. `running`: an event is waiting to be settled.
+template <class Form, class Integrator>
+Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink) {
+  Form form(ws);
+  Step<Form> step(form);
+  const int n = form.n();
+  const bool fresh = ws.fresh_phase;
+  if constexpr (!Form::small) {
+    if (fresh) form.solve_mass(ws.y);
+  }
+  for (int i = 0; i < n; ++i) step.y0()[i] = ws.y[i];
+  if constexpr (!Form::small) balance_massless(form, step);
+  ws.fresh_phase = false;
+  emit_start(form, step, sink, fresh);
+  look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
+  double h = ws.last_step > 0 ? (fresh ? 0.25 * ws.last_step : ws.last_step) : first_step(form, step, t_end - ws.time);
+  bool rejected = false;
+
+  while (true) {
+    if (ws.time >= t_end) {
+      export_state(form, step.y0());
+      return Status::done;
+    }
+    if ((sink.steps && sink.at + 3 > sink.count) || ws.n_events >= Workspace<typename Form::Scalar>::event_room) {
+      export_state(form, step.y0());
+      return ws.n_events > 0 && !(sink.steps && sink.at + 3 > sink.count) ? Status::events_full : Status::rows_full;
+    }
+    if (ws.statistics.steps + ws.statistics.rejected >= ws.options.max_steps) {
+      export_state(form, step.y0());
+      return Status::too_many_steps;
+    }
+
+    // step, onto knots and the end exactly
+    const double stop = smaller(t_end, ws.next_knot);
+    double reach = smaller(h, ws.options.max_step);
+    const bool cut = ws.time + 1.0001 * reach >= stop;
+    if (cut) reach = stop - ws.time;
+    step.t = ws.time;
+    const double error = Integrator::advance(form, step, reach);
+    if (!(error <= 1)) {
+      ++ws.statistics.rejected;
+      h = reach * (error < 1e300 ? larger(0.2, 0.9 * pow(error, -0.2)) : 0.1);
+      rejected = true;
+      if (h > 1e-14 * larger(1e-2, abs(ws.time))) continue;
+      blame(form, step);
+      export_state(form, step.y0());
+      return ws.detail_component >= 0 || !(error <= 1e300) ? Status::not_finite : Status::step_collapse;
+    }
+    ++ws.statistics.steps;
+    const double t1 = cut ? stop : ws.time + reach;
+    look(form, step, t1, step.y1(), step.f1(), step.dt1(), ws.there);
+
+    // locate
+    const Hit hit = find_hit<Form, Integrator>(form, step);
+    const bool whole = hit.what == Hit::nothing;
+    const double s = whole ? 1.0 : hit.s;
+    const bool rows = sink.steps || (sink.at < sink.count && sink.times[sink.at] <= ws.time + s * reach);
+    if ((rows || ws.options.work || ws.options.angles) && s > 0) {
+      if (!step.dense) Integrator::prepare_dense(form, step);
+      if (ws.options.work) fit_power(form, step, s);
+      if (rows) emit(form, step, s, sink);
+      accumulate(form, step, s);
+    }
+
+    // accept
+    if (whole) {
+      for (int i = 0; i < n; ++i) {
+        step.y0()[i] = step.y1()[i];
+        step.f0()[i] = step.f1()[i];
+        step.dt0()[i] = step.dt1()[i];
+      }
+      const Edge<typename Form::Scalar> edge = ws.here;
+      ws.here = ws.there;
+      ws.there = edge;
+      ws.time = t1;
+      const double growth = 0.9 * pow(larger(error, 1e-10), -0.2);
+      const double next = reach * smaller(rejected ? 1.0 : 6.0, larger(0.2, growth));
+      h = cut ? larger(next, h) : next;
+      rejected = false;
+      ws.last_step = h;
+      if (ws.n_undirected > 0) direct_open(form, ws.here);
+      if (cut && ws.time >= ws.next_knot) {
+        export_state(form, step.y0());
+        step.t = ws.time, step.h = 0;
+        for (int i = 0; i < n; ++i) step.p(0)[i] = step.p(1)[i] = step.p(2)[i] = 0;
+        note_before(form, step, 0.0);
+        if (!pass_knot(form, step)) continue;
+        ws.located = -1;
+        ws.cause = Cause::input;
+        return Status::running;
+      }
+      continue;
+    }
+
+    // switch
+    ws.last_step = cut ? larger(h, reach) : reach;
+    if (s > 0) note_before(form, step, s);
+    else note_before(form, step, 0.0);
+    interpolate(form, step, s, step.u());
+    ws.time = smaller(ws.time + s * reach, stop);
+    for (int i = 0; i < n; ++i) step.y0()[i] = step.u()[i];
+    ws.input_time = -infinity;
+    export_state(form, step.y0());
+    input_slopes_at(ws, ws.time);
+    const LineGuard* guard = hit.what == Hit::line ? &ws.line[hit.index] : nullptr;
+    if (guard != nullptr && guard->kind != LineGuard::slip) {
+      pass_line(form, *guard);
+      look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
+      h = ws.last_step;
+      continue;
+    }
+    switch (hit.what) {
+      case Hit::line: ws.located = ws.branch[guard->branch].direction - int(ws.sys.elements); break;
+      case Hit::multiplier: ws.located = ws.locked[hit.index]; break;
+      default: ws.located = hit.index;
+    }
+    ws.cause = hit.what == Hit::line ? Cause::slip_zero : hit.what == Hit::multiplier ? Cause::torque_limit : Cause::input;
+    if (hit.what == Hit::load) ws.loaded[hit.index] = !ws.loaded[hit.index] || contact_one_way(ws, hit.index);
+    return Status::running;
+  }
+}
+
+}  // namespace clutchwork

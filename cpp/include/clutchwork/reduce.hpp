@@ -1,0 +1,221 @@
+#pragma once
+#include <clutchwork/modes.hpp>
+
+/// The reduced motion of one mode: v = Z z + Y u with the locked slips gone. docs/theory/multipliers.md.
+namespace clutchwork {
+
+inline constexpr int small_speeds = 4, small_states = 3;
+
+/// Once per run: mass-weighted directions L^-1 D' and prescribed momentum L^-1 M_p. False when M is not positive definite.
+template <class T>
+bool prepare_geometry(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  const int nv = int(sys.speeds), np = int(sys.prescribed);
+  for (int i = 0; i < nv * nv; ++i) ws.factor[i] = T(sys.mass[i]);
+  for (int i = 0; i < nv; ++i) ws.factor[i * nv + i] += T(sys.massless[i] ? 1.0 : 0.0);
+  if (!cholesky(nv, ws.factor, nv)) return false;
+  for (int d = 0; d < ws.n_directions; ++d) {
+    const bool element = d < sys.elements;
+    const double* row = element ? sys.element_rate + d * nv : sys.contact_rate + (d - sys.elements) * nv;
+    for (int i = 0; i < nv; ++i) ws.direction[d * nv + i] = T(row[i]);
+    forward_solve(nv, ws.factor, nv, ws.direction + d * nv);
+  }
+  for (int p = 0; p < np; ++p) {
+    for (int i = 0; i < nv; ++i) ws.prescribed_momentum[p * nv + i] = T(sys.mass_prescribed[i * np + p]);
+    forward_solve(nv, ws.factor, nv, ws.prescribed_momentum + p * nv);
+  }
+  return true;
+}
+
+/// The locked contacts as orthonormal directions: fills ws.locked, ws.rank; basis holds range and null space.
+template <class T>
+void split_locked(Workspace<T>& ws, T* basis) {
+  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
+  T* rows = ws.scratch;
+  ws.n_locked = 0;
+  for (int c = 0; c < nc; ++c) {
+    if (ws.mode[c] != locked || ws.held[c] != 0) continue;
+    for (int i = 0; i < nv; ++i) rows[ws.n_locked * nv + i] = ws.direction[(ne + c) * nv + i];
+    ws.locked[ws.n_locked++] = c;
+  }
+  ws.rank = orthonormal_split(ws.n_locked, nv, rows, basis, ws.iscratch, ws.qp_f);
+  ws.nz = nv - ws.rank;
+}
+
+/// Inverse of the mobility of the locked contacts; weighted minimum norm where it is singular.
+template <class T>
+void invert_mobility(Workspace<T>& ws) {
+  const int m = ws.n_locked, nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
+  BoundedProblem<T> p = gather(ws, ws.locked, m);
+  T* capacity = ws.qp_g + ws.sys.contacts;
+  for (int a = 0; a < m; ++a) {
+    capacity[a] = contact_one_way(ws, ws.locked[a]) ? T(infinity) : capacity_of(ws, ws.locked[a]);
+    if (is_rigid(ws, ws.locked[a])) p.matrix[a * m + a] = T(1);
+    p.bound[a] = 0;
+  }
+  capacity_weights(p, capacity);
+  if (ws.rank == m) {
+    for (int a = 0; a < m; ++a) p.weight[a] = T(0);
+  }
+  factor_free(p);
+  for (int a = 0; a < m; ++a) {
+    T* column = ws.pinv + a * m;
+    for (int b = 0; b < m; ++b) column[b] = T(a == b ? 1.0 : 0.0);
+    forward_solve(m, p.factor, m, column);
+    backward_solve(m, p.factor, m, column);
+    // two refinements take the regularisation out again
+    for (int k = 0; k < 2 && ws.rank < m; ++k) {
+      for (int b = 0; b < m; ++b) p.trial[b] = T(a == b ? 1.0 : 0.0) - dot(m, p.matrix + b * m, column);
+      forward_solve(m, p.factor, m, p.trial);
+      backward_solve(m, p.factor, m, p.trial);
+      axpy(m, T(1), p.trial, column);
+    }
+  }
+  (void)nv, (void)ne;
+}
+
+/// Multipliers as a linear map of branch torques and prescribed accelerations.
+template <class T>
+void map_multipliers(Workspace<T>& ws) {
+  const int m = ws.n_locked, nv = int(ws.sys.speeds), ne = int(ws.sys.elements), np = int(ws.sys.prescribed);
+  for (int a = 0; a < m; ++a) {
+    // pull = sum over locked contacts of pinv times mass-weighted direction
+    T* pull = ws.scratch;
+    for (int i = 0; i < nv; ++i) pull[i] = T(0);
+    for (int b = 0; b < m; ++b) axpy(nv, ws.pinv[a * m + b], ws.direction + (ne + ws.locked[b]) * nv, pull);
+    for (int k = 0; k < ws.n_branches; ++k) {
+      ws.reach[a * ws.n_branches + k] = -dot(nv, pull, ws.direction + ws.branch[k].direction * nv);
+    }
+    for (int p = 0; p < np; ++p) {
+      T s = dot(nv, pull, ws.prescribed_momentum + p * nv);
+      for (int b = 0; b < m; ++b) s -= ws.pinv[a * m + b] * prescribed_share(ws, ne + ws.locked[b], p);
+      ws.reach_prescribed[a * np + p] = s;
+    }
+  }
+}
+
+/// Y: what prescribed speeds do to v inside the mode, momentum along Z untouched.
+template <class T>
+void map_prescribed(Workspace<T>& ws, const T* basis) {
+  const System& sys = ws.sys;
+  const int nv = int(sys.speeds), np = int(sys.prescribed), ne = int(sys.elements), m = ws.n_locked;
+  for (int p = 0; p < np; ++p) {
+    T* x = ws.scratch;
+    const T* momentum = ws.prescribed_momentum + p * nv;
+    for (int i = 0; i < nv; ++i) x[i] = T(0);
+    for (int j = ws.rank; j < nv; ++j) {
+      T s = T(0);
+      for (int i = 0; i < nv; ++i) s += basis[i * nv + j] * momentum[i];
+      for (int i = 0; i < nv; ++i) x[i] -= s * basis[i * nv + j];
+    }
+    for (int a = 0; a < m; ++a) {
+      T s = T(0);
+      for (int b = 0; b < m; ++b) s += ws.pinv[a * m + b] * prescribed_share(ws, ne + ws.locked[b], p);
+      axpy(nv, -s, ws.direction + (ne + ws.locked[a]) * nv, x);
+    }
+    backward_solve(nv, ws.factor, nv, x);
+    for (int i = 0; i < nv; ++i) ws.y_basis[i * np + p] = x[i];
+  }
+}
+
+/// Add a branch to the list.
+template <class T>
+void pack(Workspace<T>& ws, int d, int sign, bool held, int& block) {
+  const Branch<T> b = make_branch(ws, d, sign, held);
+  ws.branch_of[d] = ws.n_rates;
+  ws.block[ws.n_rates] = block;
+  block += b.states * b.states;
+  ws.branch[ws.n_rates++] = b;
+}
+
+/// Active components: all elements, slipping contacts, saturated ones that are held by others.
+/// Behind them, without torque, the open contacts: only their rates are followed.
+template <class T>
+void pack_branches(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  const int ne = int(sys.elements), nc = int(sys.contacts);
+  ws.n_rates = ws.n_undirected = 0;
+  int block = 0;
+  for (int d = 0; d < ne; ++d) pack(ws, d, 0, false, block);
+  for (int c = 0; c < nc; ++c) {
+    const bool held = ws.mode[c] == locked && ws.held[c] != 0;
+    ws.branch_of[ne + c] = -1;
+    if (ws.loaded[c] && (ws.mode[c] != locked || held)) pack(ws, ne + c, held ? ws.held[c] : ws.mode[c], held, block);
+  }
+  ws.n_branches = ws.n_rates;
+  for (int c = 0; c < nc; ++c) {
+    if (ws.loaded[c]) continue;
+    pack(ws, ne + c, ws.mode[c] == open ? 0 : ws.mode[c], false, block);
+    ws.n_undirected += ws.mode[c] == open;
+  }
+}
+
+/// Guards that are linear in the state.
+template <class T>
+void list_lines(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  ws.n_lines = 0;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const Branch<T>& b = ws.branch[k];
+    const bool contact = b.law >= 0;
+    if (contact && b.held) continue;
+    if (contact) {
+      const int c = b.direction - int(sys.elements);
+      const double level = ws.forced[c] == 0 ? sys.contact_tolerance[c] : 0.0;
+      const double slip = abs(value(rate_of(ws, b.direction)));
+      ws.line[ws.n_lines++] = {LineGuard::slip, k, b.sign, slip > level ? level * b.sign : 0.0};
+    }
+    const int edges = edge_count(ws, b.direction), sign = contact ? b.sign : 1;
+    if (b.piece < edges) ws.line[ws.n_lines++] = {LineGuard::edge, k, -sign, sign * edge_at(ws, b.direction, b.piece)};
+    if (b.piece > 0) ws.line[ws.n_lines++] = {LineGuard::edge, k, sign, sign * edge_at(ws, b.direction, b.piece - 1)};
+  }
+  for (int k = ws.n_branches; k < ws.n_rates; ++k) {
+    if (ws.branch[k].sign != 0) ws.line[ws.n_lines++] = {LineGuard::pass, k, ws.branch[k].sign, 0.0};
+  }
+}
+
+/// Rates of the branches in reduced coordinates: rate = row_z z + offset u.
+template <class T>
+void reduce_rates(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  const int nv = int(sys.speeds), np = int(sys.prescribed), nz = ws.nz;
+  for (int k = 0; k < ws.n_rates; ++k) {
+    const int d = ws.branch[k].direction;
+    const double* row = d < sys.elements ? sys.element_rate + d * nv : sys.contact_rate + (d - sys.elements) * nv;
+    for (int p = 0; p < np; ++p) {
+      T s = prescribed_share(ws, d, p);
+      for (int i = 0; i < nv; ++i) s += T(row[i]) * ws.y_basis[i * np + p];
+      ws.offset[k * np + p] = s;
+    }
+    if (ws.sparse) continue;
+    for (int j = 0; j < nz; ++j) {
+      T s = T(0);
+      if (!ws.branch[k].held) {
+        for (int i = 0; i < nv; ++i) s += T(row[i]) * ws.z_basis[i * nz + j];
+      }
+      ws.row_z[k * nz + j] = s;
+    }
+  }
+}
+
+/// Dense reduced coordinates: Z with Z' M Z = 1, and z = Z'(M v + M_p u).
+template <class T>
+void reduce_dense(Workspace<T>& ws, const T* basis) {
+  const int nv = int(ws.sys.speeds), nz = ws.nz, np = int(ws.sys.prescribed);
+  T* x = ws.scratch;
+  for (int i = 0; i < nv; ++i) {
+    T s = T(0);
+    for (int j = i; j < nv; ++j) s += ws.factor[j * nv + i] * ws.v[j];
+    for (int p = 0; p < np; ++p) s += ws.prescribed_momentum[p * nv + i] * ws.prescribed[p];
+    x[i] = s;
+  }
+  T* column = ws.scratch + nv;
+  for (int j = 0; j < nz; ++j) {
+    for (int i = 0; i < nv; ++i) column[i] = basis[i * nv + ws.rank + j];
+    ws.y[j] = dot(nv, column, x);
+    backward_solve(nv, ws.factor, nv, column);
+    for (int i = 0; i < nv; ++i) ws.z_basis[i * nz + j] = column[i];
+  }
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,29 @@
+#pragma once
+#include <cmath>
+#include <type_traits>
+
+#define CLUTCHWORK_INLINE inline __attribute__((always_inline))
+
+/// What the core asks of a number. Scalars: double, float, Dual<double, N>, Dual<float, N>.
+namespace clutchwork {
+
+using std::abs, std::cos, std::exp, std::log, std::pow, std::sin, std::sqrt, std::tanh;
+
+/// The plain number behind a scalar: comparisons and decisions use it.
+template <class T>
+  requires std::is_floating_point_v<T>
+CLUTCHWORK_INLINE T value(T x) {
+  return x;
+}
+
+template <class T>
+CLUTCHWORK_INLINE T larger(T a, T b) {
+  return b > a ? b : a;
+}
+
+template <class T>
+CLUTCHWORK_INLINE T smaller(T a, T b) {
+  return b < a ? b : a;
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,208 @@
+#pragma once
+#include <clutchwork/registry.gen.hpp>
+
+/// Everything that changes during a run, carved once from memory of the caller.
+namespace clutchwork {
+
+inline constexpr double infinity = __builtin_huge_val();
+
+enum Mode : int { backward = -1, locked = 0, forward = 1, open = 2 };
+enum class Cause : int { initial, slip_zero, torque_limit, input, consequence, impulse, restart };
+enum class Method : int { automatic, rodas5p, dopri5 };
+
+/// Settings of a run.
+struct Options {
+  double rtol = 1e-6;             ///< [1] relative tolerance of a step
+  double atol = 1e-8;             ///< [SI] absolute tolerance of a step
+  Method method = Method::rodas5p;
+  double first_step = 0;          ///< [s] 0: found from the slopes
+  double max_step = infinity;     ///< [s]
+  std::int64_t max_steps = 10'000'000;
+  std::int64_t max_events = 100'000;
+  bool angles = true;             ///< integrate the angles
+  bool work = true;               ///< integrate the work of every component
+};
+
+/// Counters of a run.
+struct Statistics {
+  std::int64_t steps = 0, rejected = 0, evaluations = 0, jacobians = 0, events = 0, phases = 0, locations = 0;
+};
+
+/// Cursor of one signal.
+struct Signal {
+  std::int64_t segment = 0;
+  double start = 0;             ///< [s] start of the present segment
+  double knot = 0;              ///< [s] start of the next one
+  const double* coef = nullptr;
+  double held = 0;              ///< value of a signal that is set from outside
+  bool varying = false, linear = true, idle = false;
+};
+
+/// An active component: one direction, one torque.
+template <class T>
+struct Branch {
+  const T* params;
+  const T* law_params;
+  const T* input;
+  const T* input_slope;
+  int kind, law;       ///< law is -1 for a torque element
+  int direction;       ///< number among elements, then contacts
+  int state, states;   ///< own states: offset and number
+  int piece;           ///< smooth piece of the element or of the law
+  int sign;            ///< direction of slip of a contact
+  bool held;           ///< a saturated contact that does not slip: applies its static torque
+};
+
+/// Value and partial derivatives of one branch.
+template <class T>
+struct Partial {
+  T torque, by_rate, by_time;
+};
+
+/// Guard functions that are linear in the state: sign * (rate - level) stays positive.
+struct LineGuard {
+  enum Kind : int { slip, edge, pass } kind;
+  int branch;
+  int sign;
+  double level;
+};
+
+/// What the guards need at one end of a step.
+template <class T>
+struct Edge {
+  T* rate;        ///< rate of each branch
+  T* slope;       ///< its time derivative
+  T* multiplier;  ///< torque of each locked contact
+  T* drift;       ///< its time derivative
+  T* capacity;    ///< static torque of each locked contact
+  T* load;        ///< load of each contact, negative included
+};
+
+template <class T>
+struct Workspace {
+  System sys{};
+  RowLayout row{System{}};
+  Options options;
+  Statistics statistics;
+
+  // the state of the run
+  double time = 0;
+  T *v = nullptr, *state = nullptr, *angle = nullptr, *work = nullptr, *prescribed_work = nullptr;
+  int *mode = nullptr, *piece = nullptr, *loaded = nullptr, *forced = nullptr, *held = nullptr;
+  double last_step = 0;        ///< [s] last step that was not cut short
+  bool started = false, fresh_phase = true, input_changed = false;
+  double stand_time = -infinity, forced_time = -infinity;
+  int stand_events = 0;
+  bool redistributed = false;
+
+  // signals, read through references; the prescribed speeds come last
+  Signal* signal = nullptr;
+  int n_refs = 0, n_varying = 0, n_directions = 0;
+  int *ref_signal = nullptr, *varying = nullptr;
+  T *u = nullptr, *du = nullptr;
+  double input_time = -infinity, next_knot = infinity;
+  T *params = nullptr, *prescribed = nullptr, *prescribed_slope = nullptr, *prescribed_before = nullptr;
+
+  // geometry in mass-weighted coordinates x = L' v
+  T *factor = nullptr, *direction = nullptr, *prescribed_momentum = nullptr;
+  const double *rate_rows = nullptr, *rate_prescribed = nullptr;
+
+  // the present mode
+  int n_locked = 0, rank = 0, nz = 0, n_branches = 0, n_rates = 0, n_lines = 0, n_watch = 0, n_undirected = 0;
+  int* locked = nullptr;
+  bool sparse = false;
+  T *z_basis = nullptr, *y_basis = nullptr, *pinv = nullptr;
+  T *row_z = nullptr, *offset = nullptr, *reach = nullptr, *reach_prescribed = nullptr;
+  Branch<T>* branch = nullptr;
+  int* branch_of = nullptr;
+  LineGuard* line = nullptr;
+  Partial<T>* partial = nullptr;
+  T *f_state = nullptr, *g_rate = nullptr, *g_time = nullptr, *g_state = nullptr, *a_state = nullptr;
+  int* block = nullptr;
+  Edge<T> here{}, there{};
+  T *torque = nullptr, *output_torque = nullptr, *slip_slope = nullptr, *torque_before = nullptr;
+  int *watch = nullptr, *mode_before = nullptr;
+
+  // sparse form
+  int *sp_first = nullptr, *sp_col = nullptr, *m_first = nullptr, *m_col = nullptr, *sky = nullptr, *pivot_of = nullptr;
+  int *exp_first = nullptr, *exp_col = nullptr;
+  T *sp_val = nullptr, *m_val = nullptr, *envelope = nullptr, *exp_val = nullptr;
+
+  // scratch
+  T *y = nullptr, *stages = nullptr, *scratch = nullptr, *dense_v = nullptr;
+  int* iscratch = nullptr;
+  T *qp_g = nullptr, *qp_m = nullptr, *qp_x = nullptr, *qp_lo = nullptr, *qp_hi = nullptr, *qp_w = nullptr, *qp_f = nullptr;
+  int* qp_fix = nullptr;
+  T *power = nullptr;
+
+  // events waiting for the caller
+  static constexpr int event_room = 64;
+  double* events = nullptr;
+  int n_events = 0;
+
+  // where a failure happened
+  // what the phase that just ended leaves to the switch
+  int located = -1;
+  Cause cause = Cause::initial;
+
+  int detail_component = -1;
+  double detail_value = 0;
+};
+
+/// Hands out pieces of a block of memory, or only counts them when the block is null.
+class Arena {
+ public:
+  explicit Arena(unsigned char* base) : base_(base) {}
+  template <class P>
+  void take(P*& p, std::int64_t n) {
+    at_ = (at_ + 15) / 16 * 16;
+    p = base_ ? reinterpret_cast<P*>(base_ + at_) : nullptr;
+    at_ += (n > 0 ? n : 1) * std::int64_t(sizeof(P));
+  }
+  std::int64_t size() const { return at_ + 16; }
+
+ private:
+  unsigned char* base_;
+  std::int64_t at_ = 0;
+};
+
+/// Lay the arrays of a workspace into memory; returns the size needed.
+template <class T>
+std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
+  const System& s = ws.sys;
+  Arena a(memory);
+  const auto nv = s.speeds, np = s.prescribed, ns = s.states, nc = s.contacts, nd = s.elements + s.contacts;
+  ws.n_refs = int(s.n_input_refs + np);
+  ws.n_directions = int(nd);
+  a.take(ws.v, nv), a.take(ws.state, ns), a.take(ws.angle, s.nodes), a.take(ws.work, nd), a.take(ws.prescribed_work, np);
+  a.take(ws.mode, nc), a.take(ws.piece, nd), a.take(ws.loaded, nc), a.take(ws.forced, nc), a.take(ws.held, nc);
+  a.take(ws.signal, s.inputs), a.take(ws.ref_signal, ws.n_refs), a.take(ws.varying, ws.n_refs);
+  a.take(ws.u, ws.n_refs), a.take(ws.du, ws.n_refs), a.take(ws.params, s.n_params), a.take(ws.prescribed_before, np);
+  a.take(ws.factor, nv * nv), a.take(ws.direction, nd * nv), a.take(ws.prescribed_momentum, np * nv);
+  a.take(ws.locked, nc), a.take(ws.z_basis, nv * nv), a.take(ws.y_basis, nv * np), a.take(ws.pinv, nc * nc);
+  a.take(ws.row_z, nd * nv), a.take(ws.offset, nd * np), a.take(ws.reach, nc * nd), a.take(ws.reach_prescribed, nc * np);
+  a.take(ws.branch, nd), a.take(ws.branch_of, nd), a.take(ws.line, 3 * nd + nc), a.take(ws.partial, nd);
+  a.take(ws.f_state, ns), a.take(ws.g_rate, ns), a.take(ws.g_time, ns), a.take(ws.block, nd);
+  a.take(ws.g_state, ns * ns), a.take(ws.a_state, ns * ns);
+  Edge<T>* edges[2] = {&ws.here, &ws.there};
+  for (Edge<T>* e : edges) {
+    a.take(e->rate, nd), a.take(e->slope, nd), a.take(e->multiplier, nc), a.take(e->drift, nc);
+    a.take(e->capacity, nc), a.take(e->load, nc);
+  }
+  a.take(ws.torque, nd), a.take(ws.output_torque, nd), a.take(ws.power, 4 * (nd + np));
+  a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.take(ws.watch, nc), a.take(ws.mode_before, nc);
+  a.take(ws.sp_first, nd + 1), a.take(ws.sp_col, nd * nv), a.take(ws.sp_val, nd * nv);
+  a.take(ws.m_first, nv + 1), a.take(ws.m_col, nv * nv), a.take(ws.m_val, nv * nv);
+  a.take(ws.sky, nv + 1), a.take(ws.pivot_of, nv), a.take(ws.envelope, 2 * nv * nv);
+  a.take(ws.exp_first, nv + 1), a.take(ws.exp_col, nv * nv), a.take(ws.exp_val, nv * nv);
+  a.take(ws.y, nv + ns), a.take(ws.stages, 20 * (nv + ns)), a.take(ws.scratch, 8 * (nv + nd + ns) + 3 * nv * nv + nc * (nv + nc));
+  a.take(ws.dense_v, 4 * nv + 2 * s.nodes + np), a.take(ws.iscratch, 4 * (nv + nd + nc));
+  a.take(ws.qp_g, 3 * nc), a.take(ws.qp_m, nc * nc), a.take(ws.qp_x, 3 * nc), a.take(ws.qp_lo, nc), a.take(ws.qp_hi, nc);
+  a.take(ws.qp_w, nc), a.take(ws.qp_f, nc * nc), a.take(ws.qp_fix, 3 * nc);
+  a.take(ws.events, event_size * (Workspace<T>::event_room + 2 * nc));
+  ws.prescribed = ws.u + s.n_input_refs;
+  ws.prescribed_slope = ws.du + s.n_input_refs;
+  return a.size();
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,8 @@
+#define CLUTCHWORK_INSTANCES
+#include "instances.hpp"
+
+namespace clutchwork {
+CLUTCHWORK_SMALL_ROW(, 0)
+CLUTCHWORK_SMALL_ROW(, 1)
+CLUTCHWORK_SMALL_ROW(, 2)
+}  // namespace clutchwork

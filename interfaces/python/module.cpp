@@ -1,0 +1,147 @@
+#include <clutchwork/c_api.h>
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+
+#include <memory>
+#include <string>
+#include <tuple>
+
+namespace nb = nanobind;
+using Vector = nb::ndarray<double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Matrix = nb::ndarray<double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
+
+namespace {
+
+const std::int64_t event_columns = cw_event_size();
+
+/// Owns the memory of a run and the bytes of its system.
+class Run {
+ public:
+  explicit Run(nb::bytes system) : system_(std::move(system)) {
+    const std::int64_t size = cw_size(system_.c_str(), std::int64_t(system_.size()));
+    if (size < 0) throw nb::value_error("the system bytes do not fit this core: assemble the driveline again with this version");
+    memory_ = std::make_unique<Block[]>(std::size_t(size + 63) / 64);
+    size_ = size;
+    run_ = cw_load(system_.c_str(), std::int64_t(system_.size()), memory_.get(), size);
+    if (run_ == nullptr) throw nb::value_error("the run could not be started from these system bytes");
+  }
+
+  void set_option(const std::string& name, double value) {
+    if (!cw_set_option(run_, name.c_str(), value)) {
+      throw nb::value_error(("option " + name + " is unknown or cannot be " + std::to_string(value)).c_str());
+    }
+  }
+  void set_input(std::int64_t input, double value) {
+    if (!cw_set_input(run_, input, value)) throw nb::index_error("no such signal that is set from outside");
+  }
+  void set_param(std::int64_t offset, double value) {
+    if (!cw_set_param(run_, offset, value)) throw nb::index_error("no such parameter");
+  }
+
+  std::tuple<int, std::int64_t> advance(double t_end, Vector times, Matrix rows, std::int64_t first, bool steps) {
+    if (rows.shape(1) != std::size_t(cw_row_size(run_)) || rows.shape(0) != times.shape(0)) {
+      throw nb::value_error("rows must have one line per time and row_size columns");
+    }
+    const auto n = std::int64_t(times.shape(0));
+    if (first < 0 || first > n) throw nb::index_error("first row out of range");
+    std::int64_t filled = 0;
+    double *t = times.data() + first, *r = rows.data() + first * cw_row_size(run_);
+    int status;
+    {
+      nb::gil_scoped_release release;
+      status = cw_advance(run_, t_end, t, r, n - first, steps, &filled);
+    }
+    return {status, filled};
+  }
+
+  nb::object events() {
+    nb::list all;
+    std::int64_t total = 0;
+    std::unique_ptr<double[]> out(new double[event_columns * 4096]);
+    total = cw_take_events(run_, out.get(), 4096);
+    double* data = out.release();
+    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
+    return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<2>>(data, {std::size_t(total), std::size_t(event_columns)}, owner));
+  }
+
+  nb::object row() {
+    const auto n = std::size_t(cw_row_size(run_));
+    double* data = new double[n > 0 ? n : 1];
+    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
+    cw_row(run_, data);
+    return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(data, {n}, owner));
+  }
+
+  nb::dict statistics() const {
+    static constexpr const char* names[7] = {"steps",  "rejected", "evaluations", "jacobians",
+                                             "events", "phases",   "locations"};
+    std::int64_t counts[7];
+    cw_statistics(run_, counts);
+    nb::dict d;
+    for (int i = 0; i < 7; ++i) d[names[i]] = counts[i];
+    return d;
+  }
+
+  std::tuple<std::int64_t, double, double> detail() const {
+    double value = 0;
+    const std::int64_t component = cw_detail(run_, &value);
+    return {component, cw_time(run_), value};
+  }
+
+  nb::bytes save() const {
+    std::unique_ptr<char[]> copy(new char[std::size_t(size_)]);
+    cw_save(run_, copy.get());
+    return nb::bytes(copy.get(), std::size_t(size_));
+  }
+  void restore(nb::bytes state) {
+    if (!cw_restore(run_, state.c_str(), std::int64_t(state.size()))) {
+      throw nb::value_error("the saved state belongs to another system");
+    }
+  }
+
+  double time() const { return cw_time(run_); }
+  std::int64_t row_size() const { return cw_row_size(run_); }
+
+ private:
+  struct alignas(64) Block {
+    unsigned char byte[64];
+  };
+  nb::bytes system_;
+  std::unique_ptr<Block[]> memory_;
+  std::int64_t size_ = 0;
+  cw_run* run_ = nullptr;
+};
+
+std::tuple<double, double> law(int number, Vector params, Matrix points, double slip) {
+  double kinetic = 0, hold = 0;
+  if (!cw_law(number, params.data(), points.data(), std::int64_t(points.shape(0)), slip, &kinetic, &hold)) {
+    throw nb::index_error("no such friction law");
+  }
+  return {kinetic, hold};
+}
+
+}  // namespace
+
+NB_MODULE(_core, m) {
+  m.doc() = "Compiled core of clutchwork.";
+  m.def("schema_hash", &cw_schema_hash, "Fingerprint of the components and layouts this core was built from.");
+  m.def("law", &law, nb::arg("number"), nb::arg("params"), nb::arg("points"), nb::arg("slip"),
+        "Kinetic coefficient at a slip [rad/s] and static coefficient of a friction law.");
+  nb::class_<Run>(m, "Run", "One run of a frozen system: its memory, options, signals and results.")
+      .def(nb::init<nb::bytes>(), nb::arg("system"))
+      .def("set_option", &Run::set_option, nb::arg("name"), nb::arg("value"))
+      .def("set_input", &Run::set_input, nb::arg("index"), nb::arg("value"))
+      .def("set_param", &Run::set_param, nb::arg("offset"), nb::arg("value"))
+      .def("advance", &Run::advance, nb::arg("t_end"), nb::arg("times"), nb::arg("rows"), nb::arg("first") = 0,
+           nb::arg("steps") = false)
+      .def("events", &Run::events)
+      .def("row", &Run::row)
+      .def("statistics", &Run::statistics)
+      .def("detail", &Run::detail)
+      .def("save", &Run::save)
+      .def("restore", &Run::restore, nb::arg("state"))
+      .def_prop_ro("time", &Run::time)
+      .def_prop_ro("row_size", &Run::row_size);
+}
