@@ -1,4 +1,4 @@
-"""Driveline -> System: reduction to independent speeds, and the arrays that the compiled core reads."""
+"""Driveline -> System: the arrays that the compiled core reads, over the independent speeds."""
 
 from __future__ import annotations
 
@@ -13,13 +13,15 @@ from numpy.typing import NDArray
 from clutchwork import waveform
 from clutchwork.checks import label, ports
 from clutchwork.errors import ModelError, Problem
-from clutchwork.kinematics import Kinematics, Model, apart, direction, initial_speeds, kinematics
+from clutchwork.kinematics import apart, kinematics
 from clutchwork.layout import FIELDS
 from clutchwork.node import Component, Node, Segment, Signal
 from clutchwork.pools import Pools
-from clutchwork.rational import Row
+from clutchwork.rational import Row, plus
 from clutchwork.schema import Role, inputs, kinds
 from clutchwork.signals.constant import Constant
+from clutchwork.start import initial_speeds
+from clutchwork.structure import Kinematics, Model
 from clutchwork.system import TYPES, Gearing, Input, System, frozen
 
 Array = NDArray[Any]
@@ -93,13 +95,15 @@ def assemble(
     (speeds, motions), problems = _start(model, made)
     if problems:
         raise ModelError(problems)
-    pools, wires, arrays = Pools(), Wires(), dict[str, Any]()
-    arrays |= _inertia(model, made)
-    arrays |= _elements(model, made, pools, wires)
-    arrays |= _contacts(model, made, pools, wires)
+    pools, wires, columns = Pools(), Wires(), Columns(model, made)
+    arrays = _inertia(model, made, columns)
+    arrays |= _rates(model, made, columns, Role.TORQUE, "element")
+    arrays |= _rates(model, made, columns, Role.CONTACT, "contact")
+    arrays |= _elements(model, pools, wires)
+    arrays |= _contacts(model, pools, wires)
     arrays |= _motions(motions, wires)
     arrays |= _signals(wires)
-    arrays |= {"params": pools.params, "points": pools.points, "initial_speed": _floats(speeds)}
+    arrays |= {"params": pools.params, "points": pools.points, "initial_speed": [float(speed) for speed in speeds]}
     return System(
         name=name,
         arrays=frozen(_shaped(arrays, model, made)),
@@ -136,64 +140,75 @@ def _start(
 
 def _arrange(model: Model, made: Kinematics, wanted: Sequence[str]) -> None:
     """Order the independent speeds: as wanted, else so that those that act on each other are close."""
-    count = len(made.independent)
     if wanted:
-        names = [model.nodes[n].name for n in made.independent]
-        order = [names.index(name) for name in wanted]
-    else:
-        neighbours: list[set[int]] = [set() for _ in range(count)]
-        acting = (*model.role(Role.TORQUE), *model.role(Role.CONTACT))
-        for row in (*made.basis, *(made.rate(direction(model, c))[0] for c in acting)):
-            used = [k for k, value in enumerate(row) if value]
-            for k in used:
-                neighbours[k].update(used)
-        touching = [sorted(near - {k}) for k, near in enumerate(neighbours)]
-        order = apart(range(count), touching.__getitem__)
-    made.basis[:] = [[row[k] for k in order] for row in made.basis]
-    made.independent[:] = [made.independent[k] for k in order]
-    made.massless[:] = [made.massless[k] for k in order]
+        made.independent.sort(key=lambda node: wanted.index(model.nodes[node].name))
+        return
+    touching: dict[int, set[int]] = {node: set() for node in made.independent}
+    for row in (*made.speeds, *(made.over(row) for _, row in model.acting)):
+        together = touching.keys() & row.keys()
+        for node in together:
+            touching[node] |= together - {node}
+    made.independent[:] = apart(made.independent, lambda node: sorted(touching[node]))
 
 
-def _inertia(model: Model, made: Kinematics) -> dict[str, Any]:
+class Columns:
+    """Places of the independent speeds and of the prescribed ones in the arrays."""
+
+    def __init__(self, model: Model, made: Kinematics) -> None:
+        first = len(model.nodes)
+        self.speeds = {node: place for place, node in enumerate(made.independent)}
+        self.prescribed = {first + number: number for number in range(len(model.role(Role.MOTION)))}
+
+    def split(self, rows: Sequence[Row]) -> tuple[Array, Array]:
+        """Rows over the independent speeds and over the prescribed ones."""
+        return _matrix(rows, self.speeds), _matrix(rows, self.prescribed)
+
+
+def _matrix(rows: Sequence[Row], places: Mapping[int, int]) -> Array:
+    made = np.zeros((len(rows), len(places)))
+    for number, row in enumerate(rows):
+        for column, value in row.items():
+            if column in places:
+                made[number, places[column]] = float(value)
+    return made
+
+
+def _inertia(model: Model, made: Kinematics, columns: Columns) -> dict[str, Any]:
     """Basis and mass matrix, computed as fractions and rounded once."""
-    count, driven = len(made.independent), len(model.role(Role.MOTION))
-    mass = [[Fraction(0)] * count for _ in range(count)]
-    coupled = [[Fraction(0)] * driven for _ in range(count)]
-    for J, row, pushed in zip(model.inertia, made.basis, made.basis_prescribed, strict=True):
-        for i in (k for k, value in enumerate(row) if value and J):
-            for j in (k for k, value in enumerate(row) if value):
-                mass[i][j] += J * row[i] * row[j]
-            for j in (k for k, value in enumerate(pushed) if value):
-                coupled[i][j] += J * row[i] * pushed[j]
+    basis, basis_prescribed = columns.split(made.speeds)
+    rows: dict[int, Row] = {node: {} for node in made.independent}
+    for inertia, speed in zip(model.inertia, made.speeds, strict=True):
+        for node in speed.keys() & rows.keys() if inertia else ():
+            rows[node] = plus(rows[node], inertia * speed[node], speed)
+    mass, mass_prescribed = columns.split(list(rows.values()))
     return {
-        "basis": [_floats(row) for row in made.basis],
-        "basis_prescribed": [_floats(row) for row in made.basis_prescribed],
-        "inertia": _floats(model.inertia),
-        "mass": [_floats(row) for row in mass],
-        "mass_prescribed": [_floats(row) for row in coupled],
-        "massless": made.massless,
+        "basis": basis,
+        "basis_prescribed": basis_prescribed,
+        "inertia": [float(inertia) for inertia in model.inertia],
+        "mass": mass,
+        "mass_prescribed": mass_prescribed,
+        "massless": [node in made.massless for node in made.independent],
         "initial_angle": [node.angle for node in model.nodes],
     }
 
 
-def _rates(model: Model, made: Kinematics, role: Role, prefix: str) -> dict[str, Any]:
-    rates = [made.rate(direction(model, component)) for component in model.role(role)]
+def _rates(model: Model, made: Kinematics, columns: Columns, role: Role, prefix: str) -> dict[str, Any]:
+    rates, prescribed = columns.split([made.over(row) for c, row in model.acting if c.role is role])
     return {
-        f"{prefix}_rate": [_floats(rate) for rate, _ in rates],
-        f"{prefix}_rate_prescribed": [_floats(pushed) for _, pushed in rates],
+        f"{prefix}_rate": rates,
+        f"{prefix}_rate_prescribed": prescribed,
         f"{prefix}_kind": [kinds(role).index(component.kind) for component in model.role(role)],
     }
 
 
-def _elements(model: Model, made: Kinematics, pools: Pools, wires: Wires) -> dict[str, Any]:
-    arrays = _rates(model, made, Role.TORQUE, "element")
+def _elements(model: Model, pools: Pools, wires: Wires) -> dict[str, Any]:
     params, offsets, refs, states = list[int](), list[int](), list[int](), list[float]()
     for element in model.role(Role.TORQUE):
         params.append(pools.add(element, element.name))
         offsets.append(len(states))
         refs.append(wires.connect(element))
         states += element.initial_states() if element.states else ()
-    return arrays | {
+    return {
         "element_param": params,
         "element_state": offsets,
         "element_input": refs,
@@ -201,10 +216,10 @@ def _elements(model: Model, made: Kinematics, pools: Pools, wires: Wires) -> dic
     }
 
 
-def _contacts(model: Model, made: Kinematics, pools: Pools, wires: Wires) -> dict[str, Any]:
+def _contacts(model: Model, pools: Pools, wires: Wires) -> dict[str, Any]:
     contacts = model.role(Role.CONTACT)
     laws = kinds(Role.LAW)
-    return _rates(model, made, Role.CONTACT, "contact") | {
+    return {
         "contact_param": [pools.add(contact, contact.name) for contact in contacts],
         "contact_input": [wires.connect(contact) for contact in contacts],
         "contact_law": [laws.index(contact.friction.kind) for contact in contacts],
@@ -239,15 +254,10 @@ def _signals(wires: Wires) -> dict[str, Any]:
 
 
 def _gears(model: Model) -> Iterable[Gearing]:
-    places = model.index()
     for gear in model.role(Role.GEAR):
         joined = ports(gear)
         for row in gear.rows():
-            yield Gearing(gear, {port: (places.get(id(joined[port]), -1), float(c)) for port, c in row.items()})
-
-
-def _floats(row: Row) -> list[float]:
-    return [float(value) for value in row]
+            yield Gearing(gear, {port: (model.index.get(id(joined[port]), -1), float(c)) for port, c in row.items()})
 
 
 def _shaped(arrays: Mapping[str, Any], model: Model, made: Kinematics) -> dict[str, Array]:
@@ -258,8 +268,3 @@ def _shaped(arrays: Mapping[str, Any], model: Model, made: Kinematics) -> dict[s
         lengths = [size if isinstance(size, int) else sizes.get(size, len(arrays[name])) for size in shape]
         shaped[name] = np.array(arrays[name], dtype=TYPES[kind]).reshape(lengths)
     return shaped
-
-
-def states(system: System) -> list[tuple[Component, str, str]]:
-    """Owner, name and unit of every continuous state, in order."""
-    return [(element, state.name, state.unit) for element in system.elements for state in element.states]  # type: ignore[attr-defined]

@@ -102,9 +102,13 @@ def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not isfinite(number):
         yield at.problem("must be finite", value=shown, remedy="give a number")
     elif not spec.allows(number):
-        yield at.problem(f"must be {spec.bound} {at.unit}".rstrip(), value=shown, remedy=f"{spec.doc}: check its sign")
+        yield at.problem(f"must be {spec.bound} {at.unit}".rstrip(), value=shown, remedy=_meaning(spec))
     elif spec.whole and number != int(number):
-        yield at.problem("must be a whole number", value=shown, remedy=f"{spec.doc}: give a count")
+        yield at.problem("must be a whole number", value=shown, remedy=_meaning(spec))
+
+
+def _meaning(spec: Spec) -> str:
+    return f"it is the {spec.doc}" if spec.doc else "correct it"
 
 
 def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:

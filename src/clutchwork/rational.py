@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
-Row = list[Fraction]
+# column -> value; what is not there is zero
+Row = dict[int, Fraction]
+ZERO = Fraction(0)
+ONE = Fraction(1)
 
 
 def exact(value: float | Fraction) -> Fraction:
@@ -17,44 +19,77 @@ def exact(value: float | Fraction) -> Fraction:
     return value if isinstance(value, Fraction) else Fraction(repr(float(value)))
 
 
-@dataclass(frozen=True)
-class Reduced:
-    """Rows after elimination.
+def plus(row: Mapping[int, Fraction], factor: Fraction, other: Mapping[int, Fraction]) -> Row:
+    """Sum of row + factor * other, without zeros."""
+    made = dict(row)
+    for column, value in other.items():
+        total = made.get(column, ZERO) + factor * value
+        if total:
+            made[column] = total
+        else:
+            made.pop(column, None)
+    return made
 
-    `pivots[i]` is the column that `rows[i]` solves for: its entry there is 1, and 0 in all other rows.
-    `origin[i]` says which sum of the given rows it is; `spare` are the sums that came out as zero.
+
+class Echelon:
+    """Linear rows, each solved for one column: there its entry is 1, and 0 in all other rows.
+
+    Columns are solved for in the order that is given; columns that are not in it never are.
     """
 
-    rows: list[Row]
-    pivots: list[int]
-    origin: list[Row]
-    spare: list[Row]
+    def __init__(self, order: Iterable[int]) -> None:
+        """Start without rows."""
+        self.solved: dict[int, Row] = {}
+        self.origin: dict[int, Row] = {}  # of each solved row: the sum of added rows that it is
+        self.spare: list[tuple[Row, Row]] = []  # sums of added rows without a column to solve for, and what they left
+        self._rank = {column: place for place, column in enumerate(order)}
+        self._added = 0
+
+    def add(self, row: Mapping[int, Fraction]) -> None:
+        """Add a row and solve it for the first column that is left in it."""
+        rest, origin = self._replaced(row, {self._added: ONE})
+        self._added += 1
+        columns = [column for column in rest if column in self._rank]
+        if not columns:
+            self.spare.append((origin, rest))
+            return
+        column = min(columns, key=self._rank.__getitem__)
+        scale = 1 / rest[column]
+        rest, origin = plus({}, scale, rest), plus({}, scale, origin)
+        for other, solved in self.solved.items():
+            factor = solved.get(column)
+            if factor:
+                self.solved[other] = plus(solved, -factor, rest)
+                self.origin[other] = plus(self.origin[other], -factor, origin)
+        self.solved[column], self.origin[column] = rest, origin
+
+    def rest(self, row: Mapping[int, Fraction]) -> Row:
+        """What is left of a row when all solved columns have been replaced."""
+        return self._replaced(row, {})[0]
+
+    def _replaced(self, row: Mapping[int, Fraction], origin: Row) -> tuple[Row, Row]:
+        rest = dict(row)
+        for column, factor in row.items():
+            if column in self.solved:
+                rest = plus(rest, -factor, self.solved[column])
+                origin = plus(origin, -factor, self.origin[column])
+        return rest, origin
 
 
-def eliminate(rows: Sequence[Sequence[Fraction]], order: Sequence[int]) -> Reduced:
-    """Gauss-Jordan elimination that solves for the columns in the given order where it can."""
-    table = [list(row) for row in rows]
-    origin = [[Fraction(int(i == j)) for j in range(len(table))] for i in range(len(table))]
-    pivots: list[int] = []
-    for column in order:
-        done = len(pivots)
-        found = next((i for i in range(done, len(table)) if table[i][column]), None)
-        if found is None:
-            continue
-        for side in (table, origin):
-            side[done], side[found] = side[found], side[done]
-        scale = table[done][column]
-        table[done] = [x / scale for x in table[done]]
-        origin[done] = [x / scale for x in origin[done]]
-        for i in range(len(table)):
-            factor = table[i][column]
-            if i != done and factor:
-                table[i] = _minus(table[i], factor, table[done])
-                origin[i] = _minus(origin[i], factor, origin[done])
-        pivots.append(column)
-    rank = len(pivots)
-    return Reduced(table[:rank], pivots, origin[:rank], origin[rank:])
+def eliminate(rows: Iterable[Mapping[int, Fraction]], order: Iterable[int]) -> Echelon:
+    """Solve rows for the columns in the given order where they can be."""
+    echelon = Echelon(order)
+    for row in rows:
+        echelon.add(row)
+    return echelon
 
 
-def _minus(row: Row, factor: Fraction, other: Row) -> Row:
-    return [a - factor * b if b else a for a, b in zip(row, other, strict=True)]
+def smallest(rows: Sequence[Row], target: Row) -> list[int]:
+    """A smallest set of rows that the target is a sum of: drop every row that it does not need."""
+    columns = sorted({column for row in (*rows, target) for column in row})
+    keep = list(range(len(rows)))
+    for number in list(keep):
+        fewer = [other for other in keep if other != number]
+        if not eliminate((rows[other] for other in fewer), columns).rest(target):
+            keep = fewer
+    return keep

@@ -1,0 +1,63 @@
+"""Independent speeds at the start from the speeds that were given."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from clutchwork.errors import Problem
+from clutchwork.node import Domain
+from clutchwork.rational import ONE, ZERO, Echelon, Row, exact, smallest
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from fractions import Fraction
+
+    from clutchwork.structure import Kinematics, Model
+
+# speeds that were rounded when they were written may differ by this share
+ROUNDING = exact(1e-6)
+# column of the right-hand side
+KNOWN = -1
+
+
+def initial_speeds(model: Model, made: Kinematics, prescribed: Sequence[float]) -> tuple[list[Fraction], list[Problem]]:
+    """Speeds of the independent nodes, and given speeds that contradict each other.
+
+    A shaft without a given speed takes the one that follows from the others; what is free starts at rest, in the
+    order in which the shafts were added.
+    """
+    inputs = {len(model.nodes) + number: exact(speed) for number, speed in enumerate(prescribed)}
+    given = {node: speed for node, speed in enumerate(model.speed) if speed is not None and node not in made.loose}
+    slack = ROUNDING * max([ONE, *map(abs, given.values())])
+    echelon, used, problems = Echelon(made.independent), dict[int, Row](), list[Problem]()
+    for node in (*given, *(node for node in range(len(model.nodes)) if node not in given)):
+        row = _row(made.speeds[node], inputs, given.get(node, ZERO))
+        rest = echelon.rest(row)
+        if rest.keys() - {KNOWN}:
+            echelon.add(row)
+            used[node] = row
+        elif node in given and abs(rest.get(KNOWN, ZERO)) > slack:
+            problems.append(_problem(model, used, node, row, rest[KNOWN]))
+    return [echelon.solved[node].get(KNOWN, ZERO) for node in made.independent], problems
+
+
+def _row(speed: Row, inputs: dict[int, Fraction], value: Fraction) -> Row:
+    """Node speed over the independent ones = value, with the prescribed inputs on the right."""
+    row = {column: factor for column, factor in speed.items() if column not in inputs}
+    known = value - sum((factor * inputs[column] for column, factor in speed.items() if column in inputs), ZERO)
+    return {**row, KNOWN: known} if known else row
+
+
+def _problem(model: Model, used: dict[int, Row], node: int, row: Row, excess: Fraction) -> Problem:
+    unit = "m/s" if model.nodes[node].domain is Domain.TRANSLATION else "rad/s"
+    kinematic = [{column: value for column, value in other.items() if column != KNOWN} for other in used.values()]
+    target = {column: value for column, value in row.items() if column != KNOWN}
+    guilty = [model.node_label(list(used)[place]) for place in smallest(kinematic, target)]
+    speed = model.speed[node] or ZERO
+    message = (
+        f"contradicts the initial speed of {' and '.join(guilty)}, which gives {float(speed - excess):.9g} {unit}"
+        if guilty
+        else f"contradicts the prescribed speeds, which give {float(speed - excess):.9g} {unit}"
+    )
+    remedy = "correct one of them, or leave this one out and it follows from the others"
+    return Problem(model.node_label(node), "speed", message, f"{float(speed):g} {unit}", remedy)
