@@ -24,7 +24,7 @@ import json
 import os
 import re
 from collections.abc import Mapping
-from dataclasses import MISSING
+from dataclasses import MISSING, replace
 from pathlib import Path
 from typing import Any
 
@@ -191,7 +191,7 @@ class Reader:
 
     def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
         """Values of the fields of a declaration, in SI; mistakes are reported."""
-        known = {item.name: spec for item, spec in specs(cls)}
+        known = {item.name: _with_gain(item.name, spec, cls, entry) for item, spec in specs(cls)}
         self._unknown({key: entry[key] for key in entry if key not in taken}, known, at)
         values = {
             key: self._value(entry[key], spec, at.inner(key, at.unit if spec.unit == "*" else spec.unit))
@@ -271,6 +271,12 @@ class Reader:
                 if made[key] is not BROKEN:
                     self.problems += _simulation_problems(made[key], spec, place)
         return made
+
+
+def _with_gain(name: str, spec: Spec, cls: type, entry: Mapping[str, Any]) -> Spec:
+    """The spec of a gain with only the units that fit what it multiplies: a pressure or a force."""
+    gains = [other.gain for item, other in specs(cls) if other.gain and item.name in entry]
+    return replace(spec, unit=gains[0][0], units=gains[0][1:]) if name == "gain" and len(gains) == 1 else spec
 
 
 def _simulation_problems(value: Any, spec: Spec, at: At) -> list[Problem]:

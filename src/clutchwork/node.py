@@ -70,7 +70,11 @@ class Signal:
     """A value over time in the unit of the quantity that it drives."""
 
     def segments(self) -> tuple[Segment, ...]:
-        """Pieces in order of their start; the first holds for all earlier times too."""
+        """Pieces in order of their start.
+
+        The first one starts at or before t = 0; where the pieces repeat it may start later, and until then the
+        signal rests at the value with which the last one starts.
+        """
         raise NotImplementedError
 
     def repeats(self) -> float:
@@ -82,5 +86,6 @@ class Signal:
 SignalLike: TypeAlias = "float | Signal"
 # (x, y) pairs of a curve
 Points: TypeAlias = "Sequence[tuple[float, float]]"
-# what the gain of a contact may be in, besides m3 for a pressure: per N or per share, on shafts or on masses
-GAIN_UNITS = ("m", "m2", "N m", "N", "1")
+# units of the gain of a contact, on shafts and on masses: torque or force per pressure, per force, per share
+GAIN_OF_PRESSURE = ("m3", "m2")
+GAIN_OF_FORCE = ("m", "1", "N m", "N")

@@ -74,7 +74,7 @@ def curve_in_si(value: Any, spec: Spec, unit: str) -> Any:
         raise QuantityError(
             "must be a list of points", repr(dict(value)), "write {points = [[x, y], ...], unit_x, unit}"
         )
-    x = factor_to_si(value["unit_x"], spec.unit_x) if "unit_x" in value else 1.0
+    x = factor_to_si(value["unit_x"], spec.unit_x, spec.units_x) if "unit_x" in value else 1.0
     y = factor_to_si(value["unit"], unit, spec.units) if "unit" in value else 1.0
     pairs = _pairs(value["points"])
     numbers = all(isinstance(v, int | float) and not isinstance(v, bool) for pair in pairs for v in pair)

@@ -51,9 +51,11 @@ class Spec:
     below: float | None = None
     at_most: float | None = None
     unit_x: str = ""
+    units_x: tuple[str, ...] = ()
     units: tuple[str, ...] = ()  # further SI units that the quantity may have
     domain: str = ""  # of a port: "rotation" or "translation"; empty: the same as its fellow ports
     instead_of: str = ""  # of an alternative: the signal that it stands for
+    gain: tuple[str, ...] = ()  # of a signal: units that the parameter `gain` has when it is given
     otherwise: float | None = None  # of a signal: its value when neither it nor its alternative is given
     flag: bool = False  # true or false in Python, 1 or 0 in the core
     whole: bool = False  # a whole number
@@ -113,11 +115,14 @@ def curve(
     doc: str,
     *,
     units: tuple[str, ...] = (),
+    units_x: tuple[str, ...] = (),
     rising: str = "strictly",
     kw_only: bool = True,
 ) -> Any:
     """A piecewise linear function as (x, y) points with x increasing: a `Curve` of the C++ `Params`."""
-    return _field(Spec("curve", unit_y, doc, unit_x=unit_x, units=units, rising=rising), MISSING, kw_only)
+    return _field(
+        Spec("curve", unit_y, doc, unit_x=unit_x, units=units, units_x=units_x, rising=rising), MISSING, kw_only
+    )
 
 
 def signal(
@@ -126,6 +131,7 @@ def signal(
     *,
     default: float | None = MISSING,  # type: ignore[assignment]
     units: tuple[str, ...] = (),
+    gain: tuple[str, ...] = (),
     instead_of: str = "",
     otherwise: float | None = None,
 ) -> Any:
@@ -135,7 +141,7 @@ def signal(
     none where that signal has a value `otherwise`.
     """
     what = "alternative" if instead_of else "signal"
-    spec = Spec(what, unit, doc, default is None, units=units, instead_of=instead_of, otherwise=otherwise)
+    spec = Spec(what, unit, doc, default is None, units=units, gain=gain, instead_of=instead_of, otherwise=otherwise)
     return _field(spec, default)
 
 
@@ -151,10 +157,11 @@ def option(
     default: float | None = MISSING,  # type: ignore[assignment]
     above: float | None = None,
     at_least: float | None = None,
+    units: tuple[str, ...] = (),
     flag: bool = False,
 ) -> Any:
     """A setting that the assembly reads and the equations do not: no part of the C++ `Params`."""
-    return _field(Spec("option", unit, doc, default is None, above, at_least, flag=flag), default)
+    return _field(Spec("option", unit, doc, default is None, above, at_least, units=units, flag=flag), default)
 
 
 def text(doc: str, *, default: str = MISSING, kw_only: bool = True) -> Any:  # type: ignore[assignment]

@@ -17,7 +17,9 @@ def value(signal: Signal, time: float) -> float:
     if not pieces:
         return 0.0
     first = pieces[0].start
-    if period > 0.0 and time > first:
+    if period > 0.0 and time < first:
+        return piece_value(pieces[-1], pieces[-1].start)
+    if period > 0.0:
         time = first + (time - first) % period
     piece = next((piece for piece in reversed(pieces) if piece.start <= time), pieces[0])
     return piece_value(piece, time)

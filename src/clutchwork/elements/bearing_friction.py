@@ -18,5 +18,7 @@ class BearingFriction(Component):
     base: Node | None = port("member that takes the reaction", default=None)
     friction: Law = law("friction coefficient over slip, static coefficient at rest")
     torque: float = param("N m", "torque per unit of coefficient", above=0.0, units=("N",))
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
+    tolerance: float = option(
+        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+    )
     locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.node import GAIN_UNITS, Component, Law, Node, SignalLike
+from clutchwork.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Component, Law, Node, SignalLike
 from clutchwork.schema import Role, component, law, option, param, port, signal
 
 
@@ -18,10 +18,14 @@ class Clutch(Component):
     base: Node = port("side that the slip is counted from")
     follower: Node = port("side whose motion counts positive: slip = follower - base")
     friction: Law = law("friction coefficient over slip, static coefficient at rest")
-    gain: float = param("m3", "torque per unit of pressure and coefficient", above=0.0, units=GAIN_UNITS)
-    pressure: SignalLike | None = signal("Pa", "pressure on the piston", default=None)
-    normal_force: SignalLike | None = signal(
-        "N", "force on the linings, or its share", default=None, units=("1",), instead_of="pressure"
+    gain: float = param(
+        "m3", "torque per unit of pressure and coefficient", above=0.0, units=GAIN_OF_FORCE + GAIN_OF_PRESSURE
     )
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
+    pressure: SignalLike | None = signal("Pa", "pressure on the piston", default=None, gain=GAIN_OF_PRESSURE)
+    normal_force: SignalLike | None = signal(
+        "N", "force on the linings, or its share", default=None, units=("1",), gain=GAIN_OF_FORCE, instead_of="pressure"
+    )
+    tolerance: float = option(
+        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+    )
     locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)

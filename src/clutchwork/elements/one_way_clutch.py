@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from clutchwork.laws.coulomb import Coulomb
-from clutchwork.node import GAIN_UNITS, Component, Law, Node, SignalLike
+from clutchwork.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Component, Law, Node, SignalLike
 from clutchwork.schema import Role, component, law, option, param, port, signal
 
 
@@ -18,12 +18,20 @@ class OneWayClutch(Component):
     base: Node = port("side that the slip is counted from")
     follower: Node = port("side that may run ahead: slip = follower - base is never negative")
     friction: Law = law("friction of the clutch in parallel", default=Coulomb(static=0.1, kinetic=0.1))
-    gain: float = param("m3", "torque per unit of pressure and coefficient", default=1.0, above=0.0, units=GAIN_UNITS)
+    gain: float = param(
+        "m3",
+        "torque per unit of pressure and coefficient",
+        default=1.0,
+        above=0.0,
+        units=GAIN_OF_FORCE + GAIN_OF_PRESSURE,
+    )
     pressure: SignalLike | None = signal(
-        "Pa", "pressure on the clutch in parallel, 0 by default", default=None, otherwise=0.0
+        "Pa", "pressure on the clutch in parallel, 0 by default", default=None, gain=GAIN_OF_PRESSURE, otherwise=0.0
     )
     normal_force: SignalLike | None = signal(
-        "N", "force on the linings, or its share", default=None, units=("1",), instead_of="pressure"
+        "N", "force on the linings, or its share", default=None, units=("1",), gain=GAIN_OF_FORCE, instead_of="pressure"
     )
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
+    tolerance: float = option(
+        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+    )
     locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)

@@ -14,7 +14,15 @@ class CoefficientTable(Law):
     """
 
     static: float = param("1", "coefficient at rest", at_least=0.0)
-    kinetic: Points = curve("rad/s", "1", "kinetic coefficient over abs(slip)")
+    kinetic: Points = curve("rad/s", "1", "kinetic coefficient over abs(slip)", units_x=("m/s",))
+
+    def problems(self) -> list[tuple[str, str, str]]:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        for number, (x, y) in enumerate(self.kinetic, 1):
+            if x < 0.0 or y < 0.0:
+                fault = f"point {number} is ({x:g}, {y:g})"
+                return [("kinetic", fault, "give coefficients >= 0 over abs(slip) >= 0")]
+        return []
 
     def sliding(self) -> float:
         """Kinetic coefficient at vanishing slip."""

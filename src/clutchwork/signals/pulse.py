@@ -23,9 +23,8 @@ class Pulse(Signal):
         return [("width", f"is {self.width:g} s, not below period = {self.period:g} s", "shorten the pulse")]
 
     def segments(self) -> tuple[Segment, ...]:
-        """A low piece and a high one, repeated; low comes first, so it holds before the first pulse too."""
-        low = self.start - (self.period - self.width)
-        return (Segment(low, self.offset), Segment(self.start, self.offset + self.height))
+        """The pulse and the pause after it, repeated; before the first pulse the pause holds."""
+        return (Segment(self.start, self.offset + self.height), Segment(self.start + self.width, self.offset))
 
     def repeats(self) -> float:
         """Period [s]."""
