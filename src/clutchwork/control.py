@@ -80,6 +80,9 @@ class Control:
         """Set the inputs that are due; False when there is nothing to do."""
         if time not in self.log:
             self.log[time] = self._decide(run, time)
+        elif self.log[time]:
+            # a repetition takes the same path through the core
+            run.row()
         for index, value in self.log[time]:
             run.set_input(index, value)
         return bool(self.log[time])

@@ -61,11 +61,11 @@ class EnergyBalance:
 
     def __str__(self) -> str:
         """A table for reading."""
-        lines = [(f"  {name}", f"{work:.3f}") for name, work in self.sources.items()]
+        lines = [(f"  {name}", f"{work:.3f}") for name, work in self.sources.items() if work]
         lines.insert(0, ("work of sources", f"{self.input:.3f}"))
         lines += [("kinetic energy, change", f"{self.kinetic:.3f}"), ("elastic energy, change", f"{self.elastic:.3f}")]
         lines += [("heat", f"{sum(self.heat.values()):.3f}")]
-        lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.heat.items()]
+        lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.heat.items() if heat]
         lines += [("lost in impulses", f"{self.impulses:.3f}")] if self.impulses else []
         share = self.residual / self.turnover if self.turnover else 0.0
         lines += [("residual", f"{self.residual:.3e}"), ("residual / turnover", f"{share:.1e}")]
@@ -82,9 +82,9 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
         if is_source(branch):
             sources[branch.name] = work
         elif is_lossy(branch):
-            heat[branch.name] = -work - stored
+            heat[branch.name] = 0.0 - work - stored
     sources |= {branch.name: work for branch, work in _works(wiring, ends, "prescribed_work", wiring.motions)}
-    heat |= {branch.name: -work for branch, work in _works(wiring, ends, "contact_work", wiring.contacts)}
+    heat |= {branch.name: 0.0 - work for branch, work in _works(wiring, ends, "contact_work", wiring.contacts)}
     return EnergyBalance(sources, _kinetic(wiring, ends), elastic, heat, _impulses(events))
 
 

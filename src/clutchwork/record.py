@@ -18,13 +18,16 @@ Progress = Callable[[float, float], None]
 
 FIRST_CHUNK = 512
 LARGEST_CHUNK = 16_384
+# a longer grid is cut into stretches, so that progress can be told and Ctrl-C is heard
+LONG_GRID = 100_000
 
 
 class Recording:
     """What a run has written so far."""
 
-    def __init__(self, run: Any) -> None:
+    def __init__(self, run: Any, row_size: int) -> None:
         self.run = run
+        self.row_size = row_size
         self.status = DONE
         self.core_seconds = 0.0
         self._times: list[Array] = []
@@ -32,7 +35,7 @@ class Recording:
         self._events: list[Array] = []
 
     def advance(self, stop: float, times: Array, rows: Array, first: int, steps: bool) -> int:
-        """Let the core run; the number of rows that are filled."""
+        """Let the core run; the number of rows that it added."""
         started = perf_counter()
         self.status, filled = self.run.advance(stop, times, rows, first, steps)
         self.core_seconds += perf_counter() - started
@@ -55,7 +58,7 @@ class Recording:
     @property
     def rows(self) -> Array:
         """Output rows, shape (instants, row size)."""
-        return np.concatenate(self._rows) if self._rows else np.empty((0, len(self.run.row())))
+        return np.concatenate(self._rows) if self._rows else np.empty((0, self.row_size))
 
     @property
     def events(self) -> Array:
@@ -69,7 +72,7 @@ def record(recording: Recording, t_end: float, grid: Array | None, control: Cont
     for stop in control.stops(t_end):
         acted = control.act(recording.run, begin)
         if grid is None:
-            _steps(recording, stop, t_end, begin > 0.0 and acted, progress)
+            _steps(recording, stop, t_end, acted, progress)
         else:
             _grid(recording, stop, t_end, _part(grid, begin, stop, stop == t_end), progress)
         if recording.status != DONE:
@@ -80,12 +83,16 @@ def record(recording: Recording, t_end: float, grid: Array | None, control: Cont
 def _steps(recording: Recording, stop: float, t_end: float, acted: bool, progress: Progress | None) -> None:
     """Record every step of the solver, in buffers that grow."""
     run, size = recording.run, FIRST_CHUNK
+    skip_at = -1.0
     if acted:
-        recording.add(np.array([run.time]), np.array(run.row()).reshape(1, -1))
+        # the right limit after the controllers; the core may give it once more
+        skip_at = run.time
+        recording.add(np.array([skip_at]), np.array(run.row()).reshape(1, -1))
     while True:
-        times, rows = np.empty(size), np.empty((size, len(run.row())))
+        times, rows = np.empty(size), np.empty((size, recording.row_size))
         filled = recording.advance(stop, times, rows, 0, True)
-        recording.add(times[:filled].copy(), rows[:filled].copy())
+        first = int(np.searchsorted(times[:filled], skip_at, "right"))
+        recording.add(times[first:filled].copy(), rows[first:filled].copy())
         if progress is not None:
             progress(run.time, t_end)
         if recording.status not in (ROWS_FULL, EVENTS_FULL):
@@ -95,16 +102,26 @@ def _steps(recording: Recording, stop: float, t_end: float, acted: bool, progres
 
 def _grid(recording: Recording, stop: float, t_end: float, times: Array, progress: Progress | None) -> None:
     """Record the given instants, all of them up to the stop."""
-    run, filled = recording.run, 0
-    rows = np.empty((len(times), len(run.row())))
-    while True:
-        filled = recording.advance(stop, times, rows, filled, False)
+    cuts = range(LARGEST_CHUNK, len(times), LARGEST_CHUNK) if len(times) > LONG_GRID else ()
+    first = 0
+    for cut in cuts:
+        _stretch(recording, float(times[cut]), times[first:cut])
         if progress is not None:
-            progress(run.time, t_end)
+            progress(recording.run.time, t_end)
+        if recording.status != DONE:
+            return
+        first = cut
+    _stretch(recording, stop, times[first:])
+
+
+def _stretch(recording: Recording, stop: float, times: Array) -> None:
+    rows, filled = np.empty((len(times), recording.row_size)), 0
+    while True:
+        filled += recording.advance(stop, times, rows, filled, False)
         if recording.status not in (ROWS_FULL, EVENTS_FULL):
-            break
+            recording.add(times[:filled], rows[:filled])
+            return
         recording.add(times[:0], rows[:0])
-    recording.add(times[:filled], rows[:filled])
 
 
 def _part(grid: Array, begin: float, stop: float, last: bool) -> Array:

@@ -24,6 +24,7 @@ def run_text(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
     parts = [event_text(run.events)]
     if phases and shafts is not None:
         parts.append(phase_text(phases, shafts))
+        parts += change_text(phases, shafts)
     if run.options.work:
         parts.append(str(run.energy))
     parts.append(effort_text(run))
@@ -44,6 +45,16 @@ def phase_text(phases: Sequence[Phase], shafts: tuple[str, str]) -> str:
         for p in phases[:MOST_LINES]
     ]
     return columns([head, *lines], right={0, 1, 3, 4})
+
+
+def change_text(phases: Sequence[Phase], shafts: tuple[str, str]) -> list[str]:
+    """The ratio of the first and of the last gear, when there are two."""
+    known = [phase for phase in phases if phase.kinematic is not None and math.isfinite(phase.kinematic)]
+    if len(known) < 2:
+        return []
+    gears, seen = ([number(getattr(known[k], name)) for k in (0, -1)] for name in ("kinematic", "measured"))
+    ratio = f"ratio {shafts[0]}/{shafts[1]}"
+    return [f"{ratio} before and after: {' -> '.join(seen)} at the ends of the phases, {' -> '.join(gears)} by gears"]
 
 
 def effort_text(run: Trajectory) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,16 +14,27 @@ from clutchwork.channels import Channels
 from clutchwork.control import Control, controllers
 from clutchwork.events import from_rows
 from clutchwork.failure import DONE, NAMES, SimulationError, StoppedEarly, explain
+from clutchwork.jumps import jump_times
 from clutchwork.options import Options, end_time
 from clutchwork.record import Progress, Recording, record
 from clutchwork.system import System
 from clutchwork.trajectory import Trajectory
-from clutchwork.wiring import wiring
+from clutchwork.wiring import row_columns, wiring
 
 if TYPE_CHECKING:
     from clutchwork.driveline import Driveline
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run that is wanted."""
+
+    system: System
+    t_end: float
+    options: Options
+    control: Control
 
 
 def simulate(
@@ -45,20 +57,21 @@ def simulate(
     chosen = (options or Options()).changed(changes)
     system = model if isinstance(model, System) else model.assemble()
     control = Control(controllers(system.inputs), lambda: Channels(wiring(system)))
-    return _run(system, t_end, chosen, control, progress)
+    return _trajectory(Job(system, t_end, chosen, control), progress)
 
 
 def again(trajectory: Trajectory, times: Any) -> Trajectory:
     """Repeat a run on other instants [s]; what controllers decided is replayed, not asked for again."""
     instants = np.sort(np.atleast_1d(np.asarray(times, dtype=float)))
     options = trajectory.options.changed({"times": instants, "dt": None})
-    return _run(trajectory.system, trajectory.t_end, options, trajectory.control, None)
+    return _trajectory(Job(trajectory.system, trajectory.t_end, options, trajectory.control), None)
 
 
-def _run(system: System, t_end: float, options: Options, control: Control, progress: Progress | None) -> Trajectory:
+def _trajectory(job: Job, progress: Progress | None) -> Trajectory:
+    """Run, and tell how it ended."""
     started = time.perf_counter()
-    recording, failure = _collect(system, t_end, options, control, progress)
-    made = _trajectory(system, t_end, options, control, recording, time.perf_counter() - started)
+    recording, failure = _collect(job, progress)
+    made = _named(job, recording, time.perf_counter() - started)
     if failure is not None:
         raise SimulationError(str(failure), made) from failure.__cause__
     if not made.finished:
@@ -66,31 +79,31 @@ def _run(system: System, t_end: float, options: Options, control: Control, progr
     return made
 
 
-def _collect(
-    system: System, t_end: float, options: Options, control: Control, progress: Progress | None
-) -> tuple[Recording, SimulationError | None]:
+def _collect(job: Job, progress: Progress | None) -> tuple[Recording, SimulationError | None]:
     """Record a run; smooth output repeats it on a grid that is known to hold every step and event."""
-    data = system.to_bytes()
-    grid = options.grid(t_end)
-    first, failure = _once(data, t_end, options, grid, control, progress)
-    if grid is None and options.output == "smooth" and failure is None:
-        finer = refined(first.times, t_end / options.points)
-        if finer.size > first.times.size:
-            second, failure = _once(data, t_end, options, finer, control, None)
-            second.core_seconds = first.core_seconds
-            return second, failure
-    return first, failure
+    data, grid = job.system.to_bytes(), job.options.grid(job.t_end)
+    first, failure = _once(job, data, grid, progress)
+    if grid is not None or job.options.output != "smooth" or failure is not None:
+        return first, failure
+    spacing = job.t_end / job.options.points
+    finer = refined(first.times, spacing, jump_times(job.system.inputs, job.t_end))
+    if finer.size == first.times.size:
+        return first, None
+    second, failure = _once(job, data, finer, None)
+    second.core_seconds = first.core_seconds
+    return second, failure
 
 
 def _once(
-    data: bytes, t_end: float, options: Options, grid: Array | None, control: Control, progress: Progress | None
+    job: Job, data: bytes, grid: Array | None, progress: Progress | None
 ) -> tuple[Recording, SimulationError | None]:
     run = new_run(data)
-    for name, value in options.core_options().items():
+    for name, value in job.options.core_options().items():
         run.set_option(name, value)
-    recording = Recording(run)
+    row_size = max(part.stop for part in row_columns(job.system.counts).values())
+    recording = Recording(run, row_size)
     try:
-        record(recording, t_end, grid, control, progress)
+        record(recording, job.t_end, grid, job.control, progress)
     except SimulationError as error:
         return recording, error
     return recording, None
@@ -103,19 +116,24 @@ def new_run(data: bytes) -> Any:
     return _core.Run(data)
 
 
-def refined(times: Array, spacing: float) -> Array:
-    """Instants with more between them where they lie further apart than the spacing; doubled instants stay."""
-    gaps = np.diff(times)
+def refined(steps: Array, spacing: float, jumps: Array) -> Array:
+    """The solver's steps with more instants where they lie further apart than the spacing.
+
+    An instant that stands twice stays so; where a signal jumps it is made to stand twice.
+    """
+    gaps = np.diff(steps)
     parts = np.maximum(1, np.ceil(gaps / spacing - 1e-9)).astype(int)
-    left, width = np.repeat(times[:-1], parts), np.repeat(gaps / parts, parts)
+    left, width = np.repeat(steps[:-1], parts), np.repeat(gaps / parts, parts)
     number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-    return np.append(left + number * width, times[-1:])
+    grid = np.append(left + number * width, steps[-1:])
+    reached = jumps[jumps < grid[-1]] if grid.size else jumps[:0]
+    present = np.searchsorted(grid, reached, "right") - np.searchsorted(grid, reached, "left")
+    return np.sort(np.concatenate([grid, np.repeat(reached, np.maximum(0, 2 - present))]))
 
 
-def _trajectory(
-    system: System, t_end: float, options: Options, control: Control, recording: Recording, seconds: float
-) -> Trajectory:
-    run, status = recording.run, recording.status
+def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
+    """The numbers of a run with the names of its system."""
+    run, status, system = recording.run, recording.status, job.system
     message = ""
     if status != DONE:
         index, at, value = run.detail()
@@ -123,13 +141,13 @@ def _trajectory(
         message = explain(status, parts[index].name if 0 <= index < len(parts) else "", at, value)
     return Trajectory(
         system=system,
-        options=options,
-        t_end=t_end,
+        options=job.options,
+        t_end=job.t_end,
         time=recording.times,
         rows=recording.rows,
         events=from_rows(recording.events, [contact.name for contact in system.contacts]),
         status=NAMES[status],
         message=message,
-        control=control,
+        control=job.control,
         statistics={**run.statistics(), "core_seconds": recording.core_seconds, "seconds": seconds},
     )

@@ -49,9 +49,9 @@ class FakeRun:
             n += 1
         while self.time < t_end:
             if n + 2 > min(len(times), self.room):
-                return ROWS_FULL, n
+                return ROWS_FULL, n - first
             if self.time >= self.fail_at:
-                return 4, n
+                return 4, n - first
             before = self.time
             self._go(min(t_end, self.time + self.STEP, self.EVENT_AT if before < self.EVENT_AT else t_end))
             times[n], rows[n] = self.time, self.row()
@@ -60,7 +60,7 @@ class FakeRun:
                 self._events.append([self.time, 0, 1, 0, 1, 0.0, -1.0, -2.0, 3.0, 3.0])
                 times[n], rows[n] = self.time, self.row()
                 n += 1
-        return DONE, n
+        return DONE, n - first
 
     def _grid(self, t_end: float, times: np.ndarray, rows: np.ndarray, first: int) -> tuple[int, int]:
         n = first
@@ -70,9 +70,9 @@ class FakeRun:
             n += 1
             if self.time >= self.EVENT_AT and not self.stalled and n < len(times) and self.room < 100:
                 self.stalled, self.room = True, 10_000
-                return EVENTS_FULL, n
+                return EVENTS_FULL, n - first
         self._go(t_end)
-        return DONE, n
+        return DONE, n - first
 
     def _go(self, time: float) -> None:
         self.x += self.rate * (time - self.time)

@@ -22,7 +22,7 @@ def channels() -> Any:
 
 
 def recorded(run: Any, t_end: float, grid: np.ndarray | None = None, *controllers: Controller) -> Recording:
-    recording = Recording(run)
+    recording = Recording(run, 2)
     record(recording, t_end, grid, Control(controllers, channels), None)
     return recording
 
@@ -91,7 +91,7 @@ def test_decisions_are_replayed_not_asked_for_again(fake_run: Make) -> None:
         return float(count)
 
     control = Control((controller(law),), channels)
-    first, second = Recording(fake_run()), Recording(fake_run())
+    first, second = Recording(fake_run(), 2), Recording(fake_run(), 2)
     record(first, 1.0, None, control, None)
     record(second, 1.0, None, control, None)
     assert count == 5
@@ -112,7 +112,8 @@ def test_instants_of_two_controllers_are_merged() -> None:
 
 def test_refining_keeps_steps_and_doubled_instants() -> None:
     steps = np.array([0.0, 0.3, 0.3, 1.0])
-    finer = refined(steps, 0.1)
-    assert np.all(np.isin(steps, finer))
+    finer = refined(steps, 0.1, np.array([0.3, 0.77]))
+    assert np.all(np.isin([*steps, 0.77], finer))
     assert np.count_nonzero(finer == 0.3) == 2
+    assert np.count_nonzero(finer == 0.77) == 2
     assert np.max(np.diff(finer)) <= 0.1 + 1e-12

@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 
 from clutchwork.channels import LOCKED
 from clutchwork.node import Domain
-from clutchwork.plot.style import EVENT_LINE, looks
+from clutchwork.plot.style import COLOURS, EVENT_LINE, looks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from clutchwork.events import Event
     from clutchwork.trajectory import Trajectory
+    from clutchwork.wiring import Branch
 
 MOST_CURVES = 24
 # (unit in the result, from this size on, unit in the picture, factor)
@@ -28,7 +29,16 @@ def speeds(axes: Axes, run: Trajectory, domain: Domain) -> None:
         axes.plot(run.time, run[f"{name}.speed"], label=name, **look)
     unit = "rad/s" if domain is Domain.ROTATION else "m/s"
     axes.set_ylabel(f"speed, {unit}")
-    legend(axes, "member")
+    legend(axes)
+
+
+def frame(axes: Axes, run: Trajectory, event: Event, label: str) -> None:
+    """Frame around what the zoom shows, with its letter."""
+    left, right = window(run, event)
+    low, high = _meeting(fine(run, left, right), event)
+    corner, size = (left, low), (right - left, high - low)
+    axes.add_patch(_rectangle(corner, *size, fill=False, edgecolor="#404040", linewidth=0.7, zorder=3))
+    axes.annotate(label, (right, low), (2, 1), textcoords="offset points", va="top", fontsize=8.0)
 
 
 def zoom(axes: Axes, run: Trajectory, event: Event) -> None:
@@ -36,7 +46,7 @@ def zoom(axes: Axes, run: Trajectory, event: Event) -> None:
     left, right = window(run, event)
     part = fine(run, left, right)
     low, high = _meeting(part, event)
-    domain = _branch(run, event.element).domain
+    domain = domain_of(run, event)
     for name, look in member_looks(run, domain).items():
         speed = part[f"{name}.speed"]
         if np.max(speed) >= low and np.min(speed) <= high:
@@ -49,7 +59,7 @@ def zoom(axes: Axes, run: Trajectory, event: Event) -> None:
     axes.set_xlim(left, right)
     axes.set_ylim(low, high)
     axes.set_ylabel("speed, rad/s" if domain is Domain.ROTATION else "speed, m/s")
-    legend(axes, "member")
+    legend(axes)
 
 
 def inputs(axes: Axes, run: Trajectory) -> None:
@@ -58,10 +68,10 @@ def inputs(axes: Axes, run: Trajectory) -> None:
     factor, unit = scale(run, list(names.values()))
     for (contact, signal), look in zip(names.items(), contact_looks(run, names).values(), strict=True):
         axes.plot(run.time, factor * run[signal], label=contact, **look)
-    what = {"MPa": "pressure", "Pa": "pressure", "1": "normal force, share of full"}.get(unit, "normal force")
-    axes.set_ylabel(what if unit == "1" else f"{what}, {unit}")
+    what = "pressure" if unit in ("Pa", "MPa") else "normal force"
+    axes.set_ylabel(f"{what}, {'share' if unit == '1' else unit}")
     axes.margins(y=0.08)
-    legend(axes, "contact")
+    legend(axes)
 
 
 def torques(axes: Axes, run: Trajectory) -> None:
@@ -74,6 +84,7 @@ def torques(axes: Axes, run: Trajectory) -> None:
         is_locked = run[f"{name}.mode"] == LOCKED
         axes.plot(run.time, np.where(is_locked, torque, np.nan), **{**look, "linewidth": 2.4})
     axes.axhline(0.0, color="#B0B0B0", linewidth=0.5, zorder=1)
+    axes.margins(y=0.08)
     axes.set_ylabel(f"torque on follower, {unit}")
     legend(axes, "thick: locked")
 
@@ -95,13 +106,13 @@ def locks(axes: Axes, run: Trajectory) -> None:
 def member_looks(run: Trajectory, domain: Domain) -> dict[str, dict[str, Any]]:
     """Colour and dashes of every member, the same in all panels."""
     names = [node.name for node in run.wiring.nodes if node.domain is domain]
-    return dict(zip(names[:MOST_CURVES], looks(), strict=False))
+    return dict(zip(names, looks(min(len(names), MOST_CURVES)), strict=False))
 
 
 def contact_looks(run: Trajectory, names: Any) -> dict[str, dict[str, Any]]:
     """Colour of the chosen contacts, the same in all panels."""
-    all_looks = dict(zip(busy(run), looks(), strict=False))
-    return {name: {**all_looks[name], "linestyle": "-"} for name in names}
+    colours = {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(busy(run))}
+    return {name: {"color": colours[name]} for name in names}
 
 
 def busy(run: Trajectory) -> list[str]:
@@ -115,6 +126,12 @@ def driven(run: Trajectory) -> dict[str, str]:
     names = [name for name, _ in run.wiring.inputs]
     found = {c: [n for n in names if n in (f"{c}.pressure", f"{c}.normal_force")] for c in busy(run)}
     return {contact: signals[0] for contact, signals in found.items() if signals}
+
+
+def pressing(run: Trajectory) -> str:
+    """What presses the contacts together, in one word or two."""
+    units = {run.units[signal] for signal in driven(run).values()}
+    return "pressures" if units == {"Pa"} else "normal forces" if "Pa" not in units else "pressures and forces"
 
 
 def scale(run: Trajectory, names: list[str]) -> tuple[float, str]:
@@ -135,20 +152,20 @@ def spans(time: NDArray[np.float64], holds: NDArray[np.bool_]) -> list[tuple[flo
     return [(float(time[first]), float(time[min(stop, last)] - time[first])) for first, stop in pairs]
 
 
-def legend(axes: Axes, title: str) -> None:
+def legend(axes: Axes, title: str = "") -> None:
     """Legend to the right of the axes, where it covers nothing."""
     handles, _ = axes.get_legend_handles_labels()
     if handles:
         columns = 1 + (len(handles) - 1) // 9
         axes.legend(
-            loc="upper left", bbox_to_anchor=(1.0, 1.02), borderaxespad=0.3, title=title, title_fontsize=7.5,
+            loc="upper left", bbox_to_anchor=(1.0, 1.02), borderaxespad=0.3, title=title or None, title_fontsize=7.5,
             alignment="left", ncols=columns, handlelength=2.4, labelspacing=0.3, columnspacing=0.8,
         )  # fmt: skip
 
 
 def window(run: Trajectory, event: Event) -> tuple[float, float]:
     """Stretch of time around an event that shows the lock-up [s]."""
-    half = 0.04 * (run.time[-1] - run.time[0])
+    half = 0.025 * (run.time[-1] - run.time[0])
     return max(float(run.time[0]), event.time - half), min(float(run.time[-1]), event.time + half)
 
 
@@ -168,5 +185,16 @@ def _meeting(part: Trajectory, event: Event) -> tuple[float, float]:
     return float(np.min(values)) - pad, float(np.max(values)) + pad
 
 
-def _branch(run: Trajectory, name: str) -> Any:
+def domain_of(run: Trajectory, event: Event) -> Domain:
+    """Kind of motion of the contact of an event."""
+    return _branch(run, event.element).domain
+
+
+def _rectangle(*place: Any, **look: Any) -> Any:
+    from matplotlib.patches import Rectangle
+
+    return Rectangle(*place, **look)
+
+
+def _branch(run: Trajectory, name: str) -> Branch:
     return next(branch for branch in run.wiring.contacts if branch.name == name)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any
@@ -19,8 +21,15 @@ if TYPE_CHECKING:
     from clutchwork.events import Event
     from clutchwork.trajectory import Trajectory
 
-# what is drawn, height in mm, whether its time axis is that of the whole run
-Panel = tuple[str, float, bool, Callable[["Axes"], None]]
+
+@dataclass(frozen=True)
+class Panel:
+    """One axes of a picture."""
+
+    title: str
+    height: float  # mm
+    whole: bool  # over the time of the whole run
+    draw: Callable[[Axes], None]
 
 
 def picture(run: Trajectory, path: str | Path | None = None, *, lockup: Event | None = None) -> Figure:
@@ -30,10 +39,11 @@ def picture(run: Trajectory, path: str | Path | None = None, *, lockup: Event | 
     """
     new_figure, rc_context = _matplotlib()
     with rc_context(style.RC):
-        chosen = _panels(run, lockup or last_lockup(run))
-        height = sum(panel[1] for panel in chosen) + 16.0 * len(chosen)
+        lockup = lockup or last_lockup(run)
+        chosen = _panels(run, lockup)
+        height = sum(panel.height + (9.0 if panel.whole else 14.0) for panel in chosen) + 12.0
         figure: Figure = new_figure(figsize=(style.WIDTH, height * style.MILLIMETRE), layout="constrained")
-        _draw(figure, run, chosen)
+        _draw(figure, run, lockup, chosen)
         if path is not None:
             Path(path).parent.mkdir(parents=True, exist_ok=True)
             figure.savefig(path)
@@ -48,34 +58,48 @@ def last_lockup(run: Trajectory) -> Event | None:
 
 def _panels(run: Trajectory, lockup: Event | None) -> list[Panel]:
     chosen: list[Panel] = []
-    present = {node.domain for node in run.wiring.nodes}
-    if Domain.ROTATION in present:
-        chosen.append(("speeds of all shafts", 52.0, True, lambda ax: panels.speeds(ax, run, Domain.ROTATION)))
-    if Domain.TRANSLATION in present:
-        chosen.append(("speeds of all masses", 52.0, True, lambda ax: panels.speeds(ax, run, Domain.TRANSLATION)))
+    for domain, members in ((Domain.ROTATION, "shafts"), (Domain.TRANSLATION, "masses")):
+        if any(node.domain is domain for node in run.wiring.nodes):
+            chosen.append(Panel(f"speeds of all {members}", 52.0, True, partial(panels.speeds, run=run, domain=domain)))
     if lockup is not None:
-        chosen.append(("zoom at lock-up", 42.0, False, lambda ax: panels.zoom(ax, run, lockup)))
+        chosen.append(Panel("zoom at lock-up", 42.0, False, partial(panels.zoom, run=run, event=lockup)))
     if panels.driven(run):
-        chosen.append(("pressing of the contacts", 28.0, True, lambda ax: panels.inputs(ax, run)))
+        chosen.append(
+            Panel(f"{panels.pressing(run)} of clutches and brakes", 28.0, True, partial(panels.inputs, run=run))
+        )
     if panels.busy(run):
-        chosen.append(("torques of the contacts", 46.0, True, lambda ax: panels.torques(ax, run)))
         rows = len(panels.busy(run))
-        chosen.append(("state of the contacts", 4.0 + 4.0 * rows, True, lambda ax: panels.locks(ax, run)))
+        chosen.append(Panel("torques of clutches and brakes", 46.0, True, partial(panels.torques, run=run)))
+        chosen.append(Panel("states of clutches and brakes", 5.0 + 4.0 * rows, True, partial(panels.locks, run=run)))
     return chosen
 
 
-def _draw(figure: Figure, run: Trajectory, chosen: list[Panel]) -> None:
-    grid = figure.add_gridspec(len(chosen), 1, height_ratios=[panel[1] for panel in chosen])
+def _draw(figure: Figure, run: Trajectory, lockup: Event | None, chosen: list[Panel]) -> None:
+    grid = figure.add_gridspec(len(chosen), 1, height_ratios=[panel.height for panel in chosen])
     begin, end = float(run.time[0]), float(run.time[-1])
     instants = np.unique(run.events.changes().times)
-    for row, (title, _, whole, draw) in enumerate(chosen):
+    for row, panel in enumerate(chosen):
         axes = figure.add_subplot(grid[row])
-        draw(axes)
-        axes.set_title(f"{ascii_lowercase[row]})  {title}", loc="left")
-        axes.set_xlabel("time, s")
-        if whole:
+        panel.draw(axes)
+        axes.set_title(f"{ascii_lowercase[row]})  {panel.title}", loc="left")
+        if panel.whole:
             axes.set_xlim(begin, end)
             _mark(axes, instants)
+        # one label is enough for panels over the same time
+        if row + 1 < len(chosen) and panel.whole and chosen[row + 1].whole:
+            axes.tick_params(labelbottom=False)
+        else:
+            axes.set_xlabel("time, s")
+    figure.align_ylabels()
+    if lockup is not None:
+        _frame(figure, run, lockup, chosen)
+
+
+def _frame(figure: Figure, run: Trajectory, lockup: Event, chosen: list[Panel]) -> None:
+    """Show in the panel of all speeds what the zoom is cut from."""
+    zoomed = next(row for row, panel in enumerate(chosen) if not panel.whole)
+    translates = panels.domain_of(run, lockup) is Domain.TRANSLATION
+    panels.frame(figure.axes[zoomed - 1 if translates else 0], run, lockup, ascii_lowercase[zoomed])
 
 
 def _mark(axes: Axes, instants: Any) -> None:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import product
 from typing import Any
 
 # Okabe and Ito, doi 10.1080/00031305.2008; yellow left out because it vanishes on paper
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#7F7F7F")
-DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1.2)), (0, (6, 1.5, 1.5, 1.5)))
+DASHES: tuple[Any, ...] = ("-", (0, (4, 2)), (0, (1, 1.5)))
 
 RC = {
     "font.family": "sans-serif",
@@ -41,9 +39,9 @@ WIDTH = 180.0 * MILLIMETRE  # two columns of a journal
 EVENT_LINE: dict[str, Any] = {"color": "#9A9A9A", "linewidth": 0.6, "linestyle": (0, (3, 2)), "zorder": 1}
 
 
-def looks() -> Iterator[dict[str, Any]]:
-    """Colour and dashes for one curve after another."""
-    for dashes, colour in product(DASHES, COLOURS):
-        yield {"color": colour, "linestyle": dashes}
-    while True:
-        yield {"color": COLOURS[-1], "linestyle": "-"}
+def looks(count: int) -> list[dict[str, Any]]:
+    """Colours and dashes of `count` curves: later ones have more gaps, so that a curve below stays visible."""
+    return [
+        {"color": COLOURS[i % len(COLOURS)], "linestyle": DASHES[min(len(DASHES) * i // count, len(DASHES) - 1)]}
+        for i in range(count)
+    ]
