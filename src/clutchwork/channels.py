@@ -49,7 +49,11 @@ class Channels(Mapping[str, Channel]):
     def __init__(self, wiring: Wiring, *, angles: bool = True, work: bool = True) -> None:
         self._wiring = wiring
         self._left_out = _left_out(angles, work)
-        self._channels = {name: channel for name, channel in self._all() if not name.endswith(tuple(self._left_out))}
+        self._channels: dict[str, Channel] = {}
+        for name, channel in self._all():
+            if not name.endswith(tuple(self._left_out)):
+                # the torque of a load and the signal that sets its size would have the same name
+                self._channels[f"{name}_signal" if name in self._channels else name] = channel
 
     def __getitem__(self, name: str) -> Channel:
         try:

@@ -19,7 +19,10 @@ Matrix = NDArray[np.float64]
 def multipliers(wiring: Wiring) -> Matrix:
     """Matrix that turns an output row into the multipliers of gear rows, then of prescribed speeds [N m]."""
     rigid = np.hstack([_gear_directions(wiring), wiring.spread(wiring.motions)])
-    return np.asarray(np.linalg.pinv(rigid, rcond=1e-12) @ _missing_torque(wiring))
+    matrix = np.linalg.pinv(rigid, rcond=1e-12) @ _missing_torque(wiring)
+    # what is only rounding becomes zero, so that a torque depends on what it physically depends on
+    noise = 1e-14 * np.max(np.abs(matrix), axis=1, keepdims=True, initial=0.0)
+    return np.where(np.abs(matrix) > noise, matrix, 0.0)
 
 
 def on_housing(wiring: Wiring, rows_to_multipliers: Matrix, domain: Domain) -> Matrix:
