@@ -73,9 +73,10 @@ test: $(STAMPS)/package
 	$(BIN)/python -m pytest && exit $$cpp
 
 test-cpp: $(STAMPS)/tools
-	@$(BIN)/cmake -S tests/cpp -B build/cpp -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja \
-		-DCMAKE_CXX_COMPILER=$(CXX) -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python >build/cpp.log 2>&1 || \
-		{ cat build/cpp.log; exit 1; }
+	@mkdir -p build
+	@$(BIN)/cmake -S . -B build/cpp -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja \
+		-DCMAKE_CXX_COMPILER=$(CXX) -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
+		-DCLUTCHWORK_PYTHON=OFF -DCLUTCHWORK_TESTS=ON >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
 	@$(BIN)/cmake --build build/cpp --parallel $(JOBS)
 	@$(BIN)/ctest --test-dir build/cpp --output-on-failure
 
@@ -99,7 +100,6 @@ bench: $(STAMPS)/package $(STAMPS)/bench
 	@$(BIN)/python -m benchmarks
 
 docs: $(STAMPS)/package $(STAMPS)/docs
-	@$(BIN)/python tools/gen_docs.py docs/reference
 	@$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/docs
 	@echo "build/docs/index.html"
 

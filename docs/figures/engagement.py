@@ -37,14 +37,14 @@ def draw(run: Any, path: Path) -> None:
     for axes, title, unit in ((speeds, "speed", "rad/s"), (torques, "torque", "N m")):
         axes.axvspan(lock.time, run.time[-1], color="#e6ecf2", lw=0)
         axes.set(xlabel="time [s]", ylabel=f"{title} [{unit}]", xlim=(0.0, run.time[-1]))
-        axes.legend(frameon=False, loc="upper right" if axes is speeds else "center right")
+        axes.legend(frameon=False, loc="upper right" if axes is speeds else (0.12, 0.25))
     speeds.annotate(
         f"locks at {lock.time:.6f} s",
         (lock.time, 20.0),
-        (lock.time + 0.08, 45.0),
+        (1.02, 6.0),
         arrowprops={"arrowstyle": "-", "lw": 0.7},
     )
-    torques.text(0.98, 0.05, "locked", transform=torques.transAxes, ha="right", color="#5b6b7c")
+    torques.text(0.84, 0.45, "locked", transform=torques.transAxes, ha="center", color="#5b6b7c")
     # no date and no version in the file: the same picture gives the same bytes
     figure.savefig(path, dpi=110, metadata={"Software": None})
 
