@@ -12,30 +12,33 @@ struct Hit {
   double s = 1;    ///< where in the step, 0 to 1
 };
 
-/// Smallest root of a quartic in Bernstein form where it turns negative, or -1. b[0] counts as not negative.
-inline double first_negative(const double* b, double low, double high, double tolerance, int depth) {
-  int signs = 0;
-  bool negative = false;
+/// First interval in which a quartic in Bernstein form turns from not negative to negative. b[0] counts as not
+/// negative; inner dips above -tolerance do not count, the end value does.
+inline bool first_bracket(const double* b, double tolerance, int depth, bool last, double& low, double& high) {
+  int changes = 0;
+  bool dips = last && b[4] < 0, below = false;
   for (int i = 1; i < 5; ++i) {
-    negative = negative || b[i] < -tolerance;
-    signs += (b[i] < 0) != (i == 1 ? false : b[i - 1] < 0);
+    dips = dips || b[i] < -tolerance;
+    changes += (b[i] < 0) != below;
+    below = b[i] < 0;
   }
-  if (!negative) return -1;
-  if (depth == 0) return low;
+  if (!dips) return false;
+  if (below && (changes == 1 || depth == 0)) return true;
+  if (depth == 0) return false;
   // split in the middle
   double left[5], right[5], work[5];
   for (int i = 0; i < 5; ++i) work[i] = b[i];
+  work[0] = larger(work[0], 0.0);
   for (int k = 0; k < 5; ++k) {
     left[k] = work[0];
     right[4 - k] = work[4 - k];
     for (int i = 0; i < 4 - k; ++i) work[i] = 0.5 * (work[i] + work[i + 1]);
   }
-  (void)signs;
   const double middle = 0.5 * (low + high);
-  const double found = first_negative(left, low, middle, tolerance, depth - 1);
-  if (found >= 0) return found;
-  if (left[4] < 0) return middle;
-  return first_negative(right, middle, high, tolerance, depth - 1);
+  double end = middle;
+  if (first_bracket(left, tolerance, depth - 1, false, low, end)) return high = end, true;
+  low = middle;
+  return first_bracket(right, tolerance, depth - 1, last, low, high);
 }
 
 /// Root of a decreasing-through-zero function on [low, high] with f(low) >= 0 > f(high), to round-off (ITP).
@@ -112,15 +115,11 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   double scale = 0;
   for (double x : b) scale = larger(scale, abs(x));
   double low = 0, high = 1;
-  if (g1 >= 0 || b[1] < 0 || b[2] < 0 || b[3] < 0) {
-    const double rough = first_negative(b, 0.0, 1.0, 1e-9 * scale, 30);
-    if (rough < 0 && g1 >= 0) return -1;
-    if (rough >= 0) low = larger(0.0, rough - 1e-8), high = smaller(1.0, rough + 1e-8);
-  }
-  auto poly = [&](double s) { return (1 - s) * larger(g0, 0.0) + s * (g1 + (1 - s) * (q0 + s * (q1 + s * q2))); };
-  double f_low = poly(low), f_high = poly(high);
-  if (f_high >= 0) return high < 1 ? high : -1;
-  if (f_low < 0) low = 0, f_low = larger(g0, 0.0);
+  if (!first_bracket(b, 1e-9 * scale, 40, true, low, high)) return -1;
+  const double start = larger(g0, 0.0);
+  auto poly = [&](double s) { return (1 - s) * start + s * (g1 + (1 - s) * (q0 + s * (q1 + s * q2))); };
+  const double f_low = larger(poly(low), 0.0), f_high = poly(high);
+  if (f_high >= 0) return high;
   const double s = locate(poly, low, f_low, high, f_high);
   return s <= limit ? s : -1;
 }
