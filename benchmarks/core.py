@@ -1,0 +1,51 @@
+"""Runs of the compiled core without the Python layers: what there is to time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from benchmarks.timing import cpu
+from clutchwork import _core
+
+METHODS = {"rodas5p": 1.0, "dopri5": 2.0}
+EMPTY = np.zeros(0)
+
+
+class Prepared:
+    """A System in a run that is put back to its start before each timing."""
+
+    def __init__(self, system: Any, t_end: float, method: str = "rodas5p", **options: float) -> None:
+        self.run = _core.Run(system.to_bytes())
+        chosen = {"rtol": 1e-6, "atol": 1e-8, "method": METHODS[method], "angles": 0.0, "work": 0.0, **options}
+        for name, value in chosen.items():
+            self.run.set_option(name, value)
+        self.t_end = t_end
+        self.rows = np.zeros((0, len(self.run.row())))
+        self.start = self.run.save()
+
+    def reset(self) -> None:
+        """Back to the start."""
+        self.run.restore(self.start)
+
+    def go(self) -> None:
+        """The whole run, no output."""
+        status = self.run.advance(self.t_end, EMPTY, self.rows, 0, False)[0]
+        if status:
+            raise RuntimeError(f"the run ended with status {status}")
+
+    def seconds(self, repeats: int) -> float:
+        """Median CPU time of one run [s]."""
+        return cpu(self.go, repeats, self.reset)
+
+    def measure(self, repeats: int) -> Callable[[], float]:
+        """The same as a contestant."""
+        return lambda: self.seconds(repeats)
+
+    def statistics(self) -> dict[str, int]:
+        """Counts of one run."""
+        self.reset()
+        self.go()
+        return dict(self.run.statistics())

@@ -1,0 +1,31 @@
+"""Fixtures and profiles of all tests."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+# `make test`: the same examples on every machine; `--hypothesis-profile=nightly`: 20 000 fresh ones
+settings.register_profile(
+    "default", derandomize=True, deadline=None, max_examples=25, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.register_profile("nightly", deadline=None, max_examples=20_000, print_blob=True)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Markers of this test tree."""
+    config.addinivalue_line("markers", "slow: takes more than ten seconds; part of `make test`, leave out with -m 'not slow'")
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    """The root of the repository."""
+    return HERE.parent

@@ -1,0 +1,150 @@
+"""A case as a Driveline, with a function of the run for each of its outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import clutchwork as cw
+
+from .elements import ENTRIES, missing
+from .initial import measure, start
+from .network import FLANGES, GROUND, TWO, Network
+from .signals import UnsupportedError, first_value, signal
+
+MODE_COLUMNS = ("mode", "startForward", "startBackward", "stuck")
+TRANSLATION = {"mass", "rod", "mass_with_stop_and_friction", "elasto_gap", "rolling_resistance"}
+
+
+@dataclass(frozen=True)
+class Model:
+    """What a case became."""
+
+    driveline: cw.Driveline
+    outputs: dict[str, Callable[[Any], np.ndarray]]  # csv column -> values on the time grid of a run
+    contacts: tuple[str, ...]  # names of the friction elements
+
+
+class Builder:
+    """Builds the model of one case."""
+
+    def __init__(self, case: Mapping[str, Any]) -> None:
+        if missing(case):
+            raise UnsupportedError(", ".join(missing(case)))
+        self.case = case
+        self.elements: Mapping[str, Mapping[str, Any]] = case["elements"]
+        self.network = Network(self.elements, case["connections"])
+        self.positions, self.speeds = start(case, self.network, self._prescribed())
+        self.driveline = cw.Driveline(case["name"])
+        self.nodes = self._make_nodes()
+        for name, element in self.elements.items():
+            for part in ENTRIES[element["type"]](self, name, element, self._at(name)):
+                self.driveline.add(part)
+
+    def signal(self, name: str, scale: float = 1.0) -> Any:
+        """A signal of the case."""
+        return signal(self.case["signals"], name, scale)
+
+    def start_distance(self, name: str) -> float:
+        """flange_b - flange_a at the start."""
+        a, b = f"{name}.flange_a", f"{name}.flange_b"
+        return self._start_position(b) - self._start_position(a)
+
+    def _start_position(self, flange: str) -> float:
+        return self.positions[self.network.node(flange)] + self.network.offset(flange)
+
+    def _prescribed(self) -> dict[str, float]:
+        return {
+            name: first_value(self.case["signals"], e["w_ref"])
+            for name, e in self.elements.items()
+            if e["type"] == "speed"
+        }
+
+    def _at(self, name: str) -> Callable[[str], cw.Node]:
+        return lambda port: self.nodes[self.network.node(f"{name}.{port}")]
+
+    def _make_nodes(self) -> dict[str, cw.Node]:
+        inertia = dict.fromkeys(self.network.nodes(), 0.0)
+        label: dict[str, str] = {}
+        for name, e in self.elements.items():
+            if e["type"] in ("inertia", "mass"):
+                node = self.network.node(f"{name}.flange_a")
+                if node != GROUND:
+                    inertia[node] += float(e["J"] if e["type"] == "inertia" else e["m"])
+                    label.setdefault(node, name)
+        nodes = {GROUND: self.driveline.housing}
+        taken = (set(self.elements) - set(label.values())) | {"housing"}
+        moving = self._translating()
+        for node in self.network.nodes():
+            name = label.get(node, node).replace(".", "_")
+            while name in taken:
+                name += "_"
+            taken.add(name)
+            motion = {"speed": self.speeds[node]}
+            if node in moving:
+                nodes[node] = self.driveline.mass(name, mass=inertia[node], position=self.positions[node], **motion)
+            else:
+                nodes[node] = self.driveline.shaft(name, inertia=inertia[node], angle=self.positions[node], **motion)
+        return nodes
+
+    def _translating(self) -> set[str]:
+        """Nodes that move along a line: those of masses, and all that is joined to them by two-flange elements."""
+        marked = set()
+        for name, e in self.elements.items():
+            if e["type"] in TRANSLATION:
+                marked.add(self.network.node(f"{name}.flange_a"))
+            if "flangeT" in FLANGES.get(e["type"], ()):
+                marked.add(self.network.node(f"{name}.flangeT"))
+        for path in self.case["initial"]:
+            name, _, what = path.rpartition(".")
+            if what in ("s", "v"):
+                ports = FLANGES.get(self.elements[name]["type"], TWO)
+                marked.add(self.network.node(f"{name}.{ports[0]}"))
+        before = -1
+        while len(marked) != before:
+            before = len(marked)
+            for name, e in self.elements.items():
+                ports = FLANGES.get(e["type"], TWO)
+                joined = {self.network.node(f"{name}.{p}") for p in ports} - {GROUND}
+                if "flangeT" not in ports and joined & marked:
+                    marked |= joined
+        return marked - {GROUND}
+
+    def kinematic(self, path: str) -> Callable[[Any], np.ndarray]:
+        """A position or speed of the case."""
+        order, row, constant = measure(path, self.elements, self.network)
+        terms: dict[str, float] = {}
+        for flange, coefficient in row.items():
+            node = self.nodes[self.network.node(flange)]
+            if order == 0:
+                constant += coefficient * self.network.offset(flange)
+            if not node.fixed:
+                what = "speed" if order else ("position" if node.domain.value == "translation" else "angle")
+                key = f"{node.name}.{what}"
+                terms[key] = terms.get(key, 0.0) + coefficient
+
+        def value(run: Any) -> np.ndarray:
+            total = np.full(len(run.time), constant)
+            for key, coefficient in terms.items():
+                total = total + coefficient * run[key]
+            return total
+
+        return value
+
+    def model(self) -> Model:
+        """Everything together."""
+        outputs = {}
+        for output in self.case["outputs"]:
+            if output["signal"].rpartition(".")[2] not in (*MODE_COLUMNS, "lossPower"):
+                outputs[output["csv"]] = self.kinematic(output["signal"])
+        friction = ("clutch", "brake", "bearing_friction", "one_way_clutch")
+        contacts = tuple(name for name, e in self.elements.items() if e["type"] in friction)
+        return Model(self.driveline, outputs, contacts)
+
+
+def translate(case: Mapping[str, Any]) -> Model:
+    """The model of a case; UnsupportedError names what is missing."""
+    return Builder(case).model()

@@ -1,0 +1,61 @@
+"""A copy of the project in a temporary folder, to be changed and built there."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+SOURCES = ("pyproject.toml", "CMakeLists.txt", "README.md", "LICENSE", "src", "cpp", "interfaces", "tools")
+# neither caches nor anything that an in-place build left
+IGNORED = shutil.ignore_patterns("__pycache__", "*.so", "*.egg-info", "build", ".venv")
+
+
+def copy(to: Path) -> Path:
+    """The project without tests, documents and build results."""
+    for name in SOURCES:
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(source, to / name, ignore=IGNORED)
+        elif source.exists():
+            shutil.copy(source, to / name)
+    return to
+
+
+def generate(project: Path) -> subprocess.CompletedProcess[str]:
+    """Run the registry generator of a copy."""
+    command = [sys.executable, str(project / "tools/gen_registry.py"), str(project), str(project / "gen/registry.gen.hpp")]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def compile_registry(project: Path) -> subprocess.CompletedProcess[str]:
+    """Compile the generated header alone, without code."""
+    unit = project / "gen/unit.cpp"
+    unit.write_text('#include "registry.gen.hpp"\n')
+    include = ["-I", str(project / "cpp/include"), "-I", str(project / "gen")]
+    command = ["c++", "-std=c++20", "-fsyntax-only", *include, str(unit)]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def install(project: Path, site: Path) -> subprocess.CompletedProcess[str]:
+    """Build and install the copy into a folder, without optimisation: the build is the test, not the speed."""
+    command = [
+        sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-build-isolation",
+        "--no-deps", "--no-index", "--target", str(site), "--config-settings", "cmake.build-type=Debug",
+        "--config-settings", "cmake.args=-DCMAKE_CXX_FLAGS_DEBUG=-O0", str(project),
+    ]  # fmt: skip
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def run_in(site: Path, script: str) -> subprocess.CompletedProcess[str]:
+    """Run Python code that sees the package installed in `site` and no other.
+
+    Without the site module no .pth file is read, so that an editable install of the project itself stays out of it.
+    """
+    packages = str(Path(np.__file__).resolve().parents[1])
+    head = f"import sys; sys.path[:0] = [{str(site)!r}]; sys.path.append({packages!r})\n"
+    return subprocess.run([sys.executable, "-I", "-S", "-c", head + script], capture_output=True, text=True, check=False)

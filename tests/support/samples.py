@@ -1,0 +1,79 @@
+"""One valid instance of everything that is declared, made from the declaration alone."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING
+from typing import Any
+
+import clutchwork as cw
+from clutchwork.schema import REGISTRY, Role, Spec, inputs, specs
+
+ELEMENT_ROLES = (Role.TORQUE, Role.CONTACT, Role.GEAR, Role.MOTION)
+
+
+def declared(*roles: Role) -> list[Any]:
+    """All declared classes of the given roles."""
+    return [cls for role in roles for cls in REGISTRY[role].values()]
+
+
+def number(name: str, spec: Spec) -> float:
+    """A number within the bounds; coefficients at rest are above all others."""
+    if spec.flag:
+        return True
+    value = 0.2 if name == "static" else 0.1
+    if spec.whole:
+        return 30
+    if spec.at_least is not None:
+        value += spec.at_least
+    if spec.above is not None:
+        value += spec.above
+    return value
+
+
+def value(name: str, spec: Spec, nodes: dict[str, cw.Node]) -> Any:
+    """A value for one field."""
+    if spec.what == "port":
+        return nodes[spec.domain or "rotation"] if name not in ("base", "support", "input", "ring") else nodes["other"]
+    if spec.what == "law":
+        return cw.Coulomb(static=0.2, kinetic=0.1)
+    if spec.what == "curve":
+        return [(0.0, 0.1), (10.0, 0.05)]
+    if spec.what == "signal":
+        return cw.Step(height=2.0, start=0.5)
+    if spec.what == "text":
+        return name
+    if spec.what == "function":
+        return lambda time, readings: 0.0
+    return number(name, spec)
+
+
+def fields(cls: type, nodes: dict[str, cw.Node]) -> dict[str, Any]:
+    """Values for all fields that must be given, alternatives and teeth left out."""
+    needed = {names[0] for names, spec in inputs(cls) if spec.otherwise is None}
+    made = {
+        item.name: value(item.name, spec, nodes)
+        for item, spec in specs(cls)
+        if item.default is MISSING or item.name in needed or item.name == "ratio"
+    }
+    if "ratio" in made:
+        made["ratio"] = 2.5
+    return made
+
+
+def driveline(cls: type) -> cw.Driveline:
+    """A driveline with one element of a class, named "x"."""
+    d = cw.Driveline(cls.__name__)
+    nodes = {"rotation": d.shaft("a", inertia=0.3), "other": d.shaft("b", inertia=0.7)}
+    third = d.shaft("c", inertia=0.2)
+    nodes["translation"] = d.mass("m", mass=2.0)
+    values = fields(cls, nodes)
+    # three members of a planetary gear are three shafts
+    if "carrier" in values:
+        values["carrier"] = third
+    d.add(cls("x", **values))
+    return d
+
+
+def nodes() -> dict[str, cw.Node]:
+    """Nodes without a driveline."""
+    return {name: cw.Node(name, inertia=1.0) for name in ("rotation", "other", "translation")}
