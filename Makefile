@@ -83,13 +83,16 @@ test-cpp: $(STAMPS)/tools
 test-python: $(STAMPS)/package
 	@$(BIN)/python -m pytest
 
+# every checker runs, so that one call shows all there is to mend
 check: $(STAMPS)/package $(STAMPS)/check
-	$(BIN)/ruff format --check .
-	$(BIN)/ruff check .
-	$(BIN)/mypy
-	$(BIN)/lint-imports
-	$(BIN)/codespell
-	$(BIN)/clang-format --dry-run --Werror $(CPP_FILES)
+	@bad=; try() { echo "== $$*"; "$$@" || bad="$$bad $$1"; }; \
+	try $(BIN)/ruff format --check --quiet .; \
+	try $(BIN)/ruff check --quiet .; \
+	try $(BIN)/mypy; \
+	try $(BIN)/lint-imports --no-logo; \
+	try $(BIN)/codespell; \
+	try $(BIN)/clang-format --dry-run --Werror $(CPP_FILES); \
+	if [ -n "$$bad" ]; then echo "make check found something:$$bad"; exit 1; fi; echo "make check: all is well"
 
 format: $(STAMPS)/check
 	$(BIN)/ruff format .

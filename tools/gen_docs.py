@@ -100,7 +100,9 @@ def _component(level: str, kind: str, cls: type, headers: str) -> Iterator[str]:
 def _row(item: Field[Any], spec: Spec) -> str:
     sort = "flag" if spec.flag else SORTS.get(spec.what, spec.what)
     unit = f"{spec.unit_x} -> {spec.unit}" if spec.what == "curve" else spec.unit
-    units = " or ".join(dict.fromkeys((unit.replace("*", "of its input"), *spec.units))) if unit and not spec.flag else ""
+    units = (
+        " or ".join(dict.fromkeys((unit.replace("*", "of its input"), *spec.units))) if unit and not spec.flag else ""
+    )
     cells = (f"`{item.name}`", sort, units, _default(item, spec), spec.bound, _meaning(spec))
     return "| " + " | ".join(cells) + " |"
 
