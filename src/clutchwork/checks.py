@@ -25,11 +25,12 @@ BROKEN = Broken()
 
 @dataclass(frozen=True)
 class At:
-    """Place of a value: path of the element, name of the quantity, its unit."""
+    """Place of a value: path of the element, name of the quantity, its SI unit, factor to SI from plain numbers."""
 
     path: str
     quantity: str
     unit: str = ""
+    factor: float = 1.0
 
     def problem(self, message: str, value: str = "", remedy: str = "") -> Problem:
         """A problem at this place."""
@@ -134,26 +135,34 @@ def _curve(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     before = None
     for number, point in enumerate(value, 1):
         place = At(at.path, f"{at.quantity}, point {number}", at.unit)
-        if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
-            yield place.problem("must be a pair of numbers", value=repr(point), remedy="write [x, y]")
+        # one mistake is enough: those behind it often follow from it
+        found = list(_point(point, spec, place)) or list(_order(before, point, spec, place))
+        if found:
+            yield from found
             return
-        wrong = [p for v, unit in zip(point, (spec.unit_x, at.unit), strict=True) for p in _plain(v, place, unit)]
-        if wrong:
-            yield from wrong
-            return
-        x = float(point[0])
-        if before is not None and (x < before or (x == before and spec.rising == "strictly")):
-            fault = "comes after" if x < before else "stands twice, after"
-            shown = f"{x:g} {spec.unit_x}"
-            yield place.problem(
-                f"{fault} {before:g} {spec.unit_x}", value=shown, remedy="sort the points; x must increase"
-            )
-            return
-        before = x
+        before = point
 
 
-def _plain(value: Any, place: At, unit: str) -> Iterator[Problem]:
-    yield from number_problems(value, Spec("param", unit, ""), At(place.path, place.quantity, unit))
+def _point(point: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """A pair of finite numbers."""
+    if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
+        yield at.problem("must be a pair of numbers", value=repr(point), remedy="write [x, y]")
+        return
+    for number, unit in zip(point, (spec.unit_x, at.unit), strict=True):
+        yield from number_problems(number, Spec("param", unit, ""), At(at.path, at.quantity, unit))
+
+
+def _order(before: Any, point: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """Abscissae that increase, by more than round-off."""
+    if before is None:
+        return
+    (x, y), (x_next, y_next) = ((float(a), float(b)) for a, b in (before, point))
+    shown = f"{x_next:g} {spec.unit_x}"
+    if x_next < x or (x_next == x and spec.rising == "strictly"):
+        fault = "comes after" if x_next < x else "stands twice, after"
+        yield at.problem(f"{fault} {x:g} {spec.unit_x}", value=shown, remedy="sort the points; x must increase")
+    elif x_next > x and not isfinite((y_next - y) / (x_next - x)):
+        yield at.problem(f"is too close to {x:g} {spec.unit_x}", value=shown, remedy="leave one of the points out")
 
 
 def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:

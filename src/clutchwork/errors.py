@@ -52,5 +52,5 @@ class FileError(ClutchworkError, ValueError):
 
 def near(name: str, known: Iterable[str]) -> str:
     """`; did you mean ...?` when a known name is close to a misspelt one, else nothing."""
-    found = get_close_matches(str(name), list(known), n=1, cutoff=0.6)
+    found = get_close_matches(str(name), list(known), n=1, cutoff=0.6 if len(str(name)) > 3 else 0.5)
     return f"; did you mean {found[0]!r}?" if found else ""

@@ -82,6 +82,9 @@ def _contradictions(model: Model, rows: list[RigidRow], echelon: Echelon) -> Ite
         if len(row) == 1:
             still.setdefault(tuple(smallest(table, row)), []).append(model.node_label(node))
     for guilty, names in still.items():
+        # what follows from a smaller contradiction is none of its own
+        if any(set(other) < set(guilty) for other in still):
+            continue
         verb = "contradict each other: they hold" if len(guilty) > 1 else "holds"
         remedy = "remove one of them or correct a ratio" if len(guilty) > 1 else "use the housing in place of the shaft"
         message = f"{verb} {' and '.join(names)} still for ever"

@@ -194,9 +194,7 @@ class Reader:
         known = {item.name: _with_gain(item.name, spec, cls, entry) for item, spec in specs(cls)}
         self._unknown({key: entry[key] for key in entry if key not in taken}, known, at)
         values = {
-            key: self._value(entry[key], spec, at.inner(key, at.unit if spec.unit == "*" else spec.unit))
-            for key, spec in known.items()
-            if key in entry
+            key: self._value(entry[key], spec, _place(at, key, spec)) for key, spec in known.items() if key in entry
         }
         self.problems += value_problems(cls, values, at)
         return values
@@ -210,7 +208,7 @@ class Reader:
             is_signal = isinstance(value, Mapping) and "type" in value
             return self._signal(value, spec, at) if is_signal else self._number(value, spec, at)
         if spec.what == "curve":
-            return self._converted(lambda: curve_in_si(value, spec, at.unit), at)
+            return self._converted(lambda: curve_in_si(value, spec, at.unit, at.factor), at)
         if spec.what == "function":
             return self._report(at, "cannot stand in a model file", remedy="give it in Python")
         if spec.what == "text" or spec.flag:
@@ -218,7 +216,7 @@ class Reader:
         return self._number(value, spec, at)
 
     def _number(self, value: Any, spec: Spec, at: At) -> Any:
-        return self._converted(lambda: in_si(value, at.unit, spec.units, whole=spec.whole), at)
+        return self._converted(lambda: in_si(value, at.unit, spec.units, at.factor, whole=spec.whole), at)
 
     def _converted(self, convert: Any, at: At) -> Any:
         try:
@@ -247,16 +245,15 @@ class Reader:
         return known[kind](**values) if len(self.problems) == before else BROKEN
 
     def _signal(self, value: Mapping[str, Any], spec: Spec, at: At) -> Any:
-        """A signal; with `unit` its values are in that unit."""
+        """A signal; with `unit` its plain numbers are in that unit."""
         factor: Any = 1.0
         if "unit" in value:
             factor = self._converted(lambda: factor_to_si(value["unit"], at.unit, spec.units), at.inner("unit"))
-        signal = self._typed(value, Role.SIGNAL, at, ("type", "unit"))
-        if signal is BROKEN or factor is BROKEN:
-            return BROKEN
+        place = At(at.path, at.quantity, at.unit, 1.0 if factor is BROKEN else factor)
+        signal = self._typed(value, Role.SIGNAL, place, ("type", "unit"))
         if isinstance(signal, Column):
-            return Column(signal.path, signal.column, signal.time, scale=signal.scale * factor, folder=self.folder)
-        return scaled(signal, factor) if factor != 1.0 else signal
+            signal = replace(signal, scale=signal.scale * place.factor, folder=self.folder)
+        return BROKEN if factor is BROKEN else signal
 
     def _simulation(self, data: Any) -> dict[str, Any]:
         at = At("simulation", "")
@@ -273,6 +270,11 @@ class Reader:
         return made
 
 
+def _place(at: At, key: str, spec: Spec) -> At:
+    """Place of a field; one in the unit of what a signal drives takes over that unit and its factor."""
+    return At(at.path, at.inner(key).quantity, at.unit, at.factor) if spec.unit == "*" else at.inner(key, spec.unit)
+
+
 def _with_gain(name: str, spec: Spec, cls: type, entry: Mapping[str, Any]) -> Spec:
     """The spec of a gain with only the units that fit what it multiplies: a pressure or a force."""
     gains = [other.gain for item, other in specs(cls) if other.gain and item.name in entry]
@@ -287,17 +289,6 @@ def _simulation_problems(value: Any, spec: Spec, at: At) -> list[Problem]:
     if spec.what == "text" and not found and value not in METHODS:
         found.append(at.problem("is not known" + near(value, METHODS), repr(value), f"known are {', '.join(METHODS)}"))
     return found
-
-
-def scaled(signal: Any, factor: float) -> Any:
-    """A signal with all values times a factor."""
-    values = {item.name: getattr(signal, item.name) for item, _ in specs(type(signal))}
-    for item, spec in specs(type(signal)):
-        if spec.unit == "*" and spec.what == "curve":
-            values[item.name] = [(x, y * factor) for x, y in values[item.name]]
-        elif spec.unit == "*":
-            values[item.name] *= factor
-    return type(signal)(**values)
 
 
 # --- write ---

@@ -20,20 +20,19 @@ class QuantityError(ClutchworkError, ValueError):
         super().__init__(f"{value}: {message}; {remedy}")
 
 
-def in_si(value: Any, unit: str, others: tuple[str, ...] = (), *, whole: bool = False) -> Any:
+def in_si(value: Any, unit: str, others: tuple[str, ...] = (), factor: float = 1.0, *, whole: bool = False) -> Any:
     """The number in SI. What is no text and no table is handed back for the checks that follow.
 
-    Parameters: unit, the SI unit that is wanted; others, further ones that the quantity may have; whole, whether
-    an integer stays one.
+    Parameters: unit, the SI unit that is wanted; others, further ones that the quantity may have; factor, to SI from
+    a plain number; whole, whether an integer stays one.
     """
     if isinstance(value, Mapping):
         unknown = [key for key in value if key not in ("value", "unit")]
         if unknown or "value" not in value:
             raise QuantityError("must be a number", repr(dict(value)), 'write a number, or {value = 1.0, unit = "..."}')
-        number = in_si(value["value"], unit, others)
-        if "unit" not in value or isinstance(number, bool) or not isinstance(number, int | float):
-            return number
-        return number * factor_to_si(value["unit"], unit, others, dict(value))
+        if "unit" in value:
+            factor = factor_to_si(value["unit"], unit, others, dict(value))
+        return in_si(value["value"], unit, others, factor)
     if isinstance(value, str):
         parts = units.split(value)
         if parts is None:
@@ -43,9 +42,7 @@ def in_si(value: Any, unit: str, others: tuple[str, ...] = (), *, whole: bool = 
         if not parts[1]:
             raise QuantityError("is a text without unit", repr(value), "write the number without quotes")
         return parts[0] * factor_to_si(parts[1], unit, others, value)
-    if isinstance(value, int) and not isinstance(value, bool) and not whole:
-        return float(value)
-    return value
+    return value if whole else _times(value, factor)
 
 
 def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), shown: object = None) -> float:
@@ -65,23 +62,27 @@ def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), shown: obj
     return factor
 
 
-def curve_in_si(value: Any, spec: Spec, unit: str) -> Any:
-    """Points in SI from a list of pairs, or from a table {points, unit_x, unit}."""
+def curve_in_si(value: Any, spec: Spec, unit: str, factor: float = 1.0) -> Any:
+    """Points in SI from a list of pairs, whose ordinates times `factor` are SI, or a table {points, unit_x, unit}."""
     if not isinstance(value, Mapping):
-        return _pairs(value)
+        return _scaled(value, 1.0, factor)
     unknown = [key for key in value if key not in ("points", "unit_x", "unit")]
     if unknown or "points" not in value:
         raise QuantityError(
             "must be a list of points", repr(dict(value)), "write {points = [[x, y], ...], unit_x, unit}"
         )
     x = factor_to_si(value["unit_x"], spec.unit_x, spec.units_x) if "unit_x" in value else 1.0
-    y = factor_to_si(value["unit"], unit, spec.units) if "unit" in value else 1.0
-    pairs = _pairs(value["points"])
-    numbers = all(isinstance(v, int | float) and not isinstance(v, bool) for pair in pairs for v in pair)
-    return [(a * x, b * y) for a, b in pairs] if numbers else pairs
+    y = factor_to_si(value["unit"], unit, spec.units) if "unit" in value else factor
+    return _scaled(value["points"], x, y)
 
 
-def _pairs(value: Any) -> Any:
+def _scaled(value: Any, x: float, y: float) -> Any:
+    """Pairs times factors; what is no list of pairs of numbers is handed back for the checks that follow."""
     if not isinstance(value, list) or not all(isinstance(point, list) and len(point) == 2 for point in value):
         return value
-    return [tuple(point) for point in value]
+    return [(_times(a, x), _times(b, y)) for a, b in value]
+
+
+def _times(value: Any, factor: float) -> Any:
+    """A number times a factor; true, false and what is no number stay."""
+    return value if isinstance(value, bool) or not isinstance(value, int | float) else value * factor

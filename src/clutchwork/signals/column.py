@@ -22,7 +22,7 @@ class Column(Signal):
     In a model file the path is relative to that file. A file that cannot be used raises `FileError`.
     """
 
-    path: str = text("CSV file", kw_only=False)
+    path: str = text("path of the CSV file", kw_only=False)
     column: str = text("name of the column with the values", kw_only=False)
     time: str = text("name of the column with the times [s]", default="time", kw_only=False)
     scale: float = param("1", "factor on the values, 1e5 for a file in bar", default=1.0)
@@ -39,7 +39,7 @@ class Column(Signal):
             raise FileError("path", f"{self.path!r} does not exist", f"put the file into {path.parent}") from None
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise FileError("path", f"{self.path!r} cannot be read: {error}", "give a CSV text file") from None
-        return tuple(self._pairs(lines))
+        return tuple((t, self.scale * y) for t, y in self._pairs(lines))
 
     def _pairs(self, lines: list[list[str]]) -> list[tuple[float, float]]:
         if not lines:

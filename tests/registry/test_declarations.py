@@ -1,0 +1,81 @@
+"""Every declaration: named after its file, documented, with units that can be read."""
+
+from __future__ import annotations
+
+import re
+import sys
+from dataclasses import MISSING, FrozenInstanceError
+from pathlib import Path
+
+import pytest
+
+import clutchwork as cw
+from clutchwork import units
+from clutchwork.schema import COMPILED_ROLES, REGISTRY, Role, kinds, schema_hash, schema_text, specs
+from support import samples
+
+ALL = samples.declared(*Role)
+WITHOUT_UNIT = {"port", "text", "function"}
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_kind_is_the_stem_of_the_file_and_the_class_in_snake_case(cls):
+    assert cls.kind == Path(sys.modules[cls.__module__].__file__).stem
+    assert cls.kind == re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_is_published_under_its_name(cls):
+    assert getattr(cw, cls.__name__) is cls
+    assert cls.__name__ in cw.__all__
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_class_and_fields_say_what_they_are(cls):
+    assert len(cls.__doc__) > 30
+    assert not cls.__doc__.startswith(f"{cls.__name__}(")
+    for item, spec in specs(cls):
+        assert spec.doc, item.name
+        assert spec.doc[0].islower(), f"{item.name}: {spec.doc}"
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_units_can_be_read_and_are_si(cls):
+    for item, spec in specs(cls):
+        words = [unit for unit in (spec.unit, *spec.units, spec.unit_x, *spec.units_x, *spec.gain) if unit]
+        assert words or spec.what in WITHOUT_UNIT | {"law"}, item.name
+        for unit in words:
+            assert unit == "*" or units.parse(unit).factor == 1.0, f"{item.name} [{unit}]"
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_defaults_keep_their_bounds(cls):
+    for item, spec in specs(cls, "param", "option"):
+        if item.default not in (MISSING, None):
+            assert spec.allows(item.default), item.name
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_is_frozen(cls):
+    path = () if cls.role in (Role.LAW, Role.SIGNAL) else ("x",)
+    thing = cls(*path, **samples.fields(cls, samples.nodes()))
+    name = next(iter(vars(thing)))
+    with pytest.raises(FrozenInstanceError):
+        setattr(thing, name, 1.0)
+
+
+@pytest.mark.parametrize("cls", samples.declared(*COMPILED_ROLES), ids=lambda cls: cls.__name__)
+def test_has_a_header_of_the_same_stem(cls, root):
+    folder = "laws" if cls.role is Role.LAW else "elements"
+    assert (root / "cpp/include/clutchwork" / folder / f"{cls.kind}.hpp").is_file()
+
+
+def test_numbers_of_kinds_are_their_places_in_the_alphabet():
+    assert kinds(Role.LAW) == sorted(REGISTRY[Role.LAW])
+
+
+def test_hash_follows_the_declarations():
+    assert "contact clutch gain:param[m3],pressure:signal[Pa] 0" in schema_text()
+    assert schema_hash() == schema_hash("")
+    assert schema_hash("another layout") != schema_hash()
+    assert 0 <= schema_hash() < 2**63
