@@ -2,7 +2,7 @@
 #   make demo     the six-speed gearbox launches and shifts: out/demo/
 #   make test     all tests: C++ core under sanitizers, then Python
 #   make check    format, lint, types, import contracts, spelling
-#   make bench    speed against peers
+#   make bench    speed against peers; ARGS="--write" puts the table into docs/benchmarks.md
 #   make docs     the documentation: build/docs/index.html
 #   make setup    the environment alone
 #   make clean    removes .venv, build and out
@@ -100,7 +100,7 @@ format: $(STAMPS)/check
 	$(BIN)/clang-format -i $(CPP_FILES)
 
 bench: $(STAMPS)/package $(STAMPS)/bench
-	@$(BIN)/python -m benchmarks
+	@$(BIN)/python -m benchmarks $(ARGS)
 
 docs: $(STAMPS)/package $(STAMPS)/docs
 	@$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/docs
