@@ -2,81 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork import waveform
-from clutchwork.checks import label, ports
-from clutchwork.errors import ModelError, Problem
+from clutchwork.checks import ports
+from clutchwork.errors import ModelError
+from clutchwork.inputs import Wires
 from clutchwork.kinematics import apart, kinematics
 from clutchwork.layout import FIELDS
-from clutchwork.node import Component, Node, Segment, Signal
 from clutchwork.pools import Pools
 from clutchwork.rational import Row, plus
-from clutchwork.schema import Role, inputs, kinds
-from clutchwork.signals.constant import Constant
-from clutchwork.start import initial_speeds
+from clutchwork.schema import Role, kinds
+from clutchwork.start import start
 from clutchwork.structure import Kinematics, Model
-from clutchwork.system import TYPES, Gearing, Input, System, frozen
+from clutchwork.system import TYPES, Gearing, System, frozen
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from clutchwork.node import Component, Node
 
 Array = NDArray[Any]
-
-
-@dataclass(frozen=True)
-class Filtered(Signal):
-    """A signal that has passed a low pass."""
-
-    pieces: tuple[Segment, ...]
-
-    def segments(self) -> tuple[Segment, ...]:
-        """Exact pieces of the response."""
-        return self.pieces
-
-
-@dataclass
-class Wires:
-    """Signals in the order of their numbers, and the references to them."""
-
-    inputs: list[Input] = field(default_factory=list)
-    refs: list[int] = field(default_factory=list)
-
-    def connect(self, component: Component) -> int:
-        """Number the inputs of a component; the offset of its first reference."""
-        offset = len(self.refs)
-        for names, spec in inputs(type(component)):
-            name = next((name for name in names if getattr(component, name) is not None), names[0])
-            value = getattr(component, name)
-            plain = spec.otherwise if value is None else value
-            signal = value if isinstance(value, Signal) else Constant(float(plain or 0.0))
-            self.refs.append(len(self.inputs))
-            self.inputs.append(Input(f"{component.name}.{name}", _unit(component, name), signal))
-        return offset
-
-
-def _unit(component: Component, name: str) -> str:
-    """Unit of an input; on masses a torque is a force and an angular speed a speed."""
-    spec = type(component).__dataclass_fields__[name].metadata["spec"]
-    moving = next((node for node in ports(component).values() if not node.fixed), None)
-    translates = moving is not None and moving.domain.value == "translation"
-    return {"N m": "N", "rad/s": "m/s"}.get(spec.unit, spec.unit) if translates else str(spec.unit)
-
-
-def structure_problems(
-    nodes: Sequence[Node], components: Sequence[Component], incomplete: Iterable[str] = ()
-) -> list[Problem]:
-    """What is wrong with the structure of a driveline whose single elements are right."""
-    model = Model(tuple(nodes), tuple(components))
-    if not nodes:
-        return [Problem("driveline", "", "has no shaft", remedy='add one: d.shaft("engine", inertia=0.2)')]
-    made, problems = kinematics(model, incomplete=frozenset(incomplete))
-    if made is not None:
-        _, problems = _start(model, made)
-    return problems
 
 
 def assemble(
@@ -92,7 +40,7 @@ def assemble(
     if made is None:
         raise ModelError(problems)
     _arrange(model, made, independent)
-    (speeds, motions), problems = _start(model, made)
+    speeds, motions, problems = start(model, made)
     if problems:
         raise ModelError(problems)
     pools, wires, columns = Pools(), Wires(), Columns(model, made)
@@ -101,8 +49,8 @@ def assemble(
     arrays |= _rates(model, made, columns, Role.CONTACT, "contact")
     arrays |= _elements(model, pools, wires)
     arrays |= _contacts(model, pools, wires)
-    arrays |= _motions(motions, wires)
-    arrays |= _signals(wires)
+    arrays |= {"prescribed_input": wires.prescribe(motions)}
+    arrays |= wires.arrays()
     arrays |= {"params": pools.params, "points": pools.points, "initial_speed": [float(speed) for speed in speeds]}
     return System(
         name=name,
@@ -118,24 +66,6 @@ def assemble(
         notes=tuple(made.notes),
         model=source or {},
     )
-
-
-def _start(
-    model: Model, made: Kinematics
-) -> tuple[tuple[list[Fraction], list[tuple[Component, Signal]]], list[Problem]]:
-    """Independent speeds at the start, and the prescribed speeds with what drives them."""
-    motions, problems = list[tuple[Component, Signal]](), list[Problem]()
-    for motion in model.role(Role.MOTION):
-        signal = motion.speed if isinstance(motion.speed, Signal) else Constant(float(motion.speed))
-        if motion.cutoff is not None:
-            try:
-                signal = Filtered(waveform.low_pass(signal, motion.cutoff))
-            except ValueError as error:
-                remedy = "leave cutoff out, or give the speed as a table"
-                problems.append(Problem(label(motion), "cutoff", str(error), f"{motion.cutoff:g} Hz", remedy))
-        motions.append((motion, signal))
-    speeds, wrong = initial_speeds(model, made, [waveform.value(signal, 0.0) for _, signal in motions])
-    return (speeds, motions), problems + wrong
 
 
 def _arrange(model: Model, made: Kinematics, wanted: Sequence[str]) -> None:
@@ -227,29 +157,6 @@ def _contacts(model: Model, pools: Pools, wires: Wires) -> dict[str, Any]:
         "contact_state": [0] * len(contacts),
         "contact_tolerance": [float(contact.tolerance) for contact in contacts],
         "contact_initial": [int(contact.locked) for contact in contacts],
-    }
-
-
-def _motions(motions: Sequence[tuple[Component, Signal]], wires: Wires) -> dict[str, Any]:
-    first = len(wires.inputs)
-    for motion, signal in motions:
-        wires.inputs.append(Input(f"{motion.name}.speed", _unit(motion, "speed"), signal))
-    return {"prescribed_input": list(range(first, len(wires.inputs)))}
-
-
-def _signals(wires: Wires) -> dict[str, Any]:
-    """Pieces of all signals, one after another."""
-    pieces = [item.signal.segments() for item in wires.inputs]
-    counts = [len(part) for part in pieces]
-    flat = [piece for part in pieces for piece in part]
-    return {
-        "input_refs": wires.refs,
-        "input_first": [sum(counts[:k]) for k in range(len(counts))],
-        "input_count": counts,
-        "input_period": [item.signal.repeats() for item in wires.inputs],
-        "input_value": [waveform.value(item.signal, 0.0) for item in wires.inputs],
-        "segment_time": [piece.start for piece in flat],
-        "segment_coef": [piece[1:] for piece in flat],
     }
 
 

@@ -1,23 +1,45 @@
-"""Independent speeds at the start from the speeds that were given."""
+"""The start of a motion: independent speeds from the given ones, and what drives the prescribed ones."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from clutchwork.checks import label
 from clutchwork.errors import Problem
-from clutchwork.node import Domain
+from clutchwork.node import Domain, Signal
 from clutchwork.rational import ONE, ZERO, Echelon, Row, exact, smallest
+from clutchwork.schema import Role
+from clutchwork.signals.constant import Constant
+from clutchwork.waveform import low_pass, value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
+    from clutchwork.node import Component
     from clutchwork.structure import Kinematics, Model
 
 # speeds that were rounded when they were written may differ by this share
 ROUNDING = exact(1e-6)
 # column of the right-hand side
 KNOWN = -1
+
+
+def start(model: Model, made: Kinematics) -> tuple[list[Fraction], list[tuple[Component, Signal]], list[Problem]]:
+    """Independent speeds at the start, the prescribed speeds with their signals, and what is wrong with both."""
+    motions: list[tuple[Component, Signal]] = []
+    problems: list[Problem] = []
+    for motion in model.role(Role.MOTION):
+        signal = motion.speed if isinstance(motion.speed, Signal) else Constant(float(motion.speed))
+        if motion.cutoff is not None:
+            try:
+                signal = low_pass(signal, motion.cutoff)
+            except ValueError as error:
+                remedy = "leave cutoff out, or give the speed as a table"
+                problems.append(Problem(label(motion), "cutoff", str(error), f"{motion.cutoff:g} Hz", remedy))
+        motions.append((motion, signal))
+    speeds, wrong = initial_speeds(model, made, [value(signal, 0.0) for _, signal in motions])
+    return speeds, motions, problems + wrong
 
 
 def initial_speeds(model: Model, made: Kinematics, prescribed: Sequence[float]) -> tuple[list[Fraction], list[Problem]]:
@@ -41,10 +63,10 @@ def initial_speeds(model: Model, made: Kinematics, prescribed: Sequence[float]) 
     return [echelon.solved[node].get(KNOWN, ZERO) for node in made.independent], problems
 
 
-def _row(speed: Row, inputs: dict[int, Fraction], value: Fraction) -> Row:
-    """Node speed over the independent ones = value, with the prescribed inputs on the right."""
+def _row(speed: Row, inputs: dict[int, Fraction], wanted: Fraction) -> Row:
+    """Node speed over the independent ones = wanted, with the prescribed inputs on the right."""
     row = {column: factor for column, factor in speed.items() if column not in inputs}
-    known = value - sum((factor * inputs[column] for column, factor in speed.items() if column in inputs), ZERO)
+    known = wanted - sum((factor * inputs[column] for column, factor in speed.items() if column in inputs), ZERO)
     return {**row, KNOWN: known} if known else row
 
 

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import comb, exp, pi, sin
-from typing import TYPE_CHECKING
 
-from clutchwork.node import Segment
+from clutchwork.node import Segment, Signal
 
-if TYPE_CHECKING:
-    from clutchwork.node import Signal
+
+@dataclass(frozen=True)
+class Filtered(Signal):
+    """A signal that has passed a low pass."""
+
+    pieces: tuple[Segment, ...]
+
+    def segments(self) -> tuple[Segment, ...]:
+        """Exact pieces of the response."""
+        return self.pieces
 
 
 def value(signal: Signal, time: float) -> float:
@@ -34,8 +42,8 @@ def piece_value(piece: Segment, time: float) -> float:
     )
 
 
-def low_pass(signal: Signal, cutoff: float) -> tuple[Segment, ...]:
-    """Exact response of dy/dt = 2 pi cutoff (signal - y), y(0) = signal(0), as pieces.
+def low_pass(signal: Signal, cutoff: float) -> Filtered:
+    """Exact response of dy/dt = 2 pi cutoff (signal - y), y(0) = signal(0).
 
     ValueError for signals whose response is no sum of a polynomial and one exponential: sines, pulses, functions.
     """
@@ -50,7 +58,7 @@ def low_pass(signal: Signal, cutoff: float) -> tuple[Segment, ...]:
         piece = _moved(piece, 0.0) if piece.start < 0.0 or not made else piece
         made.append(_filtered(piece, rate, state))
         state = piece_value(made[-1], end) if end is not None else state
-    return tuple(made)
+    return Filtered(tuple(made))
 
 
 def _moved(piece: Segment, start: float) -> Segment:

@@ -1,0 +1,98 @@
+"""All mistakes of a model: of its nodes, its elements, their names, and its structure."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from clutchwork.checks import At, component_problems, connection_problems, label, number_problems
+from clutchwork.errors import Problem
+from clutchwork.kinematics import kinematics
+from clutchwork.node import HOUSING, Component, Domain, Node
+from clutchwork.schema import Spec
+from clutchwork.start import start
+from clutchwork.structure import Model
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+
+def model_problems(
+    nodes: Sequence[Node], elements: Sequence[Component], incomplete: Sequence[str] = ()
+) -> list[Problem]:
+    """All mistakes of a model: of single nodes and elements, then of the structure as far as that can be seen.
+
+    Nothing is said about the inertia of nodes in `incomplete`, which belong to elements that are not there.
+    """
+    problems = [problem for node in nodes for problem in node_problems(node)]
+    sound, broken = list[Component](), list[Component]()
+    problems += name_problems(nodes, elements)
+    for element in elements:
+        found = [*component_problems(element), *connection_problems(element, nodes)]
+        problems += found
+        (broken if found else sound).append(element)
+    return problems + structure_problems(nodes, sound, [*incomplete, *_touched(broken)])
+
+
+def _touched(elements: Sequence[Component]) -> list[str]:
+    """Names of all nodes at the given elements."""
+    return [value.name for element in elements for value in vars(element).values() if isinstance(value, Node)]
+
+
+NODE_FIELDS = {
+    Domain.ROTATION: {
+        "inertia": Spec("param", "kg m2", "moment of inertia", at_least=0.0),
+        "speed": Spec("param", "rad/s", "speed at the start", optional=True),
+        "angle": Spec("param", "rad", "angle at the start"),
+    },
+    Domain.TRANSLATION: {
+        "mass": Spec("param", "kg", "mass", at_least=0.0),
+        "speed": Spec("param", "m/s", "speed at the start", optional=True),
+        "position": Spec("param", "m", "position at the start"),
+    },
+}
+
+
+def node_path(kind: str, name: object) -> str:
+    """Path of a node in messages."""
+    return f'{kind} "{name}"'
+
+
+def node_problems(node: Node) -> list[Problem]:
+    """Mistakes of one shaft or mass."""
+    path = node_path("shaft" if node.domain is Domain.ROTATION else "mass", node.name)
+    values = (node.inertia, node.speed, node.angle)
+    problems: list[Problem] = []
+    for (name, spec), value in zip(NODE_FIELDS[node.domain].items(), values, strict=True):
+        if not (value is None and spec.optional):
+            problems += number_problems(value, spec, At(path, name, spec.unit))
+    return problems
+
+
+def name_problems(nodes: Sequence[Node], elements: Sequence[Component]) -> list[Problem]:
+    """Names that are no text, reserved or given twice."""
+    problems, seen = [], {HOUSING.name: "the housing"}
+    things = [(f'shaft "{node.name}"', node.name) for node in nodes]
+    things += [(label(element), element.name) for element in elements]
+    for path, name in things:
+        if not isinstance(name, str) or not name or name != name.strip():
+            remedy = "give a text without blanks at its ends"
+            problems.append(Problem(path, "name", "must be a text", repr(name), remedy))
+        elif name in seen:
+            remedy = "choose another name: results are found by it"
+            problems.append(Problem(path, "name", f"is taken by {seen[name]}", repr(name), remedy))
+        else:
+            seen[name] = path
+    return problems
+
+
+def structure_problems(
+    nodes: Sequence[Node], components: Sequence[Component], incomplete: Iterable[str] = ()
+) -> list[Problem]:
+    """What is wrong with the structure of a driveline whose single elements are right."""
+    model = Model(tuple(nodes), tuple(components))
+    if not nodes:
+        return [Problem("driveline", "", "has no shaft", remedy='add one: d.shaft("engine", inertia=0.2)')]
+    made, problems = kinematics(model, incomplete=frozenset(incomplete))
+    if made is not None:
+        *_, problems = start(model, made)
+    return problems
