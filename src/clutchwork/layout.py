@@ -1,0 +1,117 @@
+"""The layout of a System in bytes and the codes of the core: the single truth for Python and C++.
+
+Standard library only: the build imports it and writes the C++ side from it.
+"""
+
+from __future__ import annotations
+
+# sizes of a system, in the order in which they stand in the header
+COUNTS = (
+    ("nodes", "shafts and masses, the housing not counted"),
+    ("speeds", "independent speeds v"),
+    ("prescribed", "shafts whose speed is prescribed"),
+    ("elements", "torque elements"),
+    ("contacts", "friction contacts"),
+    ("states", "continuous states of elements and friction laws"),
+    ("inputs", "signals"),
+    ("segments", "segments of all signals"),
+    ("params", "numbers in the parameter pool"),
+    ("points", "points in the curve pool"),
+    ("input_refs", "references from components to signals"),
+)
+
+# (name, type, shape, meaning); directions are those of the elements, then those of the contacts
+FIELDS = (
+    ("basis", "f8", ("nodes", "speeds"), "node speeds w = basis v + basis_prescribed u"),
+    ("basis_prescribed", "f8", ("nodes", "prescribed"), "share of the prescribed speeds in the node speeds"),
+    ("inertia", "f8", ("nodes",), "inertia [kg m2] or mass [kg] of each node"),
+    ("mass", "f8", ("speeds", "speeds"), "M = basis' diag(inertia) basis; zero row for a massless coordinate"),
+    ("mass_prescribed", "f8", ("speeds", "prescribed"), "basis' diag(inertia) basis_prescribed"),
+    ("massless", "i4", ("speeds",), "1 where the speed is algebraic"),
+    ("element_rate", "f8", ("elements", "speeds"), "rate of each element per independent speed"),
+    ("element_rate_prescribed", "f8", ("elements", "prescribed"), "rate per prescribed speed"),
+    ("element_kind", "i4", ("elements",), "number of the kind among the torque elements"),
+    ("element_param", "i4", ("elements",), "offset into params"),
+    ("element_state", "i4", ("elements",), "offset into states"),
+    ("element_input", "i4", ("elements",), "offset into input_refs"),
+    ("contact_rate", "f8", ("contacts", "speeds"), "slip of each contact per independent speed"),
+    ("contact_rate_prescribed", "f8", ("contacts", "prescribed"), "slip per prescribed speed"),
+    ("contact_kind", "i4", ("contacts",), "number of the kind among the contacts"),
+    ("contact_param", "i4", ("contacts",), "offset into params"),
+    ("contact_input", "i4", ("contacts",), "offset into input_refs"),
+    ("contact_law", "i4", ("contacts",), "number of the friction law"),
+    ("contact_law_param", "i4", ("contacts",), "offset of the law's parameters into params"),
+    ("contact_state", "i4", ("contacts",), "offset of the law's states into states"),
+    ("contact_tolerance", "f8", ("contacts",), "slip [rad/s] below which it may lock; 0: exact zero crossing"),
+    ("contact_initial", "i4", ("contacts",), "0: decided by slip and load, 1: locked at the start"),
+    ("prescribed_input", "i4", ("prescribed",), "signal that gives the prescribed speed"),
+    ("input_refs", "i4", ("input_refs",), "signal numbers, read through element_input and contact_input"),
+    ("input_first", "i4", ("inputs",), "first segment of each signal"),
+    ("input_count", "i4", ("inputs",), "number of segments; 0: set from outside, held constant"),
+    ("input_period", "f8", ("inputs",), "period [s] with which the segments repeat, 0: never"),
+    ("input_value", "f8", ("inputs",), "initial value of a signal that is set from outside"),
+    ("segment_time", "f8", ("segments",), "start of each segment [s]; the first holds for all earlier times"),
+    (
+        "segment_coef",
+        "f8",
+        ("segments", 8),
+        "c0..c3, amplitude, omega, phase, decay: with s = t - start,"
+        " c0 + c1 s + c2 s^2 + c3 s^3 + amplitude exp(-decay s) sin(omega s + phase)",
+    ),
+    ("params", "f8", ("params",), "parameters of all components; a curve is (first point, number of points)"),
+    ("points", "f8", ("points", 3), "x, y, slope to the next point"),
+    ("initial_speed", "f8", ("speeds",), "v at the start"),
+    ("initial_angle", "f8", ("nodes",), "angle [rad] or position [m] at the start"),
+    ("initial_state", "f8", ("states",), "states at the start"),
+)
+
+# what one row of the output holds, in order: (name, size)
+ROW = (
+    ("speed", "nodes"),
+    ("angle", "nodes"),
+    ("acceleration", "nodes"),
+    ("state", "states"),
+    ("element_torque", "elements"),
+    ("contact_torque", "contacts"),
+    ("element_work", "elements"),
+    ("contact_work", "contacts"),
+    ("contact_mode", "contacts"),
+    ("contact_capacity", "contacts"),
+    ("prescribed_work", "prescribed"),
+    ("input", "inputs"),
+)
+
+# one event, in order
+EVENT = (
+    ("time", "s"),
+    ("contact", "index"),
+    ("from", "mode"),
+    ("to", "mode"),
+    ("cause", "code"),
+    ("slip_acceleration", "rad/s2"),
+    ("torque_before", "N m"),
+    ("torque_after", "N m"),
+    ("energy_before", "J"),
+    ("energy_after", "J"),
+)
+
+MODES = {-1: "backward", 0: "locked", 1: "forward", 2: "open"}
+
+# why a run returned: (name, message, remedy)
+STATUS = (
+    ("done", "reached the end time", ""),
+    ("rows_full", "the output buffer is full", "continue with a new buffer"),
+    ("events_full", "the event buffer is full", "drain the events and continue"),
+    ("step_collapse", "the step size collapsed", "look for a discontinuous signal or loosen the tolerances"),
+    ("not_finite", "a value is not finite", "check the parameters and signals of the named element"),
+    ("too_many_steps", "the budget of steps is spent", "raise max_steps or shorten the run"),
+    ("too_many_events", "the budget of events is spent", "raise max_events or shorten the run"),
+    ("zeno", "more than 50 events within a microsecond", "give the named contact some inertia or damping"),
+    ("no_mode", "no set of sticking contacts fits", "report this model: it should not happen"),
+    ("bad_system", "the system bytes do not fit this core", "assemble the driveline again with this version"),
+)
+
+
+def layout_text() -> str:
+    """Fingerprint text of the layout."""
+    return repr((COUNTS, FIELDS, ROW, EVENT, [name for name, *_ in STATUS]))
