@@ -52,14 +52,16 @@ def initial_speeds(model: Model, made: Kinematics, prescribed: Sequence[float]) 
     given = {node: speed for node, speed in enumerate(model.speed) if speed is not None and node not in made.loose}
     slack = ROUNDING * max([ONE, *map(abs, given.values())])
     echelon, used, problems = Echelon(made.independent), dict[int, Row](), list[Problem]()
-    for node in (*given, *(node for node in range(len(model.nodes)) if node not in given)):
+    # shafts between springs follow from all others, so they come last
+    rest = sorted(set(range(len(model.nodes))) - given.keys(), key=lambda node: (node in made.loose, node))
+    for node in (*given, *rest):
         row = _row(made.speeds[node], inputs, given.get(node, ZERO))
-        rest = echelon.rest(row)
-        if rest.keys() - {KNOWN}:
+        left = echelon.rest(row)
+        if left.keys() - {KNOWN}:
             echelon.add(row)
             used[node] = row
-        elif node in given and abs(rest.get(KNOWN, ZERO)) > slack:
-            problems.append(_problem(model, used, node, row, rest[KNOWN]))
+        elif node in given and abs(left.get(KNOWN, ZERO)) > slack:
+            problems.append(_problem(model, used, node, row, left[KNOWN]))
     return [echelon.solved[node].get(KNOWN, ZERO) for node in made.independent], problems
 
 

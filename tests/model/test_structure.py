@@ -235,6 +235,21 @@ def test_given_speed_of_a_shaft_between_springs_is_no_contradiction():
     assert _messages(d) == []
 
 
+@pytest.mark.parametrize("first", [_spring(300.0), _shaft(300.0, 1e-9)], ids=["series", "massless"])
+def test_a_shaft_without_inertia_between_springs_moves_as_in_closed_form(first):
+    """Two inertias of 1 kg m2 on 300 and 500 N m/rad in series; one starts at 10 rad/s."""
+    d = cw.Driveline()
+    a, x, b = d.shaft("a", inertia=1.0, speed=10.0), d.shaft("x"), d.shaft("b", inertia=1.0)
+    d.add(first("k1", base=a, follower=x))
+    d.add(cw.Spring("k2", base=x, follower=b, stiffness=500.0))
+    run = d.simulate(1.0, dt=0.01, rtol=1e-9, atol=1e-9)
+    swing = 5.0 * np.cos(np.sqrt(2 * 187.5) * run.time)
+    np.testing.assert_allclose(run["a.speed"], 5.0 + swing, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(run["b.speed"], 5.0 - swing, rtol=0, atol=1e-6)
+    # at the very start the vanishing damper alone holds the massless shaft
+    np.testing.assert_allclose(run["x.speed"][1:], (5.0 - 0.25 * swing)[1:], rtol=0, atol=1e-5)
+
+
 @pytest.mark.parametrize("other", [_spring(10.0), _shaft(10.0, 1.0), _clutch], ids=["spring", "damped", "clutch"])
 def test_contact_at_a_shaft_without_inertia(other):
     (message,) = _messages(_between(_clutch, other))
