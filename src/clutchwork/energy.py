@@ -104,8 +104,8 @@ def is_source(branch: Branch) -> bool:
 
 
 def _impulses(events: Events) -> float:
-    """Energy lost where speeds jumped; contacts that lock in one instant share one impulse."""
-    jumps = {(e.time, e.energy_before, e.energy_after) for e in events if e.cause == "impulse"}
+    """Energy lost where speeds jumped; contacts that change in one instant share one impulse."""
+    jumps = {(e.time, e.energy_before, e.energy_after) for e in events}
     return sum(before - after for _, before, after in jumps)
 
 

@@ -1,0 +1,153 @@
+"""The command line: what it prints, writes and returns."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from clutchwork.cli import main
+
+MODEL = """
+name = "two discs"
+[simulation]
+t_end = 2.0
+[[shaft]]
+name = "engine"
+inertia = 0.2
+speed = 100.0
+[[shaft]]
+name = "load"
+inertia = 0.8
+[[element]]
+name = "c1"
+type = "clutch"
+base = "engine"
+follower = "load"
+gain = 1.0
+normal_force = 100.0
+friction = {type = "coulomb", static = 0.1, kinetic = 0.1}
+"""
+
+SIX_SPEED = Path(__file__).resolve().parents[2] / "examples" / "six_speed" / "model.toml"
+
+
+@pytest.fixture
+def model(tmp_path: Path) -> Path:
+    path = tmp_path / "model.toml"
+    path.write_text(MODEL, encoding="utf-8")
+    return path
+
+
+def test_run_prints_events_energy_and_effort(model: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(model)]) == 0
+    out = capsys.readouterr().out
+    assert "1.600000" in out
+    assert "locked" in out
+    assert "residual" in out
+    assert "steps" in out
+
+
+def test_run_writes_what_is_asked_for(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = [tmp_path / "a" / name for name in ("out.csv", "events.csv")]
+    assert main(["run", str(model), "--csv", str(files[0]), "--events", str(files[1]), "--dt", "0.1", "--quiet"]) == 0
+    assert len(files[0].read_text().splitlines()) == 22
+    assert files[1].read_text().startswith("time [s],element,before,after")
+    assert capsys.readouterr().out == ""
+
+
+def test_run_writes_a_folder_with_picture(model: Path, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    assert main(["run", str(model), "--out", str(tmp_path / "out")]) == 0
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["events.csv", "picture.png", "trajectory.csv"]
+    assert (tmp_path / "out" / "picture.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_json(model: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(model), "--json", "--t-end", "1.7", "--rtol", "1e-9", "--method", "dopri5"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["status"] == "done"
+    assert told["time_s"] == 1.7
+    assert told["events"][0]["element"] == "c1"
+    assert told["final"]["load.speed"] == pytest.approx(20.0)
+    assert told["energy"]["heat_J"]["c1"] == pytest.approx(800.0)
+
+
+def test_check_lists_the_gears(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(SIX_SPEED)]) == 0
+    out = capsys.readouterr().out
+    assert "4 independent speeds" in out
+    for closed, ratio in {"F2 F4": "2.4886", "F1 F4": "1.8302", "F2 F5": "-5.0309", "F1 F3": "1.0000"}.items():
+        assert any(line.split() == [*closed.split(), ratio] for line in out.splitlines())
+    assert main(["check", str(SIX_SPEED), "--json", "--ratio", "w8/w1"]) == 0
+    gears = {tuple(g["closed"]): g["ratio"] for g in json.loads(capsys.readouterr().out)["gears"]}
+    assert gears["F1", "F6"] == pytest.approx(1 / 3.35, abs=1e-12)
+
+
+def test_the_demonstration(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib")
+    assert main(["demo", "--out", str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    assert "2.4886 -> 1.8302 by gears" in out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["events.csv", "shift.png", "trajectory.csv"]
+    events = [line.split(",") for line in (tmp_path / "events.csv").read_text().splitlines()[1:]]
+    assert [line[1:4] for line in events] == [
+        ["F2", "backward", "locked"],
+        ["F2", "locked", "backward"],
+        ["F2", "backward", "forward"],
+        ["F1", "forward", "locked"],
+    ]
+    # from an independent solver at rtol 1e-9; ours runs at 1e-6 here
+    times = [0.5480809432868581, 2.149267898385477, 2.2428855485606327, 2.7397556553095317]
+    assert [float(line[0]) for line in events] == pytest.approx(times, abs=1e-6)
+
+
+def test_every_mistake_of_a_model_is_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_text(MODEL.replace("inertia = 0.8", "inertai = 0.8").replace('"clutch"', '"cluch"'), encoding="utf-8")
+    assert main(["run", str(path)]) == 3
+    told = capsys.readouterr().err
+    assert "did you mean 'inertia'" in told
+    assert "did you mean 'clutch'" in told
+    assert main(["check", str(path), "--json"]) == 3
+    assert len(json.loads(capsys.readouterr().out)["problems"]) >= 2
+
+
+def test_a_model_that_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(tmp_path / "none.toml")]) in (3, 4)
+    assert "none.toml" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("extra", "words"),
+    [
+        (["--rtol", "-1"], "rtol is -1"),
+        (["--t-end", "0"], "t_end is 0 s"),
+        (["--ratio", "engine/lod"], "did you mean 'load'"),
+    ],
+)
+def test_wrong_options(model: Path, extra: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(model), *extra]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_no_end_time(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "model.toml"
+    path.write_text(MODEL.replace("[simulation]\nt_end = 2.0\n", ""), encoding="utf-8")
+    assert main(["run", str(path)]) == 2
+    assert "--t-end" in capsys.readouterr().err
+
+
+def test_unknown_commands_and_options_are_refused_by_code_2() -> None:
+    for line in (["fly"], ["run"], ["run", "m.toml", "--methd", "x"], []):
+        with pytest.raises(SystemExit) as stopped:
+            main(line)
+        assert stopped.value.code == 2
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(["--version"])
+    assert stopped.value.code == 0
+    assert capsys.readouterr().out.startswith("clutchwork")

@@ -1,0 +1,71 @@
+"""Pictures: what is drawn, and that matplotlib stays out until one is wanted."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+
+pytest.importorskip("matplotlib")
+
+SIX_SPEED = Path(__file__).resolve().parents[2] / "examples" / "six_speed" / "model.toml"
+
+
+@pytest.fixture(scope="module")
+def run() -> cw.Trajectory:
+    return cw.Driveline.load(SIX_SPEED).simulate(4.0)
+
+
+def test_the_panels_of_a_gear_shift(run: cw.Trajectory, tmp_path: Path) -> None:
+    figure = run.plot(tmp_path / "shift.svg")
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    assert [title[0] for title in titles] == ["a", "b", "c", "d", "e"]
+    assert "pressures" in titles[2]
+    assert figure.axes[2].get_ylabel() == "pressure, MPa"
+    assert len(figure.axes[0].get_legend().get_texts()) == 8
+    assert (tmp_path / "shift.svg").stat().st_size > 10_000
+
+
+def test_legends_cover_no_curve(run: cw.Trajectory) -> None:
+    figure = run.plot()
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        legend = axes.get_legend()
+        if legend is not None:
+            assert legend.get_window_extent().x0 >= axes.get_window_extent().x1
+
+
+def test_the_zoom_shows_the_chosen_lock_up(run: cw.Trajectory) -> None:
+    first = next(event for event in run.events if event.after == "locked")
+    axes = run.plot(lockup=first).axes[1]
+    left, right = axes.get_xlim()
+    assert left < first.time < right
+    assert axes.texts[0].get_text() == f"{first.element} locks at {first.time:.4f} s"
+
+
+def test_a_model_without_contacts_and_one_that_moves_along_a_line() -> None:
+    d = cw.Driveline()
+    block, wall = d.mass("block", mass=1.0, speed=1.0), d.housing
+    d.add(cw.Spring("spring", base=wall, follower=block, stiffness=10.0))
+    figure = d.simulate(1.0).plot()
+    assert len(figure.axes) == 1
+    assert figure.axes[0].get_ylabel() == "speed, m/s"
+
+
+def test_spans_of_locked_phases() -> None:
+    from clutchwork.plot.panels import spans
+
+    time = np.array([0.0, 1.0, 2.0, 2.0, 3.0, 4.0])
+    assert spans(time, np.array([False, True, True, False, False, True])) == [(1.0, 1.0), (4.0, 0.0)]
+    assert spans(time, np.ones(6, dtype=bool)) == [(0.0, 4.0)]
+    assert spans(time, np.zeros(6, dtype=bool)) == []
+
+
+def test_matplotlib_is_imported_when_a_picture_is_drawn() -> None:
+    code = "import sys, clutchwork, clutchwork.trajectory, clutchwork.plot; assert 'matplotlib' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)
