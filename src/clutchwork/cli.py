@@ -94,8 +94,8 @@ def _run(asked: argparse.Namespace) -> int:
     system = driveline.assemble()
     shafts = _shafts(system, asked.ratio)
     run = _simulated(driveline, system, asked)
-    found = phases(run, shafts) if shafts else []
-    written = _write(run, asked)
+    found = phases(run, shafts) if shafts and len(run) else []
+    written = _write(run, asked) if len(run) else []
     if asked.json:
         _print_json(report.run_data(run, found, shafts) | {"files": [str(path) for path in written]})
     elif not asked.quiet:

@@ -21,6 +21,8 @@ MOST_LINES = 40
 
 def run_text(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] | None) -> str:
     """Events, gears, energy and effort of a run."""
+    if not len(run):
+        return "nothing was computed"
     parts = [event_text(run.events)]
     if phases and shafts is not None:
         parts.append(phase_text(phases, shafts))

@@ -103,6 +103,8 @@ class Trajectory:
         """Energy balance between the first and the last instant."""
         if not self.options.work:
             raise ValueError("the energy balance needs the work integrals: run with work=True")
+        if not len(self):
+            raise ValueError(f"no instant was computed, so there is no energy balance: {self.message}")
         window = [e for e in self.events if self.time[0] <= e.time <= self.time[-1]]
         return balance(self.wiring, self.rows, Events(window))
 

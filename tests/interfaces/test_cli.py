@@ -124,7 +124,7 @@ def test_a_model_that_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture
     [
         (["--rtol", "-1"], "rtol is -1"),
         (["--t-end", "0"], "t_end is 0 s"),
-        (["--ratio", "engine/lod"], "did you mean 'load'"),
+        (["--ratio", "engine/loads"], "did you mean 'load'"),
     ],
 )
 def test_wrong_options(model: Path, extra: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
