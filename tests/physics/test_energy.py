@@ -24,7 +24,9 @@ def test_random_drivelines(seed: int) -> None:
     run = random_drivelines.describe(seed).driveline().simulate(random_drivelines.T_END, rtol=1e-9, atol=1e-11)
     assert abs(run.energy.residual) <= RESIDUAL * run.energy.turnover
     for i in range(3):
-        assert np.max(run[f"c{i}.power"]) <= 0.0
+        power = run[f"c{i}.power"]
+        # round-off of a slip at the very instant of its zero
+        assert np.max(power) <= 1e-14 * np.max(np.abs(power))
         assert np.all(np.diff(run[f"c{i}.heat"]) >= -1e-12 * run.energy.turnover)
 
 

@@ -46,8 +46,8 @@ def test_mass_matrix() -> None:
     M = d.assemble(independent=INDEPENDENT).mass
     # round-off of sums of eight products
     assert np.allclose(M, expected_mass(), rtol=1e-14, atol=1e-13)
-    # printed check values, nine digits
-    printed = [33.9767660, -19.8608760, 29.7350760, 9.56162586, -19.8460521, 71.1604783]
+    # printed check values, nine digits; the page prints Ja with two digits swapped: 19.37 + 1.89 2.78^2 = 33.976676
+    printed = [33.9766760, -19.8608760, 29.7350760, 9.56162586, -19.8460521, 71.1604783]
     assert [M[0, 0], M[0, 1], M[1, 1], M[2, 2], M[2, 3], M[3, 3]] == pytest.approx(printed, rel=1e-8)
     # no coupling between divider and base gearbox, exactly
     assert np.all(M[:2, 2:] == 0.0)

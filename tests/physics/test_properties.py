@@ -22,7 +22,9 @@ def test_energy_closes_and_friction_never_makes_power(seed: int) -> None:
     # 1e-8: asked for
     assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
     for i in range(3):
-        assert np.max(run[f"c{i}.power"]) <= 0.0
+        power = run[f"c{i}.power"]
+        # round-off of a slip at the very instant of its zero
+        assert np.max(power) <= 1e-14 * np.max(np.abs(power))
 
 
 @given(SEEDS)

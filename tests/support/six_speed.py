@@ -56,7 +56,8 @@ def members(
 ) -> tuple[cw.Driveline, dict[str, cw.Node]]:
     """The eight members, four planetary rows and the elastic shaft, without clutches and torques."""
     d = cw.Driveline("six-speed gearbox")
-    w = {name: d.shaft(name, inertia=J, speed=speeds.get(name, 0.0)) for name, J in INERTIA.items()}
+    # a speed that is not given follows from the others
+    w = {name: d.shaft(name, inertia=J, speed=speeds.get(name)) for name, J in INERTIA.items()}
     w["housing"] = d.housing
     d.add(cw.Planetary("divider", sun=w["w3"], ring=w["w1"], carrier=w["w2"], ratio=K1))
     d.add(cw.Planetary("row1", sun=w["w4"], ring=w["w5"], carrier=w["w6"], ratio=K2))

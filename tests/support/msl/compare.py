@@ -98,6 +98,8 @@ def modes(run: Any, contact: str, times: np.ndarray, reference: np.ndarray) -> l
 def changes(run: Any, contact: str, times: np.ndarray, reference: np.ndarray) -> list[str]:
     """Changes of mode of the reference that have no event of ours within 5e-6 s, and the other way round."""
     places = np.flatnonzero(np.diff(reference) != 0)
+    # a clutch that opens or closes while it slips is no event of ours: its torque passes zero
+    places = [i for i in places if 0 in (reference[i], reference[i + 1]) or 2 not in (reference[i], reference[i + 1])]
     # the change lies between two rows of the reference; an event of it stands twice, so the bracket is narrow
     theirs = [(times[i], times[i + 1]) for i in places if times[i] > 0]
     ours = [e.time for e in run.events.of(contact).changes() if e.time > 0]
