@@ -4,31 +4,12 @@
 /// The whole run: modes, smooth phase, switch, until the end time.
 namespace clutchwork {
 
-/// Whether an explicit step is limited by accuracy and not by stability in the present phase.
-template <class T>
-bool explicit_suits(const Workspace<T>& ws) {
-  if (ws.options.method != Method::automatic) return ws.options.method == Method::dopri5;
-  const int nv = int(ws.sys.speeds);
-  double damping = 0, stiffness = 0;
-  for (int k = 0; k < ws.n_branches; ++k) {
-    const T* row = ws.direction + ws.branch[k].direction * nv;
-    const double mobility = value(dot(nv, row, row));
-    damping += mobility * abs(value(ws.partial[k].by_rate));
-    for (int s = 0; s < ws.branch[k].states; ++s) {
-      const int i = ws.branch[k].state + s;
-      stiffness += mobility * abs(value(ws.f_state[i] * ws.g_rate[i]));
-    }
-  }
-  const double fastest = damping + sqrt(stiffness), h = ws.last_step > 0 ? ws.last_step : 1e-3;
-  return fastest * h < 1.0;
-}
-
 template <class Form>
 Status run_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink) {
-  // speeds without inertia are algebraic: only the implicit method carries them
-  bool algebraic = false;
-  for (int i = 0; i < ws.sys.speeds; ++i) algebraic = algebraic || ws.sys.massless[i] != 0;
-  if (!algebraic && explicit_suits(ws)) return smooth_phase<Form, Dopri5>(ws, t_end, sink);
+  // the explicit method serves soft models of any size; only the sparse form carries it
+  if constexpr (!Form::small) {
+    if (ws.is_explicit) return smooth_phase<Form, Dopri5>(ws, t_end, sink);
+  }
   return smooth_phase<Form, Rodas5P>(ws, t_end, sink);
 }
 
@@ -57,11 +38,13 @@ bool start(Workspace<T>& ws) {
   for (int d = 0; d < ws.n_directions; ++d) ws.work[d] = T(0), ws.piece[d] = 0;
   for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_work[p] = T(0);
   load_inputs(ws, ws.time);
+  for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];
   input_slopes_at(ws, ws.time);
   for (int c = 0; c < sys.contacts; ++c) {
     ws.forced[c] = ws.held[c] = ws.loaded[c] = 0;
     const double slip = value(rate_of(ws, int(sys.elements) + c));
     ws.mode[c] = abs(slip) <= slip_tolerance(ws) ? open : slip > 0 ? forward : backward;
+    ws.mode_before[c] = ws.mode[c];
   }
   for (int d = 0; d < sys.elements; ++d) {
     if (edge_count(ws, d) > 0) ws.piece[d] = piece_of(ws, d, value(rate_of(ws, d)));

@@ -93,27 +93,30 @@ Status switch_modes(Workspace<T>& ws) {
   if (ws.statistics.events > ws.options.max_events) return Status::too_many_events;
 
   // forced break-aways last while time stands
-  if (abs(ws.time - ws.forced_time) > 4e-16 * abs(ws.time)) {
+  if (ws.time - ws.forced_time > 1e-9 + 1e-12 * abs(ws.time)) {
     for (int c = 0; c < nc; ++c) ws.forced[c] = 0;
     ws.forced_time = ws.time;
   }
   if (ws.cause == Cause::slip_zero && ws.located >= 0) ws.forced[ws.located] = 0;
 
-  const double before = kinetic_energy(ws);
   if (!at_start) prescribed_jump(ws);
-  if (!settle_impulses(ws, at_start) || !settle_contacts(ws, ws.located)) return Status::no_mode;
-  if (at_start || sys.elements > 0) {
-    for (int d = 0; d < ne; ++d) ws.piece[d] = edge_count(ws, d) > 0 ? piece_of(ws, d, value(rate_of(ws, d))) : 0;
+  const double before = kinetic_energy(ws);
+  if (!settle_impulses(ws, at_start)) return Status::no_mode;
+  if (at_start) {
+    for (int c = 0; c < nc; ++c) ws.impulse[c] = ws.mode[c] == locked && ws.mode_before[c] != locked;
+  }
+  if (!settle_contacts(ws, ws.located)) return Status::no_mode;
+  for (int d = 0; d < ne; ++d) {
+    if (edge_count(ws, d) > 0) ws.piece[d] = piece_of(ws, d, value(rate_of(ws, d)));
   }
   ws.fresh_phase = true;
-  if (at_start) return Status::running;
 
   const double after = kinetic_energy(ws);
   T* acceleration = ws.qp_w;
   accelerations_after(ws, acceleration);
   for (int c = 0; c < nc; ++c) {
-    if (ws.mode[c] == ws.mode_before[c]) continue;
-    const Cause cause = c == ws.located || ws.located < 0 ? ws.cause : Cause::consequence;
+    if (ws.mode[c] == ws.mode_before[c] || (at_start && !ws.impulse[c])) continue;
+    const Cause cause = at_start ? Cause::impulse : c == ws.located || ws.located < 0 ? ws.cause : Cause::consequence;
     const double hits = value(ws.mode[c] == locked ? ws.slip_slope[c] : acceleration[c]);
     record(ws, c, ws.mode_before[c], ws.mode[c], cause, hits, value(ws.torque_before[c]), value(torque_after(ws, c)), before,
            after);

@@ -21,6 +21,16 @@ CLUTCHWORK_INLINE double segment_slope(const double* c, double s) {
   return x;
 }
 
+/// Integral of a segment from its start to s seconds later.
+inline double segment_integral(const double* c, double s) {
+  double x = s * (c[0] + s * (c[1] / 2 + s * (c[2] / 3 + s * c[3] / 4)));
+  if (c[4] == 0) return x;
+  const double w = c[5], d = c[7], norm = w * w + d * d;
+  if (norm == 0) return x + c[4] * sin(c[6]) * s;
+  auto part = [&](double at) { return -exp(-d * at) * (d * sin(w * at + c[6]) + w * cos(w * at + c[6])); };
+  return x + c[4] * (part(s) - part(0)) / norm;
+}
+
 /// Start of segment k of signal i, the repeated ones included (k counts on through the cycles).
 inline double segment_start(const System& sys, int i, std::int64_t k) {
   const int n = sys.input_count[i];

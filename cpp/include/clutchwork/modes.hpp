@@ -161,9 +161,9 @@ bool settle_contacts(Workspace<T>& ws, int located) {
   // who may stick
   for (int c = 0; c < nc; ++c) {
     const double slip = ws.mode[c] == locked ? 0.0 : value(rate_of(ws, int(sys.elements) + c));
-    const double reach = larger(tolerance, c == located ? sys.contact_tolerance[c] * (1 + 1e-9) : 0.0);
     ws.held[c] = 0;
-    candidate[c] = ws.loaded[c] && (ws.mode[c] == locked || abs(slip) <= reach || c == located);
+    const bool arrived = c == located && ws.cause != Cause::input;
+    candidate[c] = ws.loaded[c] && (ws.mode[c] == locked || abs(slip) <= tolerance || arrived);
     if (!ws.loaded[c]) {
       if (abs(slip) > tolerance) ws.mode[c] = slip > 0 ? forward : backward;
       else if (ws.mode[c] == locked) ws.mode[c] = open;
@@ -228,7 +228,8 @@ bool settle_contacts(Workspace<T>& ws, int located) {
       const int c = list[a];
       const double x = value(p.x[a]), upper = value(p.upper[a]), lower = value(p.lower[a]);
       const double limit = x > 0 ? upper : -lower;
-      const bool at_limit = p.bound[a] != 0 || abs(x) >= limit * (1 - 1e-7);
+      const bool breaks = c == located && ws.cause == Cause::torque_limit;
+      const bool at_limit = p.bound[a] != 0 || breaks || abs(x) >= limit * (1 - 1e-7);
       if (!at_limit || is_rigid(ws, c)) continue;
       // is its direction spanned by those that still have room?
       T* rows = ws.scratch + sys.states + 1 + nv;

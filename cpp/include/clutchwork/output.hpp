@@ -139,14 +139,13 @@ T fitted_work(const Workspace<T>& ws, int i, double x, double h) {
   return T(h) * r * (c[0] + r * (c[n] / T(2) + r * (c[2 * n] / T(3) + r * c[3 * n] / T(4))));
 }
 
-/// Integral over the step to s of what the prescribed speeds add to the angle of node n (Gauss rule, three points).
+/// Integral of prescribed speed p from t over h.
 template <class T>
-T prescribed_angle(Workspace<T>& ws, int p, double t, double h) {
-  static constexpr double node[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
-  static constexpr double weight[3] = {5. / 18, 8. / 18, 5. / 18};
-  double sum = 0;
-  for (int i = 0; i < 3; ++i) sum += weight[i] * signal_value(ws, ws.sys.prescribed_input[p], t + node[i] * h);
-  return T(sum * h);
+T prescribed_angle(const Workspace<T>& ws, int p, double t, double h) {
+  const Signal& signal = ws.signal[ws.sys.prescribed_input[p]];
+  if (!signal.varying) return T(signal_value(ws, ws.sys.prescribed_input[p], t) * h);
+  const double s = t - signal.start;
+  return T(segment_integral(signal.coef, s + h) - segment_integral(signal.coef, s));
 }
 
 /// Angles of all nodes at s, from those at the start of the step.

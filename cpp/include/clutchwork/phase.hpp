@@ -4,6 +4,36 @@
 /// One smooth phase: from an event to the next one.
 namespace clutchwork {
 
+/// Whether some speed has no inertia and is algebraic.
+template <class T>
+bool has_massless(const Workspace<T>& ws) {
+  for (int i = 0; i < ws.sys.speeds; ++i) {
+    if (ws.sys.massless[i] != 0) return true;
+  }
+  return false;
+}
+
+/// Whether an explicit step is limited by accuracy and not by stability in the present phase.
+template <class T>
+bool explicit_suits(Workspace<T>& ws) {
+  // speeds without inertia are algebraic: only the implicit method carries them
+  if (has_massless(ws)) return false;
+  if (ws.options.method != Method::automatic) return ws.options.method == Method::dopri5;
+  const int nv = int(ws.sys.speeds);
+  double damping = 0, stiffness = 0;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const Branch<T>& b = ws.branch[k];
+    const StatePartials<T> out{ws.f_state + b.state, ws.g_rate + b.state, ws.g_time + b.state, ws.g_state + ws.block[k]};
+    const Partial<T> p = branch_partial(ws, b, rate_of(ws, b.direction), T(0), ws.state, ws.scratch, out);
+    const T* row = ws.direction + b.direction * nv;
+    const double mobility = value(dot(nv, row, row));
+    damping += mobility * abs(value(p.by_rate));
+    for (int s = 0; s < b.states; ++s) stiffness += mobility * abs(value(out.f_state[s] * out.g_rate[s]));
+  }
+  const double fastest = damping + sqrt(stiffness), h = ws.last_step > 0 ? ws.last_step : 1e-3;
+  return fastest * h < 1.0;
+}
+
 /// Reduced motion of the present modes; the state goes to ws.y.
 template <class T>
 void enter_mode(Workspace<T>& ws) {
@@ -14,8 +44,8 @@ void enter_mode(Workspace<T>& ws) {
   map_prescribed(ws, basis);
   pack_branches(ws);
   map_multipliers(ws);
-  ws.sparse = ws.nz > small_speeds || sys.states > small_states;
-  for (int i = 0; i < sys.speeds; ++i) ws.sparse = ws.sparse || sys.massless[i] != 0;
+  ws.is_explicit = explicit_suits(ws);
+  ws.sparse = ws.is_explicit || ws.nz > small_speeds || sys.states > small_states || has_massless(ws);
   if (ws.sparse) {
     reduce_rates(ws);
     reduce_sparse(ws);
@@ -176,6 +206,21 @@ void direct_open(Form& form, const Edge<typename Form::Scalar>& edge) {
   if (changed) list_lines(ws);
 }
 
+/// Longest step that resolves the oscillating signals: half a radian of a sine, half a time constant of a decay.
+template <class T>
+double signal_step(const Workspace<T>& ws) {
+  double fastest = 0;
+  for (int k = 0; k < ws.n_varying; ++k) {
+    const Signal& signal = ws.signal[ws.ref_signal[ws.varying[k]]];
+    const double* c = signal.coef;
+    if (signal.linear || c[4] == 0) continue;
+    // a decay of 25 time constants has died
+    if (c[7] * (ws.time - signal.start) > 25) continue;
+    fastest = larger(fastest, larger(abs(c[5]), abs(c[7])));
+  }
+  return fastest > 0 ? 0.5 / fastest : infinity;
+}
+
 /// Integrate until an event, the end time, or a full buffer. `running`: an event is waiting to be settled.
 template <class Form, class Integrator>
 Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink) {
@@ -210,7 +255,7 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
 
     // step, onto knots and the end exactly
     const double stop = smaller(t_end, ws.next_knot);
-    double reach = smaller(h, ws.options.max_step);
+    double reach = smaller(smaller(h, signal_step(ws)), ws.options.max_step);
     const bool cut = ws.time + 1.0001 * reach >= stop;
     if (cut) reach = stop - ws.time;
     step.t = ws.time;
@@ -271,7 +316,8 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
     }
 
     // switch
-    ws.last_step = cut ? larger(h, reach) : reach;
+    // after an event a quarter of the step before it; events at one instant do not shrink it further
+    ws.last_step = s * reach > 1e-9 * larger(1e-3, h) ? larger(h, reach) : larger(4 * h, reach);
     if (s > 0) note_before(form, step, s);
     else note_before(form, step, 0.0);
     interpolate(form, step, s, step.u());
@@ -280,6 +326,7 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
     ws.input_time = -infinity;
     export_state(form, step.y0());
     input_slopes_at(ws, ws.time);
+    for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];
     const LineGuard* guard = hit.what == Hit::line ? &ws.line[hit.index] : nullptr;
     if (guard != nullptr && guard->kind != LineGuard::slip) {
       pass_line(form, *guard);

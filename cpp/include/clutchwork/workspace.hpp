@@ -110,7 +110,7 @@ struct Workspace {
   // the present mode
   int n_locked = 0, rank = 0, nz = 0, n_branches = 0, n_rates = 0, n_lines = 0, n_watch = 0, n_undirected = 0;
   int* locked = nullptr;
-  bool sparse = false;
+  bool sparse = false, is_explicit = false;
   T *z_basis = nullptr, *y_basis = nullptr, *pinv = nullptr;
   T *row_z = nullptr, *offset = nullptr, *reach = nullptr, *reach_prescribed = nullptr;
   Branch<T>* branch = nullptr;
@@ -121,7 +121,7 @@ struct Workspace {
   int* block = nullptr;
   Edge<T> here{}, there{};
   T *torque = nullptr, *output_torque = nullptr, *slip_slope = nullptr, *torque_before = nullptr;
-  int *watch = nullptr, *mode_before = nullptr;
+  int *watch = nullptr, *mode_before = nullptr, *impulse = nullptr;
 
   // sparse form
   int *sp_first = nullptr, *sp_col = nullptr, *m_first = nullptr, *m_col = nullptr, *sky = nullptr, *pivot_of = nullptr;
@@ -190,7 +190,7 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
     a.take(e->capacity, nc), a.take(e->load, nc);
   }
   a.take(ws.torque, nd), a.take(ws.output_torque, nd), a.take(ws.power, 4 * (nd + np));
-  a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.take(ws.watch, nc), a.take(ws.mode_before, nc);
+  a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.take(ws.watch, nc), a.take(ws.mode_before, nc), a.take(ws.impulse, nc);
   a.take(ws.sp_first, nd + 1), a.take(ws.sp_col, nd * nv), a.take(ws.sp_val, nd * nv);
   a.take(ws.m_first, nv + 1), a.take(ws.m_col, nv * nv), a.take(ws.m_val, nv * nv);
   a.take(ws.sky, nv + 1), a.take(ws.pivot_of, nv), a.take(ws.envelope, 2 * nv * nv);
