@@ -67,7 +67,7 @@ def test_launch_with_elastic_shaft_against_radau(method: str) -> None:
     engine_torque = 180.0
 
     def capacity(t: float) -> float:
-        return 300.0 / 0.13 * min(t / 0.8, 1.0)
+        return 400.0 / 0.13 * min(t / 0.8, 1.0)
 
     def slipping(t: float, y: np.ndarray) -> list[float]:
         we, wg, wv, twist = y
@@ -97,7 +97,7 @@ def test_launch_with_elastic_shaft_against_radau(method: str) -> None:
     e, g, v = m.shaft("e", inertia=Je, speed=100.0), m.shaft("g", inertia=Jg), m.shaft("v", inertia=Jv)
     m.add(cw.Torque("engine", shaft=e, torque=engine_torque))
     law = cw.Exponential(static=static, slow=slow, fast=fast, speed=fade)
-    force = cw.Table([(0.0, 0.0), (0.8, 300.0 / 0.13)])
+    force = cw.Table([(0.0, 0.0), (0.8, 400.0 / 0.13)])
     m.add(cw.Clutch("c", base=g, follower=e, friction=law, gain=1.0, normal_force=force))
     m.add(cw.SpringDamper("k", base=v, follower=g, stiffness=c, damping=d))
     m.add(cw.Damper("drag", base=m.housing, follower=v, damping=drag))

@@ -11,7 +11,9 @@ from support.runs import switches
 from clutchwork import _core
 
 SEEDS = st.integers(0, 2**32 - 1)
-FINE = {"rtol": 1e-9, "atol": 1e-11}
+# a run of 2 s takes some thousand steps: more is a failure, not work
+BUDGET = {"max_steps": 200_000}
+FINE = {"rtol": 1e-9, "atol": 1e-11, **BUDGET}
 FLIP = {"forward": "backward", "backward": "forward"}
 
 
@@ -42,7 +44,7 @@ def test_a_contact_never_carries_more_than_its_capacity(seed: int) -> None:
 def test_turning_the_other_way_is_the_mirror_image(seed: int) -> None:
     """Signs are the only difference, and floating point is symmetric: the same bits."""
     description = random_drivelines.describe(seed)
-    runs = [x.driveline().simulate(random_drivelines.T_END, dt=0.02) for x in (description, description.mirrored())]
+    runs = [x.driveline().simulate(random_drivelines.T_END, dt=0.02, **BUDGET) for x in (description, description.mirrored())]
     mirrored = [(t, c, FLIP.get(a, a), FLIP.get(b, b)) for t, c, a, b in switches(runs[1], opening=True)]
     assert switches(runs[0], opening=True) == mirrored
     for i in range(len(description.inertia)):
@@ -59,7 +61,7 @@ def test_names_and_order_do_not_matter(seed: int) -> None:
     description = random_drivelines.describe(seed)
     order = tuple(int(i) for i in np.random.default_rng(seed).permutation(len(description.inertia)))
     runs = [
-        x.simulate(random_drivelines.T_END, dt=0.02, rtol=1e-11, atol=1e-11)
+        x.simulate(random_drivelines.T_END, dt=0.02, rtol=1e-11, atol=1e-11, **BUDGET)
         for x in (description.driveline(), description.driveline(order))
     ]
     lists = [random_drivelines.sequence([(t, c, b) for t, c, _, b in switches(run)]) for run in runs]
@@ -74,6 +76,8 @@ def test_save_and_restore_are_bit_equal(seed: int, split: float) -> None:
     data = random_drivelines.describe(seed).driveline().assemble().to_bytes()
     times = np.linspace(split, 2.0, 20)
     one, other = _core.Run(data), _core.Run(data)
+    for run in (one, other):
+        run.set_option("max_steps", BUDGET["max_steps"])
     empty = np.zeros((0, len(one.row())))
     one.advance(split, np.zeros(0), empty, 0, False)
     other.restore(one.save())

@@ -17,6 +17,7 @@ IGNORED = shutil.ignore_patterns("__pycache__", "*.so", "*.egg-info", "build", "
 
 def copy(to: Path) -> Path:
     """The project without tests, documents and build results."""
+    to.mkdir(parents=True, exist_ok=True)
     for name in SOURCES:
         source = ROOT / name
         if source.is_dir():
@@ -27,8 +28,8 @@ def copy(to: Path) -> Path:
 
 
 def generate(project: Path) -> subprocess.CompletedProcess[str]:
-    """Run the registry generator of a copy."""
-    command = [sys.executable, str(project / "tools/gen_registry.py"), str(project), str(project / "gen/registry.gen.hpp")]
+    """Run the registry generator of a copy; without the site module no editable install gets in its way."""
+    command = [sys.executable, "-I", "-S", str(project / "tools/gen_registry.py"), str(project), str(project / "gen/registry.gen.hpp")]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
