@@ -25,6 +25,8 @@ def cpp_name(name: str) -> str:
 
 def load(root: Path) -> tuple[Any, Any]:
     """Import the declarations without the package's own __init__, which needs the compiled core."""
+    # the finder of an editable install, an instance among classes, would answer with the files of another checkout
+    sys.meta_path[:] = [finder for finder in sys.meta_path if isinstance(finder, type)]
     package = types.ModuleType("clutchwork")
     package.__path__ = [str(root / "src/clutchwork")]
     sys.modules["clutchwork"] = package
