@@ -33,4 +33,9 @@ def rows(quick: bool = False) -> Iterator[Row]:
         steps = count["steps"] + count["rejected"]
         each = 1e6 * taken / steps
         figures = f"{each:.1f} us/step, {steps} steps, {count['events']} events"
-        yield Row(f"chain of {n} shafts and {n - 1} clutches", figures, "<= 60 us/step" if n == 64 else "", each <= 60 if n == 64 else None)
+        yield Row(
+            f"chain of {n} shafts and {n - 1} clutches",
+            figures,
+            "<= 60 us/step" if n == 64 else "",
+            each <= 60 if n == 64 else None,
+        )

@@ -77,7 +77,9 @@ class Lean:
                 t, w, modes = self.phase(t, stop, w, modes)
         return w
 
-    def phase(self, t: float, stop: float, w: np.ndarray, modes: tuple[int, ...]) -> tuple[float, np.ndarray, tuple[int, ...]]:
+    def phase(
+        self, t: float, stop: float, w: np.ndarray, modes: tuple[int, ...]
+    ) -> tuple[float, np.ndarray, tuple[int, ...]]:
         """Until something changes."""
         middle = 0.5 * (t + stop)
         forces = [lambda t, i=i: self.force(i, t) if i == 0 else self.force(i, middle) for i in range(3)]
@@ -124,7 +126,14 @@ class Lean:
         return 0 if abs(slip) < 1e-12 else int(math.copysign(1, slip))
 
     def switched(
-        self, i: int, t: float, w: np.ndarray, modes: tuple[int, ...], signs: tuple[int, ...], forces: tuple[float, ...], S: np.ndarray
+        self,
+        i: int,
+        t: float,
+        w: np.ndarray,
+        modes: tuple[int, ...],
+        signs: tuple[int, ...],
+        forces: tuple[float, ...],
+        S: np.ndarray,
     ) -> int:
         """The mode after an event of clutch i."""
         if modes[i] == 0:

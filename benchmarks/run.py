@@ -1,9 +1,9 @@
 """Print the speed table, or write it into the documentation.
 
-    python -m benchmarks                 the table
-    python -m benchmarks --write         the same, and into docs/benchmarks.md between its markers
-    python -m benchmarks shift chain     some parts only
-    python -m benchmarks --build --tests also the time of a clean build and of all tests
+python -m benchmarks                 the table
+python -m benchmarks --write         the same, and into docs/benchmarks.md between its markers
+python -m benchmarks shift chain     some parts only
+python -m benchmarks --build --tests also the time of a clean build and of all tests
 """
 
 from __future__ import annotations
@@ -27,7 +27,9 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description="speed against peers, paired in one run")
     parser.add_argument("parts", nargs="*", metavar="part", help=f"some of {', '.join(PARTS)}; all when none is given")
     parser.add_argument("--quick", action="store_true", help="fewer rounds")
-    parser.add_argument("--write", nargs="?", const=ROOT / "docs/benchmarks.md", type=Path, help="page to write the table into")
+    parser.add_argument(
+        "--write", nargs="?", const=ROOT / "docs/benchmarks.md", type=Path, help="page to write the table into"
+    )
     parser.add_argument("--build", action="store_true", help="time a clean build too")
     parser.add_argument("--tests", action="store_true", help="time `make test` too")
     chosen = parser.parse_args(arguments)

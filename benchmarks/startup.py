@@ -10,19 +10,18 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from support import project
-
 from benchmarks.report import Row
+from support import project
 
 IMPORT = "import numpy, time; t = time.perf_counter(); import clutchwork; print(time.perf_counter() - t)"
 
 
 def importing(repeats: int) -> float:
     """Time that `import clutchwork` takes after numpy, in fresh interpreters [s]."""
-    found = []
-    for _ in range(repeats):
-        found.append(float(subprocess.run([sys.executable, "-c", IMPORT], capture_output=True, text=True, check=True).stdout))
-    return statistics.median(found)
+    command = [sys.executable, "-c", IMPORT]
+    return statistics.median(
+        float(subprocess.run(command, capture_output=True, text=True, check=True).stdout) for _ in range(repeats)
+    )
 
 
 def rows(quick: bool = False) -> Iterator[Row]:
@@ -35,7 +34,18 @@ def build() -> Iterator[Row]:
     """Clean build of a copy, as `pip install` does it."""
     with tempfile.TemporaryDirectory() as folder:
         copy, site = project.copy(Path(folder) / "project"), Path(folder) / "site"
-        command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-build-isolation", "--no-deps", "--target", str(site), str(copy)]
+        command = [
+            sys.executable,
+            "-m",
+            "pip",
+            "install",
+            "--quiet",
+            "--no-build-isolation",
+            "--no-deps",
+            "--target",
+            str(site),
+            str(copy),
+        ]
         start = time.perf_counter()
         subprocess.run(command, check=True)
         taken = time.perf_counter() - start

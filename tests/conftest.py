@@ -22,7 +22,9 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
 
 def pytest_configure(config: pytest.Config) -> None:
     """Markers of this test tree."""
-    config.addinivalue_line("markers", "slow: takes more than ten seconds; part of `make test`, leave out with -m 'not slow'")
+    config.addinivalue_line(
+        "markers", "slow: takes more than ten seconds; part of `make test`, leave out with -m 'not slow'"
+    )
 
 
 @pytest.fixture(scope="session")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from support import project
 
 ELEMENT = '''"""Damper whose torque grows with the cube of the rate."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from support import project
 
 ELEMENTS, LAWS = "src/clutchwork/elements", "src/clutchwork/laws"

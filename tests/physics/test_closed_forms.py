@@ -10,9 +10,9 @@ import math
 
 import numpy as np
 import pytest
-from support.runs import TIGHT, assert_switches, at_end, clutch, over, switches
 
 import clutchwork as cw
+from support.runs import TIGHT, assert_switches, at_end, clutch, over, switches
 
 METHODS = ("rodas5p", "dopri5")
 
@@ -373,7 +373,7 @@ def test_clutch_between_two_prescribed_shafts() -> None:
 
 
 def test_locking_impulse_loses_the_known_energy() -> None:
-    """Locked at the start with 10 and 0 rad/s: common speed by momentum, half the reduced inertia times slip squared."""
+    """Locked at the start with 10 and 0 rad/s: common speed by momentum, half the reduced inertia times slip^2 lost."""
     d = cw.Driveline("impulse")
     a, b = d.shaft("a", inertia=0.2, speed=10.0), d.shaft("b", inertia=0.3)
     law = cw.Coulomb(static=1.0, kinetic=1.0)
@@ -386,7 +386,7 @@ def test_locking_impulse_loses_the_known_energy() -> None:
 
 
 def test_parallel_brakes_hold_the_sum_of_their_capacities() -> None:
-    """Brakes of 10 and 20 N m on one shaft under 5 t: both let go at 6 s, neither before (releasing one at a time: 2 s)."""
+    """Brakes of 10 and 20 N m on one shaft under 5 t: both let go at 6 s (one at a time: at 2 s)."""
     d = cw.Driveline("parallel brakes")
     a = d.shaft("a", inertia=1.0)
     d.add(cw.Torque("drive", shaft=a, torque=cw.Table([(0.0, 0.0), (10.0, 50.0)])))

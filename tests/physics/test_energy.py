@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support import random_drivelines, six_speed
 
 import clutchwork as cw
+from support import random_drivelines, six_speed
 
 # residual over energy turned over at rtol 1e-9: asked for
 RESIDUAL = 1e-8
@@ -31,7 +31,7 @@ def test_random_drivelines(seed: int) -> None:
 
 
 def test_every_part_of_the_balance() -> None:
-    """Spring, damper, source, load, prescribed speed, clutch and impulse in one model; the parts against its signals."""
+    """Spring, damper, source, load, prescribed speed, clutch and impulse in one model, against its signals."""
     d = cw.Driveline("all parts")
     a, b, c = d.shaft("a", inertia=0.4), d.shaft("b", inertia=0.3, speed=20.0), d.shaft("c", inertia=0.6)
     d.add(cw.PrescribedSpeed("motor", shaft=a, speed=cw.Sine(amplitude=30.0, frequency=1.0)))
@@ -44,7 +44,9 @@ def test_every_part_of_the_balance() -> None:
     d.add(cw.Clutch("f", base=b, follower=c, friction=law, gain=1.0, normal_force=table))
     run = d.simulate(2.0, rtol=1e-9, atol=1e-11)
     assert abs(run.energy.residual) <= RESIDUAL * run.energy.turnover
-    kinetic = [0.5 * sum(J * run[f"{n}.speed"][i] ** 2 for n, J in zip("abc", (0.4, 0.3, 0.6), strict=True)) for i in (0, -1)]
+    kinetic = [
+        0.5 * sum(J * run[f"{n}.speed"][i] ** 2 for n, J in zip("abc", (0.4, 0.3, 0.6), strict=True)) for i in (0, -1)
+    ]
     assert run.energy.kinetic == pytest.approx(kinetic[1] - kinetic[0], rel=1e-12)
     elastic = [run["k.spring_torque"][i] ** 2 / 1600 + run["s.spring_torque"][i] ** 2 / 100 for i in (0, -1)]
     assert run.energy.elastic == pytest.approx(elastic[1] - elastic[0], rel=1e-12)

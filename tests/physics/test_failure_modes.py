@@ -7,9 +7,9 @@ import warnings
 
 import numpy as np
 import pytest
-from support.runs import EXACT, TIGHT, assert_switches, at_end, clutch, over, switches
 
 import clutchwork as cw
+from support.runs import EXACT, TIGHT, assert_switches, at_end, clutch, over, switches
 
 
 def held(d: cw.Driveline, name: str, shaft: cw.Node, **given: float) -> None:
@@ -121,8 +121,16 @@ def test_zero_capacity_is_no_contact() -> None:
     d = cw.Driveline("open")
     a = d.shaft("a", inertia=1.0, speed=1.0)
     d.add(cw.Torque("drive", shaft=a, torque=-10.0))
-    d.add(cw.Clutch("b", base=d.housing, follower=a, friction=cw.Coulomb(static=1.0, kinetic=1.0), gain=1.0, normal_force=0.0))
-    d.add(cw.Clutch("n", base=d.housing, follower=a, friction=cw.Coulomb(static=1.0, kinetic=1.0), gain=1.0, normal_force=-5.0))
+    d.add(
+        cw.Clutch(
+            "b", base=d.housing, follower=a, friction=cw.Coulomb(static=1.0, kinetic=1.0), gain=1.0, normal_force=0.0
+        )
+    )
+    d.add(
+        cw.Clutch(
+            "n", base=d.housing, follower=a, friction=cw.Coulomb(static=1.0, kinetic=1.0), gain=1.0, normal_force=-5.0
+        )
+    )
     run = d.simulate(0.5, **TIGHT)
     assert len(run.events.changes()) == 0
     for name in ("b", "n"):
@@ -303,7 +311,7 @@ def test_locked_initial_state_with_inconsistent_speeds() -> None:
         lambda: cw.CoefficientTable(static=0.3, kinetic=[(0.0, 0.4), (10.0, 0.2)]),
     ],
 )
-def test_kinetic_above_static_is_rejected_with_names(law) -> None:  # noqa: ANN001
+def test_kinetic_above_static_is_rejected_with_names(law) -> None:
     with pytest.raises(Exception, match="c1") as caught:  # noqa: PT012
         d = cw.Driveline("upside down")
         a = d.shaft("a", inertia=0.3)
@@ -369,7 +377,7 @@ def test_load_just_above_capacity_lets_go() -> None:
 
 
 def test_load_creeping_just_above_capacity_lets_go() -> None:
-    """A sine whose peak is a little above the capacity: it lets go near the peak, where the margin is a grazing parabola.
+    """A sine whose peak is a little above the capacity: it lets go near the peak, where the margin grazes zero.
 
     1e-7 is two orders above what the guards resolve.
     """

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from support import independent
-from support.runs import clutch, switches
 
 import clutchwork as cw
+from support import independent
+from support.runs import clutch, switches
 
 
 def constant(name: str, direction: list[float], kinetic: float, static: float | None = None) -> independent.Contact:
@@ -38,7 +38,9 @@ def test_the_independent_solver_on_stick_slip() -> None:
     """Break-away and re-sticking of the pulled block, as in the closed forms."""
     c, speed, m, hold, slide = 40.0, 0.5, 0.8, 15.0, 10.0
     model = independent.Model(
-        np.array([[m]]), (constant("f", [1.0], slide, hold),), lambda t, v, s: s.copy(),
+        np.array([[m]]),
+        (constant("f", [1.0], slide, hold),),
+        lambda t, v, s: s.copy(),
         lambda t, v, s: np.array([c * (speed - v[0])]),
     )
     solution = independent.solve(model, np.zeros(1), np.zeros(1), 3.0)
@@ -61,7 +63,7 @@ def test_the_independent_solver_on_parallel_brakes() -> None:
 
 @pytest.mark.parametrize("method", ["rodas5p", "dopri5"])
 def test_launch_with_elastic_shaft_against_radau(method: str) -> None:
-    """Engine, slipping clutch with exponential law and a rising pressure, elastic shaft, vehicle: one phase at a time."""
+    """Engine, clutch with exponential law and a rising pressure, elastic shaft, vehicle: one phase at a time."""
     Je, Jg, Jv, c, d, drag = 0.25, 0.05, 6.0, 9000.0, 25.0, 0.4
     fast, slow, fade, static = 0.08, 0.13, 15.0, 0.15
     engine_torque = 180.0
@@ -76,7 +78,7 @@ def test_launch_with_elastic_shaft_against_radau(method: str) -> None:
         return [(engine_torque - T) / Je, (T - shaft) / Jg, (shaft - drag * wv) / Jv, wg - wv]
 
     def locked(t: float, y: np.ndarray) -> list[float]:
-        we, wg, wv, twist = y
+        _, wg, wv, twist = y
         shaft = c * twist + d * (wg - wv)
         together = (engine_torque - shaft) / (Je + Jg)
         return [together, together, (shaft - drag * wv) / Jv, wg - wv]

@@ -1,13 +1,13 @@
-"""Reduction and multipliers of the six-speed gearbox against the closed forms of the paper (table 1, equations 5 to 8)."""
+"""Reduction and multipliers of the six-speed gearbox against the closed forms of the paper (table 1, eq. 5-8)."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from support import six_speed
-from support.runs import TIGHT
 
 import clutchwork as cw
+from support import six_speed
+from support.runs import TIGHT
 
 INDEPENDENT = ("w1", "w2", "w4", "w8")
 
@@ -90,7 +90,9 @@ def test_multipliers_equal_table_1(clutch: str, seed: int) -> None:
         pressure = 1e7 if name == clutch else 0.0
         law = cw.Exponential(**six_speed.LAW)
         d.add(
-            cw.Clutch(name, base=w[base], follower=w[follower], friction=law, gain=six_speed.GAIN[name], pressure=pressure)
+            cw.Clutch(
+                name, base=w[base], follower=w[follower], friction=law, gain=six_speed.GAIN[name], pressure=pressure
+            )
         )
     run = d.simulate(1e-6, times=[0.0], **TIGHT)
     assert run[f"{clutch}.state"][0] == "locked"

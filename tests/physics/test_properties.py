@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from support import random_drivelines
-from support.runs import switches
 
 from clutchwork import _core
+from support import random_drivelines
+from support.runs import switches
 
 SEEDS = st.integers(0, 2**32 - 1)
 # a run of 2 s takes some thousand steps: more is a failure, not work
@@ -44,7 +44,10 @@ def test_a_contact_never_carries_more_than_its_capacity(seed: int) -> None:
 def test_turning_the_other_way_is_the_mirror_image(seed: int) -> None:
     """Signs are the only difference, and floating point is symmetric: the same bits."""
     description = random_drivelines.describe(seed)
-    runs = [x.driveline().simulate(random_drivelines.T_END, dt=0.02, **BUDGET) for x in (description, description.mirrored())]
+    runs = [
+        x.driveline().simulate(random_drivelines.T_END, dt=0.02, **BUDGET)
+        for x in (description, description.mirrored())
+    ]
     mirrored = [(t, c, FLIP.get(a, a), FLIP.get(b, b)) for t, c, a, b in switches(runs[1], opening=True)]
     assert switches(runs[0], opening=True) == mirrored
     for i in range(len(description.inertia)):

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support import independent, random_drivelines
-from support.runs import switches
 
 import clutchwork as cw
+from support import independent, random_drivelines
+from support.runs import switches
 
 COUNT = 400
 
@@ -68,7 +68,10 @@ def test_independent_solver(seed: int) -> None:
     """The same drivelines by enumeration and SciPy's DOP853, at rtol 1e-10."""
     description = random_drivelines.describe(seed)
     other = independent.solve(
-        description.independent(), np.array(description.speed), np.zeros(len(description.shafts)), random_drivelines.T_END
+        description.independent(),
+        np.array(description.speed),
+        np.zeros(len(description.shafts)),
+        random_drivelines.T_END,
     )
     run = description.driveline().simulate(random_drivelines.T_END, dt=0.01, rtol=1e-10, atol=1e-11)
     names = {0: "locked", 1: "forward", -1: "backward", 2: "open"}

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support import random_drivelines, six_speed
 
 from clutchwork import _core
 from clutchwork.layout import STATUS
+from support import random_drivelines, six_speed
 
 DONE = [name for name, *_ in STATUS].index("done")
 FULL = [name for name, *_ in STATUS].index("rows_full")

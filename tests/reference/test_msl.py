@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 import yaml
+
 from support import cases
 from support.msl import compare
 from support.msl.elements import missing

@@ -73,7 +73,9 @@ class Model:
                 total = total - mode * contact.force(t) * contact.kinetic(slip) * contact.direction
         return total
 
-    def multipliers(self, t: float, v: np.ndarray, s: np.ndarray, modes: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
+    def multipliers(
+        self, t: float, v: np.ndarray, s: np.ndarray, modes: Sequence[int]
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Torques of the locked contacts (least norm) and the acceleration of the speeds."""
         locked = [c.direction for c, mode in zip(self.contacts, modes, strict=True) if mode == LOCKED]
         total = self.applied(t, v, s, modes)
@@ -98,7 +100,9 @@ class Model:
                 base[i] = FORWARD if slip > 0 else BACKWARD
             else:
                 free.append(i)
-        trials = sorted(itertools.product((LOCKED, FORWARD, BACKWARD), repeat=len(free)), key=lambda m: -m.count(LOCKED))
+        trials = sorted(
+            itertools.product((LOCKED, FORWARD, BACKWARD), repeat=len(free)), key=lambda m: -m.count(LOCKED)
+        )
         for trial in trials:
             for i, mode in zip(free, trial, strict=True):
                 base[i] = mode
@@ -113,7 +117,9 @@ class Model:
             if mode == LOCKED:
                 if abs(next(held)) > contact.force(t) * contact.static * (1 + 1e-12):
                     return False
-            elif i in free and mode * (contact.direction @ acceleration) <= 1e-9 * np.max(np.abs(acceleration), initial=1.0):
+            elif i in free and mode * (contact.direction @ acceleration) <= 1e-9 * np.max(
+                np.abs(acceleration), initial=1.0
+            ):
                 # one that starts to slip has to get somewhere; contacts held at their limit are not dealt with here
                 return False
         return True
@@ -173,8 +179,15 @@ def solve(
                 return np.concatenate([acceleration, model.rates(t, y[:n], y[n:])])
 
             run = solve_ivp(
-                slope, (t, stop), np.concatenate([v, s]), method, events=events, dense_output=True,
-                rtol=rtol, atol=atol, max_step=max_step,
+                slope,
+                (t, stop),
+                np.concatenate([v, s]),
+                method,
+                events=events,
+                dense_output=True,
+                rtol=rtol,
+                atol=atol,
+                max_step=max_step,
             )
             assert run.success, run.message
             solution.pieces.append((t, run.t[-1], run.sol))

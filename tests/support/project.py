@@ -29,7 +29,14 @@ def copy(to: Path) -> Path:
 
 def generate(project: Path) -> subprocess.CompletedProcess[str]:
     """Run the registry generator of a copy; without the site module no editable install gets in its way."""
-    command = [sys.executable, "-I", "-S", str(project / "tools/gen_registry.py"), str(project), str(project / "gen/registry.gen.hpp")]
+    command = [
+        sys.executable,
+        "-I",
+        "-S",
+        str(project / "tools/gen_registry.py"),
+        str(project),
+        str(project / "gen/registry.gen.hpp"),
+    ]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
@@ -59,4 +66,6 @@ def run_in(site: Path, script: str) -> subprocess.CompletedProcess[str]:
     """
     packages = str(Path(np.__file__).resolve().parents[1])
     head = f"import sys; sys.path[:0] = [{str(site)!r}]; sys.path.append({packages!r})\n"
-    return subprocess.run([sys.executable, "-I", "-S", "-c", head + script], capture_output=True, text=True, check=False)
+    return subprocess.run(
+        [sys.executable, "-I", "-S", "-c", head + script], capture_output=True, text=True, check=False
+    )

@@ -96,7 +96,11 @@ class Description:
             law = cw.Exponential(static=c.static, slow=c.slow, fast=c.fast, speed=c.speed)
             parts.append(
                 cw.Clutch(
-                    f"c{i}", base=nodes[c.base], follower=nodes[c.follower], friction=law, gain=c.gain,
+                    f"c{i}",
+                    base=nodes[c.base],
+                    follower=nodes[c.follower],
+                    friction=law,
+                    gain=c.gain,
                     pressure=cw.Table(list(c.pressure)),
                 )
             )
@@ -188,7 +192,7 @@ def describe(seed: int) -> Description:
     return Description(seed, inertia, speed, tuple(clutches), tuple(shafts), tuple(drives), tuple(loads))
 
 
-def _clutch(rng: np.random.Generator, log, base: int, follower: int, engine: float) -> Link:  # noqa: ANN001
+def _clutch(rng: np.random.Generator, log, base: int, follower: int, engine: float) -> Link:
     slow = float(rng.uniform(0.08, 0.15))
     static = slow * (1.0 if rng.random() < 0.3 else float(rng.uniform(1.02, 1.4)))
     fast = slow * float(rng.uniform(0.5, 1.0))

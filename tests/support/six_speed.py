@@ -20,7 +20,7 @@ KNEE = 209.4395
 # coefficient 0.065 + 0.075 exp(-0.2756 re |w|), re = 0.2890 m
 LAW = {"static": STATIC, "slow": 0.140, "fast": 0.065, "speed": 1 / (0.2756 * 0.2890)}
 
-# engine: 4000 - 4.7746 w up to the knee, then 3000 - 190.9859 (w - knee); the straight lines miss each other by 0.01 N m
+# engine: 4000 - 4.7746 w up to the knee, then 3000 - 190.9859 (w - knee); the lines miss each other by 0.01 N m
 ENGINE = [(0.0, 4000.0), (KNEE, 4000.0 - 4.7746 * KNEE), (KNEE + 100.0, 3000.0 - 19098.59)]
 
 # name: (base, follower); slip = follower - base
@@ -43,17 +43,13 @@ def gearbox(
         given = pressures[name]
         pressure = cw.Table([(float(t), float(p)) for t, p in given]) if isinstance(given, Sequence) else given
         law = cw.Exponential(**LAW)
-        d.add(
-            cw.Clutch(name, base=w[base], follower=w[follower], friction=law, gain=GAIN[name], pressure=pressure)
-        )
+        d.add(cw.Clutch(name, base=w[base], follower=w[follower], friction=law, gain=GAIN[name], pressure=pressure))
     d.add(cw.SpeedTorque("engine", shaft=w["w1"], torque=ENGINE))
     d.add(cw.ResistingTorque("load", shaft=w["w8"], torque=4000.0, speed=0.5))
     return d
 
 
-def members(
-    speeds: Mapping[str, float], *, stiffness: float = STIFFNESS
-) -> tuple[cw.Driveline, dict[str, cw.Node]]:
+def members(speeds: Mapping[str, float], *, stiffness: float = STIFFNESS) -> tuple[cw.Driveline, dict[str, cw.Node]]:
     """The eight members, four planetary rows and the elastic shaft, without clutches and torques."""
     d = cw.Driveline("six-speed gearbox")
     # a speed that is not given follows from the others

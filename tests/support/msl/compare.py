@@ -25,7 +25,8 @@ class Mismatch:
     error: float  # as part of the tolerance: above 1 is too much
 
     def __str__(self) -> str:
-        return f"{self.column} at {self.time:.6f} s: {self.ours:.9g} against {self.reference:.9g}, {self.error:.2f} x tolerance"
+        values = f"{self.ours:.9g} against {self.reference:.9g}"
+        return f"{self.column} at {self.time:.6f} s: {values}, {self.error:.2f} x tolerance"
 
 
 def twice(times: np.ndarray) -> np.ndarray:
@@ -37,7 +38,9 @@ def twice(times: np.ndarray) -> np.ndarray:
 def grid(times: np.ndarray) -> np.ndarray:
     """Times to ask for: those of the reference, and 5e-6 s either side of its events."""
     events = times[twice(times)]
-    return np.unique(np.concatenate([times, np.clip(events - TIME, 0, times[-1]), np.clip(events + TIME, 0, times[-1])]))
+    return np.unique(
+        np.concatenate([times, np.clip(events - TIME, 0, times[-1]), np.clip(events + TIME, 0, times[-1])])
+    )
 
 
 def signals(
@@ -58,7 +61,9 @@ def signals(
         worst = int(np.argmax(error))
         ratio = float(error[worst] / (tolerance * scale))
         if ratio > 1:
-            found.append(Mismatch(name, times[worst], float(ours(times[worst : worst + 1])[0]), reference[worst], ratio))
+            found.append(
+                Mismatch(name, times[worst], float(ours(times[worst : worst + 1])[0]), reference[worst], ratio)
+            )
     return found
 
 

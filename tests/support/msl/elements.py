@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import clutchwork as cw
 
-from .signals import UnsupportedError, signal
+from .signals import UnsupportedError
 
 if TYPE_CHECKING:
     from .model import Builder
@@ -54,8 +54,12 @@ def _speed_dependent(b: Builder, name: str, e: Mapping[str, Any], at: At) -> lis
     cls = cw.LinearTorque if e["type"].startswith("linear") else cw.QuadraticTorque
     return [
         cls(
-            name, shaft=at("flange"), base=at("support"), nominal_torque=float(e["tau_nominal"]),
-            nominal_speed=float(e["w_nominal"]), same_direction=bool(e.get("same_direction", True)),
+            name,
+            shaft=at("flange"),
+            base=at("support"),
+            nominal_torque=float(e["tau_nominal"]),
+            nominal_speed=float(e["w_nominal"]),
+            same_direction=bool(e.get("same_direction", True)),
         )
     ]
 
@@ -87,8 +91,12 @@ def _contact(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
     force = b.signal(e["f_normalized"], float(e["fn_max"]))
     return [
         cls(
-            name, base=at("flange_a"), follower=at("flange_b"), friction=friction,
-            gain=scale * float(e["cgeo"]), normal_force=force,
+            name,
+            base=at("flange_a"),
+            follower=at("flange_b"),
+            friction=friction,
+            gain=scale * float(e["cgeo"]),
+            normal_force=force,
         )
     ]
 

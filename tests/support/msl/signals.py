@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -34,7 +35,7 @@ def _points(signals: Mapping[str, Any], name: str) -> Points | None:
     if kind == "gain_sin_atan":
         inner = _points(signals, s["input"])
         # exact where the input is piecewise constant, which is so wherever two neighbours differ at one time only
-        if inner is None or any(b[1] != a[1] and b[0] > a[0] for a, b in zip(inner, inner[1:], strict=False)):
+        if inner is None or any(b[1] != a[1] and b[0] > a[0] for a, b in itertools.pairwise(inner)):
             raise UnsupportedError("signal gain_sin_atan of a varying input")
         return [(t, float(s["k"]) * math.sin(math.atan(y))) for t, y in inner]
     return None
@@ -58,8 +59,11 @@ def signal(signals: Mapping[str, Any], name: str, scale: float = 1.0) -> Any:
     common = {"offset": scale * float(s.get("offset", 0.0)), "start": float(s.get("start_time", 0.0))}
     if s["type"] in ("sine", "exp_sine"):
         return cw.Sine(
-            amplitude=scale * float(s["amplitude"]), frequency=float(s["f"]), phase=float(s.get("phase", 0.0)),
-            damping=float(s.get("damping", 0.0)), **common,
+            amplitude=scale * float(s["amplitude"]),
+            frequency=float(s["f"]),
+            phase=float(s.get("phase", 0.0)),
+            damping=float(s.get("damping", 0.0)),
+            **common,
         )
     if s["type"] == "pulse":
         period = float(s["period"])
