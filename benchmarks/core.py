@@ -9,9 +9,11 @@ import numpy as np
 
 from benchmarks.timing import cpu
 from clutchwork import _core
+from clutchwork.layout import STATUS
 
 METHODS = {"rodas5p": 1.0, "dopri5": 2.0}
 EMPTY = np.zeros(0)
+EVENTS_FULL = [name for name, *_ in STATUS].index("events_full")
 
 
 class Prepared:
@@ -32,9 +34,10 @@ class Prepared:
 
     def go(self) -> None:
         """The whole run, no output."""
-        status = self.run.advance(self.t_end, EMPTY, self.rows, 0, False)[0]
-        if status:
-            raise RuntimeError(f"the run ended with status {status}")
+        while status := self.run.advance(self.t_end, EMPTY, self.rows, 0, False)[0]:
+            if status != EVENTS_FULL:
+                raise RuntimeError(f"the run ended with status {status}")
+            self.run.events()
 
     def seconds(self, repeats: int) -> float:
         """Median CPU time of one run [s]."""

@@ -35,10 +35,10 @@ SHIFT = {
 
 
 def gearbox(
-    pressures: Mapping[str, Any], speeds: Mapping[str, float] | None = None, *, stiffness: float = STIFFNESS
+    pressures: Mapping[str, Any], speeds: Mapping[str, float] | None = None, *, stiffer: float = 1.0
 ) -> cw.Driveline:
     """Gearbox with engine and load; the pressure of a clutch is a list of points or a signal."""
-    d, w = members(speeds or {}, stiffness=stiffness)
+    d, w = members(speeds or {}, stiffer=stiffer)
     for name, (base, follower) in CLUTCHES.items():
         given = pressures[name]
         pressure = cw.Table([(float(t), float(p)) for t, p in given]) if isinstance(given, Sequence) else given
@@ -49,8 +49,11 @@ def gearbox(
     return d
 
 
-def members(speeds: Mapping[str, float], *, stiffness: float = STIFFNESS) -> tuple[cw.Driveline, dict[str, cw.Node]]:
-    """The eight members, four planetary rows and the elastic shaft, without clutches and torques."""
+def members(speeds: Mapping[str, float], *, stiffer: float = 1.0) -> tuple[cw.Driveline, dict[str, cw.Node]]:
+    """The eight members, four planetary rows and the elastic shaft, without clutches and torques.
+
+    `stiffer` multiplies the stiffness of the shaft; its damping goes with the root, so that the damping ratio stays.
+    """
     d = cw.Driveline("six-speed gearbox")
     # a speed that is not given follows from the others
     w = {name: d.shaft(name, inertia=J, speed=speeds.get(name)) for name, J in INERTIA.items()}
@@ -60,5 +63,6 @@ def members(speeds: Mapping[str, float], *, stiffness: float = STIFFNESS) -> tup
     d.add(cw.Planetary("row2", sun=w["w4"], ring=w["w6"], carrier=w["w8"], ratio=K3))
     d.add(cw.Planetary("row3", sun=w["w6"], ring=w["w7"], carrier=w["w8"], ratio=K4))
     # base w2 and follower w4: the torque on the follower is M_shaft of the reference
-    d.add(cw.SpringDamper("shaft", base=w["w2"], follower=w["w4"], stiffness=stiffness, damping=DAMPING))
+    rates = {"stiffness": STIFFNESS * stiffer, "damping": DAMPING * stiffer**0.5}
+    d.add(cw.SpringDamper("shaft", base=w["w2"], follower=w["w4"], **rates))
     return d, w
