@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from clutchwork.layout import EVENT, MODES
 from clutchwork.text import columns
 
-CAUSES = ("start", "slip zero", "torque limit", "input", "other event", "impulse", "restart")
+CAUSES = ("start", "slip zero", "torque limit", "input", "other event", "impulse", "restart", "passing")
 
 
 @dataclass(frozen=True)
@@ -70,8 +70,9 @@ class Events(Sequence[Event]):
         return Events([event for event in self if event.element == element])
 
     def changes(self) -> Events:
-        """Without entries that only note the state at the start or change nothing."""
-        return Events([event for event in self if event.before != event.after and event.cause != "start"])
+        """Without entries that change no torque: the state at the start, an open contact whose slip passes zero."""
+        quiet = ("start", "passing")
+        return Events([event for event in self if event.before != event.after and event.cause not in quiet])
 
     @property
     def times(self) -> NDArray[np.float64]:

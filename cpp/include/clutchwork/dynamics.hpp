@@ -98,9 +98,11 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
   }
   for (int a = 0; a < m; ++a) {
     const T* reach = ws.reach + a * nb;
-    T x = T(0), dx = T(0);
+    T x = T(0), dx = T(0), size = T(0);
     for (int k = 0; k < nb; ++k) {
-      x += reach[k] * ws.partial[k].torque;
+      const T part = reach[k] * ws.partial[k].torque;
+      x += part;
+      size += abs(part);
       dx += reach[k] * drift[k];
     }
     for (int p = 0; p < ws.sys.prescribed; ++p) {
@@ -108,6 +110,7 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
     }
     edge.multiplier[a] = x;
     edge.drift[a] = dx;
+    edge.noise[a] = T(1e-13) * size;
     edge.capacity[a] = capacity_of(ws, ws.locked[a]);
   }
 }

@@ -44,6 +44,11 @@ inline bool first_bracket(const double* b, double tolerance, int depth, bool las
 /// Root of a decreasing-through-zero function on [low, high] with f(low) >= 0 > f(high), to round-off (ITP).
 template <class F>
 double locate(F&& f, double low, double f_low, double high, double f_high) {
+  // a guard that starts on its surface: step off it, or it is hit at once
+  for (int k = 1; k < 12 && f_low <= 0; ++k) {
+    const double x = low + (high - low) / double(1 << k), y = f(x);
+    if (y > 0) low = x, f_low = y;
+  }
   if (f_low <= 0) return low;
   for (int i = 0; i < 100 && high - low > 4e-16 * (1 + high); ++i) {
     // false position, bisection every third time
@@ -96,7 +101,8 @@ bool rates_bend(const Workspace<T>& ws) {
 
 /// First crossing of a guard that is linear in the state, before `limit`; -1: none.
 template <class Form, class Integrator>
-double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, double g0, double g1, double limit) {
+double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, double g0, double g1, double noise,
+                     double limit) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
   if (!step.dense) Integrator::prepare_dense(form, step);
@@ -111,22 +117,29 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   const double q0 = guard.sign * value(form.rate(k, step.p(0))), q1 = guard.sign * value(form.rate(k, step.p(1))),
                q2 = guard.sign * value(form.rate(k, step.p(2)));
   const double a1 = g1 - g0 + q0, a2 = q1 - q0, a3 = q2 - q1;
-  double b[5] = {larger(g0, 0.0), g0 + a1 / 4, g0 + a1 / 2 + a2 / 6, g0 + 0.75 * a1 + a2 / 2 + a3 / 4, g1};
+  // a guard that starts on its surface must leave it as the motion does, not as the interpolant does
+  const bool fresh = abs(g0) <= 1e3 * noise;
+  const double mend = fresh ? guard.sign * step.h * value(ws.here.slope[k]) - a1 : 0.0;
+  double b[5] = {larger(g0, 0.0), g0 + (a1 + mend) / 4, g0 + a1 / 2 + a2 / 6, g0 + 0.75 * a1 + a2 / 2 + a3 / 4, g1};
   double scale = 0;
   for (double x : b) scale = larger(scale, abs(x));
   double low = 0, high = 1;
-  if (!first_bracket(b, 1e-9 * scale, 40, true, low, high)) return -1;
+  if (!first_bracket(b, larger(1e-9 * scale, noise), 40, g1 < -noise, low, high)) return -1;
   const double start = larger(g0, 0.0);
-  auto poly = [&](double s) { return (1 - s) * start + s * (g1 + (1 - s) * (q0 + s * (q1 + s * q2))); };
+  auto poly = [&](double s) {
+    const double r = 1 - s;
+    return r * start + s * (g1 + r * (q0 + s * (q1 + s * q2) + r * r * mend));
+  };
   const double f_low = larger(poly(low), 0.0), f_high = poly(high);
   if (f_high >= 0) return high;
   const double s = locate(poly, low, f_low, high, f_high);
   return s <= limit ? s : -1;
 }
 
-/// Margin of a locked contact: how much torque is left before it slips.
+/// Margin of a locked contact: how much torque is left before it slips, round-off conceded.
 template <class T>
 CLUTCHWORK_INLINE double margin(const Workspace<T>& ws, int a, T torque, T capacity) {
+  capacity += ws.here.noise[a];
   return contact_one_way(ws, ws.locked[a]) ? value(torque + capacity) : value(capacity) - abs(value(torque));
 }
 
@@ -160,6 +173,9 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   const Edge<T>&e0 = ws.here, &e1 = ws.there;
   Hit hit;
 
+  // round-off of a rate: far below the slip that counts as zero
+  const double noise = 1e-3 * slip_tolerance(ws);
+
   // slips and kinks: a cubic through values and slopes proves most of them clear
   for (int i = 0; i < ws.n_lines; ++i) {
     const LineGuard& g = ws.line[i];
@@ -167,7 +183,7 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
     const double g0 = g.sign * (value(e0.rate[k]) - g.level), g1 = g.sign * (value(e1.rate[k]) - g.level);
     const double c0 = g0 + g.sign * h * value(e0.slope[k]) / 3, c1 = g1 - g.sign * h * value(e1.slope[k]) / 3;
     if (g1 >= 0 && c0 >= 0 && c1 >= 0) continue;
-    const double s = line_crossing<Form, Integrator>(form, step, g, g0, g1, hit.s);
+    const double s = line_crossing<Form, Integrator>(form, step, g, g0, g1, noise, hit.s);
     if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) hit = {Hit::line, i, s};
   }
 

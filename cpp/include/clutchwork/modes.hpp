@@ -96,12 +96,18 @@ double slip_tolerance(const Workspace<T>& ws) {
 }
 
 /// Mass-weighted acceleration without contacts that may stick: L^-1 (forces - M_p du/dt).
+/// ws.effort: sum of the sizes of all contributions, what round-off of q is measured against.
 template <class T>
 void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   const System& sys = ws.sys;
   const int nv = int(sys.speeds);
   for (int i = 0; i < nv; ++i) q[i] = T(0);
-  for (int p = 0; p < sys.prescribed; ++p) axpy(nv, -ws.prescribed_slope[p], ws.prescribed_momentum + p * nv, q);
+  ws.effort = 0;
+  auto add = [&](T size, const T* row) {
+    axpy(nv, size, row, q);
+    ws.effort += abs(value(size)) * sqrt(value(dot(nv, row, row)));
+  };
+  for (int p = 0; p < sys.prescribed; ++p) add(-ws.prescribed_slope[p], ws.prescribed_momentum + p * nv);
   for (int d = 0; d < ws.n_directions; ++d) {
     const int c = d - int(sys.elements);
     int sign = 0;
@@ -112,7 +118,7 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
     }
     const Branch<T> b = make_branch(ws, d, sign, false);
     T* rates = ws.scratch;
-    axpy(nv, branch_torque(ws, b, rate_of(ws, d), ws.state, rates), ws.direction + d * nv, q);
+    add(branch_torque(ws, b, rate_of(ws, d), ws.state, rates), ws.direction + d * nv);
   }
 }
 
@@ -145,6 +151,14 @@ bool is_rigid(const Workspace<T>& ws, int c) {
   const int nv = int(ws.sys.speeds);
   const T* row = ws.direction + (ws.sys.elements + c) * nv;
   return value(dot(nv, row, row)) == 0;
+}
+
+/// Let a contact slip from rest.
+template <class T>
+void release(Workspace<T>& ws, int c, int sign) {
+  const int d = int(ws.sys.elements) + c;
+  ws.mode[c] = sign;
+  ws.piece[d] = piece_of(ws, d, 0.0);
 }
 
 /// Give every contact at zero slip its torque or its direction of slip. `located`: the contact whose guard was hit.
@@ -180,7 +194,7 @@ bool settle_contacts(Workspace<T>& ws, int located) {
   }
 
   // rounds: those at a bound that accelerate start to slip with their kinetic torque
-  for (int round = 0; round <= nc + 1; ++round) {
+  for (int round = 0; round <= 2 * nc + 2; ++round) {
     int n = 0;
     for (int c = 0; c < nc; ++c) {
       if (candidate[c]) list[n++] = c;
@@ -204,23 +218,26 @@ bool settle_contacts(Workspace<T>& ws, int located) {
     }
     if (!solve(p)) return false;
 
-    // a bound torque with an acceleration cannot hold
-    bool moved = false;
+    // of the bound torques that cannot hold, the one that gives way most starts to slip
+    int first = -1;
+    double most = 0;
     for (int a = 0; a < n; ++a) {
       const int c = list[a];
       ws.mode[c] = locked;
-      const double pull = abs(value(p.gradient[a])) + abs(value(p.matrix[a * n + a] * p.x[a]));
-      double scale = pull;
+      const double mobility = value(sqrt(p.matrix[a * n + a]));
+      double scale = abs(value(p.gradient[a]));
       for (int b = 0; b < n; ++b) scale = larger(scale, abs(value(p.matrix[a * n + b] * p.x[b])));
-      const double acceleration = value(p.slope[a]);
-      if (p.bound[a] == 0 || abs(acceleration) <= 1e-10 * scale) continue;
-      if (contact_one_way(ws, c) && acceleration < 0) continue;
-      ws.mode[c] = acceleration > 0 ? forward : backward;
-      ws.piece[sys.elements + c] = piece_of(ws, int(sys.elements) + c, 0.0);
-      candidate[c] = 0;
-      moved = true;
+      const double acceleration = value(p.slope[a]), size = abs(acceleration) / mobility;
+      const bool noise = abs(acceleration) <= larger(1e-10 * scale, 1e-12 * ws.effort * mobility);
+      if (p.bound[a] == 0 || noise || (contact_one_way(ws, c) && acceleration < 0)) continue;
+      if (size > most) first = a, most = size;
     }
-    if (moved) continue;
+    if (first >= 0) {
+      const int c = list[first];
+      release(ws, c, value(p.slope[first]) > 0 ? forward : backward);
+      candidate[c] = 0;
+      continue;
+    }
 
     // the located contact: held by others along the same direction, or forced to slip against its torque
     bool again = false;
@@ -253,10 +270,9 @@ bool settle_contacts(Workspace<T>& ws, int located) {
       const bool spanned = outside <= 1e-16 * value(dot(nv, row, row));
       if (spanned && limit > 0) {
         ws.held[c] = x > 0 ? 1 : -1;
-      } else if (c == located && limit > 0) {
-        ws.mode[c] = ws.forced[c] = x > 0 ? backward : forward;
-        if (contact_one_way(ws, c)) ws.mode[c] = ws.forced[c] = forward;
-        ws.piece[sys.elements + c] = piece_of(ws, int(sys.elements) + c, 0.0);
+      } else if (breaks) {
+        ws.forced[c] = ws.pull > 0 && !contact_one_way(ws, c) ? backward : forward;
+        release(ws, c, ws.forced[c]);
         candidate[c] = 0;
         again = true;
       }

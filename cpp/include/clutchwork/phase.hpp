@@ -166,7 +166,7 @@ bool pass_knot(Form& form, Step<Form>& step) {
   look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
   for (int a = 0; a < ws.n_locked; ++a) {
     const T torque = ws.here.multiplier[a], capacity = ws.here.capacity[a];
-    if (margin(ws, a, torque, capacity) < -1e-9 * value(capacity + abs(torque))) return true;
+    if (margin(ws, a, torque, capacity) < 0) return true;
   }
   return false;
 }
@@ -184,7 +184,7 @@ void pass_line(Form& form, const LineGuard& guard) {
     const int c = b.direction - int(ws.sys.elements), from = ws.mode[c];
     ws.mode[c] = b.sign = -from;
     const double e = kinetic_energy(ws);
-    record(ws, c, from, ws.mode[c], Cause::slip_zero, value(ws.here.slope[guard.branch]), 0.0, 0.0, e, e);
+    record(ws, c, from, ws.mode[c], Cause::passing, value(ws.here.slope[guard.branch]), 0.0, 0.0, e, e);
   }
   list_lines(ws);
 }
@@ -336,7 +336,10 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
     }
     switch (hit.what) {
       case Hit::line: ws.located = ws.branch[guard->branch].direction - int(ws.sys.elements); break;
-      case Hit::multiplier: ws.located = ws.locked[hit.index]; break;
+      case Hit::multiplier:
+        ws.located = ws.locked[hit.index];
+        ws.pull = s > 0 ? value(ws.torque_before[ws.located]) : value(ws.there.multiplier[hit.index]);
+        break;
       default: ws.located = hit.index;
     }
     ws.cause = hit.what == Hit::line ? Cause::slip_zero : hit.what == Hit::multiplier ? Cause::torque_limit : Cause::input;

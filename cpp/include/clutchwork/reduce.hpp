@@ -170,7 +170,9 @@ void list_lines(Workspace<T>& ws) {
     if (b.piece > 0) ws.line[ws.n_lines++] = {LineGuard::edge, k, sign, sign * edge_at(ws, b.direction, b.piece - 1)};
   }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) {
-    if (ws.branch[k].sign != 0) ws.line[ws.n_lines++] = {LineGuard::pass, k, ws.branch[k].sign, 0.0};
+    // an open contact has passed zero when it is clear of it on the other side
+    const int sign = ws.branch[k].sign;
+    if (sign != 0) ws.line[ws.n_lines++] = {LineGuard::pass, k, sign, -sign * slip_tolerance(ws)};
   }
 }
 

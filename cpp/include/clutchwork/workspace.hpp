@@ -7,7 +7,7 @@ namespace clutchwork {
 inline constexpr double infinity = __builtin_huge_val();
 
 enum Mode : int { backward = -1, locked = 0, forward = 1, open = 2 };
-enum class Cause : int { initial, slip_zero, torque_limit, input, consequence, impulse, restart };
+enum class Cause : int { initial, slip_zero, torque_limit, input, consequence, impulse, restart, passing };
 enum class Method : int { automatic, rodas5p, dopri5 };
 
 /// Settings of a run.
@@ -75,7 +75,7 @@ struct Edge {
   T* multiplier;  ///< torque of each locked contact
   T* drift;       ///< its time derivative
   T* capacity;    ///< static torque of each locked contact
-  T* load;        ///< load of each contact, negative included
+  T* noise;       ///< round-off of the torque of each locked contact
 };
 
 template <class T>
@@ -143,6 +143,8 @@ struct Workspace {
   // where a failure happened
   // what the phase that just ended leaves to the switch
   int located = -1;
+  double pull = 0;    ///< sign of the torque of a contact that breaks away
+  double effort = 0;  ///< size of the mass-weighted forces
   Cause cause = Cause::initial;
 
   int detail_component = -1;
@@ -187,7 +189,7 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   Edge<T>* edges[2] = {&ws.here, &ws.there};
   for (Edge<T>* e : edges) {
     a.take(e->rate, nd), a.take(e->slope, nd), a.take(e->multiplier, nc), a.take(e->drift, nc);
-    a.take(e->capacity, nc), a.take(e->load, nc);
+    a.take(e->capacity, nc), a.take(e->noise, nc);
   }
   a.take(ws.torque, nd), a.take(ws.output_torque, nd), a.take(ws.power, 4 * (nd + np));
   a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.take(ws.watch, nc), a.take(ws.mode_before, nc), a.take(ws.impulse, nc);
