@@ -16,12 +16,16 @@ EXACT = 1e-9
 
 
 def switches(run: Any, *, opening: bool = False) -> list[tuple[float, str, str, str]]:
-    """(time, contact, before, after) of every change of mode; opening and closing contacts only on request."""
-    return [
+    """(time, contact, before, after) of every change of mode; opening and closing contacts only on request.
+
+    Changes at exactly one instant have no order: they stand by name.
+    """
+    found = [
         (e.time, e.element, e.before, e.after)
         for e in run.events.changes()
         if opening or e.after == "locked" or e.before == "locked" or "open" not in (e.before, e.after)
     ]
+    return sorted(found, key=lambda change: change[:2])
 
 
 def assert_switches(run: Any, expected: list[tuple[float, str, str, str]], tolerance: float = EXACT) -> None:
