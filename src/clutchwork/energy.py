@@ -1,6 +1,6 @@
 """Where the energy of a run went.
 
-    work of the sources = change of kinetic + change of elastic energy + heat + energy lost in impulses + residual
+    work of the sources = change of kinetic + change of elastic energy + heat + residual
 
 The work integrals come from the solver itself, so the residual measures what the integration lost or made.
 """
@@ -23,13 +23,17 @@ SPRING_STATE = "spring_torque"
 
 @dataclass(frozen=True)
 class EnergyBalance:
-    """Energies between the first and the last instant of a trajectory, all in J."""
+    """Energies between the first and the last instant of a trajectory, all in J.
+
+    Impulses at the very start belong to the trajectory: the kinetic energy is counted from before them. What they
+    take out is part of the heat of the contacts; `impulses` only names it.
+    """
 
     sources: Mapping[str, float]  # work that each source put in; negative for a load
     kinetic: float  # change
     elastic: float  # change, all springs
     heat: Mapping[str, float]  # per contact and damper
-    impulses: float  # lost where speeds jumped
+    impulses: float  # part of the heat: lost where speeds jumped
 
     @property
     def input(self) -> float:
@@ -39,12 +43,12 @@ class EnergyBalance:
     @property
     def residual(self) -> float:
         """What the balance misses [J]."""
-        return self.input - self.kinetic - self.elastic - sum(self.heat.values()) - self.impulses
+        return self.input - self.kinetic - self.elastic - sum(self.heat.values())
 
     @property
     def turnover(self) -> float:
         """Sum of all energies that moved, regardless of direction [J]: what a residual is small against."""
-        parts = [*self.sources.values(), *self.heat.values(), self.kinetic, self.elastic, self.impulses]
+        parts = [*self.sources.values(), *self.heat.values(), self.kinetic, self.elastic]
         return 0.5 * sum(abs(part) for part in parts)
 
     def as_dict(self) -> dict[str, Any]:
@@ -66,7 +70,7 @@ class EnergyBalance:
         lines += [("kinetic energy, change", f"{self.kinetic:.3f}"), ("elastic energy, change", f"{self.elastic:.3f}")]
         lines += [("heat", f"{sum(self.heat.values()):.3f}")]
         lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.heat.items() if heat]
-        lines += [("lost in impulses", f"{self.impulses:.3f}")] if self.impulses else []
+        lines += [("of it in impulses", f"{self.impulses:.3f}")] if self.impulses else []
         share = self.residual / self.turnover if self.turnover else 0.0
         lines += [("residual", f"{self.residual:.3e}"), ("residual / turnover", f"{share:.1e}")]
         return columns([("energy", "J"), *lines], right={1})
@@ -85,7 +89,12 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
             heat[branch.name] = 0.0 - work - stored
     sources |= {branch.name: work for branch, work in _works(wiring, ends, "prescribed_work", wiring.motions)}
     heat |= {branch.name: 0.0 - work for branch, work in _works(wiring, ends, "contact_work", wiring.contacts)}
-    return EnergyBalance(sources, _kinetic(wiring, ends), elastic, heat, _impulses(events))
+    # a row at time zero lies behind the impulses of the start, whose work it holds already
+    lost = _impulses(events.at_start())
+    before = ends[0, wiring.columns["contact_work"]] if lost else np.zeros(len(wiring.contacts))
+    for branch, work in zip(wiring.contacts, before, strict=True):
+        heat[branch.name] -= float(work)
+    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, _impulses(events))
 
 
 def is_spring(branch: Branch) -> bool:

@@ -74,6 +74,10 @@ class Events(Sequence[Event]):
         quiet = ("start", "passing")
         return Events([event for event in self if event.before != event.after and event.cause not in quiet])
 
+    def at_start(self) -> Events:
+        """Impulses at time zero."""
+        return Events([event for event in self if event.time == 0.0 and event.cause == "impulse"])
+
     @property
     def times(self) -> NDArray[np.float64]:
         """Instants [s]."""
@@ -101,7 +105,9 @@ class Events(Sequence[Event]):
 def from_rows(rows: NDArray[np.float64], contacts: Sequence[str]) -> Events:
     """Name the numbers of the core."""
     at = {name: column for column, (name, _) in enumerate(EVENT)}
-    return Events([_event(row, at, contacts) for row in rows])
+    # contacts that change in one instant stand in their own order
+    order = np.lexsort((rows[:, at["contact"]], rows[:, at["time"]])) if len(rows) else []
+    return Events([_event(rows[i], at, contacts) for i in order])
 
 
 def _event(row: NDArray[np.float64], at: dict[str, int], contacts: Sequence[str]) -> Event:

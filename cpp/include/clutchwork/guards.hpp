@@ -80,14 +80,27 @@ double first_crossing(F&& f, double start, double end, double limit) {
     if (y[i] < 0) return locate(f, x[i - 1], y[i - 1], x[i], y[i]);
     if (y[i] < y[low]) low = i;
   }
-  if (low == 0 || low == n - 1) return -1;
-  // vertex through the lowest sample and its neighbours
-  const double step = x[low] - x[low - 1], d = y[low - 1] - 2 * y[low] + y[low + 1];
-  if (d <= 0) return -1;
-  const double vertex = x[low] + 0.5 * step * (y[low - 1] - y[low + 1]) / d, bottom = f(vertex);
-  if (bottom >= 0) return -1;
-  const int before = vertex > x[low] ? low : low - 1;
-  return locate(f, x[before], y[before], vertex, bottom);
+  // vertex through the lowest sample and its neighbours; once more, closer, where it almost touches
+  const int middle = low == 0 ? 1 : low == n - 1 ? n - 2 : low;
+  double centre = x[middle], step = x[middle] - x[middle - 1];
+  double left = y[middle - 1], here = y[middle], right = y[middle + 1];
+  for (int round = 0; round < 2; ++round) {
+    const double d = left - 2 * here + right;
+    if (d <= 0) return -1;
+    const double vertex = centre + 0.5 * step * (left - right) / d;
+    if (vertex <= 0 || vertex >= limit || abs(vertex - centre) > step) return -1;
+    const double bottom = f(vertex);
+    if (bottom < 0) {
+      int before = 0;
+      while (before + 1 < n && x[before + 1] < vertex) ++before;
+      return locate(f, x[before], y[before], vertex, bottom);
+    }
+    if (bottom > 0.01 * larger(left, right)) return -1;
+    step *= 0.1;
+    centre = vertex, here = bottom;
+    left = f(larger(0.0, vertex - step)), right = f(smaller(limit, vertex + step));
+  }
+  return -1;
 }
 
 /// Whether any prescribed speed varies, so that rates are no polynomials.

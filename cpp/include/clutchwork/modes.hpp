@@ -161,6 +161,21 @@ void release(Workspace<T>& ws, int c, int sign) {
   ws.piece[d] = piece_of(ws, d, 0.0);
 }
 
+/// A contact that was released and then, others having lost torque too, accelerates the other way (-1: none).
+/// It may stick after all; only the first release of a contact is taken back.
+template <class T>
+int turned_back(const Workspace<T>& ws, const int* list, int n, const T* x, const int* released, T* q) {
+  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
+  for (int a = 0; a < n; ++a) axpy(nv, x[a], ws.direction + (ne + list[a]) * nv, q);
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (released[c] != 1) continue;
+    const T* row = ws.direction + (ne + c) * nv;
+    const double noise = 1e-12 * ws.effort * value(sqrt(dot(nv, row, row)));
+    if (ws.mode[c] * value(slip_acceleration(ws, c, q)) < -noise) return c;
+  }
+  return -1;
+}
+
 /// Give every contact at zero slip its torque or its direction of slip. `located`: the contact whose guard was hit.
 template <class T>
 bool settle_contacts(Workspace<T>& ws, int located) {
@@ -171,11 +186,12 @@ bool settle_contacts(Workspace<T>& ws, int located) {
   int* list = ws.iscratch + nc;
   T* q = ws.scratch + ws.sys.states + 1;
   T* capacity = ws.qp_g + nc;
+  int* released = ws.iscratch + 3 * nc;
 
   // who may stick
   for (int c = 0; c < nc; ++c) {
     const double slip = ws.mode[c] == locked ? 0.0 : value(rate_of(ws, int(sys.elements) + c));
-    ws.held[c] = 0;
+    ws.held[c] = released[c] = 0;
     const bool arrived = c == located && ws.cause != Cause::input;
     candidate[c] = ws.loaded[c] && (ws.mode[c] == locked || abs(slip) <= tolerance || arrived);
     if (!ws.loaded[c]) {
@@ -194,7 +210,7 @@ bool settle_contacts(Workspace<T>& ws, int located) {
   }
 
   // rounds: those at a bound that accelerate start to slip with their kinetic torque
-  for (int round = 0; round <= 2 * nc + 2; ++round) {
+  for (int round = 0; round <= 4 * nc + 4; ++round) {
     int n = 0;
     for (int c = 0; c < nc; ++c) {
       if (candidate[c]) list[n++] = c;
@@ -236,6 +252,7 @@ bool settle_contacts(Workspace<T>& ws, int located) {
       const int c = list[first];
       release(ws, c, value(p.slope[first]) > 0 ? forward : backward);
       candidate[c] = 0;
+      released[c] = released[c] == 0 ? 1 : 2;
       continue;
     }
 
@@ -281,10 +298,11 @@ bool settle_contacts(Workspace<T>& ws, int located) {
       for (int c = 0; c < nc; ++c) ws.held[c] = 0;
       continue;
     }
-    for (int a = 0; a < n; ++a) {
-      ws.torque[sys.elements + list[a]] = p.x[a];
-    }
-    return true;
+    for (int a = 0; a < n; ++a) ws.torque[sys.elements + list[a]] = p.x[a];
+    const int back = turned_back(ws, list, n, p.x, released, q);
+    if (back < 0) return true;
+    released[back] = -1;
+    candidate[back] = 1;
   }
   return false;
 }

@@ -117,16 +117,22 @@ void export_state(Form& form, const T* y) {
   expand(form, y, ws.v);
 }
 
-/// Rows at the instant at which a phase starts.
+/// A step of no length at the present point, for reading rows and torques there.
 template <class Form>
-void emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
-  if (!(sink.steps ? fresh : sink.at < sink.count && sink.times[sink.at] <= form.ws.time)) return;
+void rest_step(Form& form, Step<Form>& step) {
   step.t = form.ws.time;
   step.h = 0;
   for (int i = 0; i < form.n(); ++i) {
     step.y1()[i] = step.y0()[i];
     step.p(0)[i] = step.p(1)[i] = step.p(2)[i] = 0;
   }
+}
+
+/// Rows at the instant at which a phase starts.
+template <class Form>
+void emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
+  if (!(sink.steps ? fresh : sink.at < sink.count && sink.times[sink.at] <= form.ws.time)) return;
+  rest_step(form, step);
   if (!sink.steps) {
     // a grid row here is the right limit of an event; further equal times wait for the end of the step
     const std::int64_t size = form.ws.row.size;
@@ -240,6 +246,16 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
   bool rejected = false;
 
   while (true) {
+    if (ws.time >= ws.next_knot) {
+      rest_step(form, step);
+      export_state(form, step.y0());
+      note_before(form, step, 0.0);
+      if (pass_knot(form, step)) {
+        ws.located = -1;
+        ws.cause = Cause::input;
+        return Status::running;
+      }
+    }
     if (ws.time >= t_end) {
       export_state(form, step.y0());
       return Status::done;
@@ -302,16 +318,6 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
       rejected = false;
       ws.last_step = h;
       if (ws.n_undirected > 0) direct_open(form, ws.here);
-      if (cut && ws.time >= ws.next_knot) {
-        export_state(form, step.y0());
-        step.t = ws.time, step.h = 0;
-        for (int i = 0; i < n; ++i) step.p(0)[i] = step.p(1)[i] = step.p(2)[i] = 0;
-        note_before(form, step, 0.0);
-        if (!pass_knot(form, step)) continue;
-        ws.located = -1;
-        ws.cause = Cause::input;
-        return Status::running;
-      }
       continue;
     }
 
