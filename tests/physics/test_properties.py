@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -54,20 +56,26 @@ def test_turning_the_other_way_is_the_mirror_image(seed: int) -> None:
         assert np.array_equal(runs[0][f"s{i}.speed"], -runs[1][f"s{i}.speed"])
 
 
+def loaded(run: Any) -> list[tuple[float, str, str]]:
+    """Changes of mode in which torque is at stake.
+
+    Where a clutch carries nothing when its pressure vanishes and returns, round-off decides whether it slips.
+    """
+    return [
+        (e.time, e.element, e.after) for e in run.events.changes() if abs(e.torque_before) + abs(e.torque_after) > 1e-6
+    ]
+
+
 @given(SEEDS)
 def test_names_and_order_do_not_matter(seed: int) -> None:
-    """Shafts and elements in another order: the same events and speeds.
-
-    Neighbouring event sequences lie within round-off of each other for some seeds in a million; times are compared
-    at the accuracy of rtol 1e-11 times the sensitivity of event chains.
-    """
+    """Shafts and elements in another order: the same events and speeds."""
     description = random_drivelines.describe(seed)
     order = tuple(int(i) for i in np.random.default_rng(seed).permutation(len(description.inertia)))
     runs = [
         x.simulate(random_drivelines.T_END, dt=0.02, rtol=1e-11, atol=1e-11, **BUDGET)
         for x in (description.driveline(), description.driveline(order))
     ]
-    lists = [random_drivelines.sequence([(t, c, b) for t, c, _, b in switches(run)]) for run in runs]
+    lists = [random_drivelines.sequence(loaded(run)) for run in runs]
     assert lists[0] == lists[1]
     for i in range(len(description.inertia)):
         one, two = (run[f"s{i}.speed"] for run in runs)
