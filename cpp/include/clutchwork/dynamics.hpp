@@ -110,7 +110,7 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
     }
     edge.multiplier[a] = x;
     edge.drift[a] = dx;
-    edge.noise[a] = T(1e-13) * size;
+    edge.noise[a] = T(1e-12) * size;
     edge.capacity[a] = capacity_of(ws, ws.locked[a]);
   }
 }

@@ -193,7 +193,10 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   for (int i = 0; i < ws.n_lines; ++i) {
     const LineGuard& g = ws.line[i];
     const int k = g.branch;
-    const double g0 = g.sign * (value(e0.rate[k]) - g.level), g1 = g.sign * (value(e1.rate[k]) - g.level);
+    double g0 = g.sign * (value(e0.rate[k]) - g.level), g1 = g.sign * (value(e1.rate[k]) - g.level);
+    // a start behind the surface, within what counts as zero, is on it
+    const double shift = g0 < 0 ? smaller(-g0, 1e3 * noise) : 0.0;
+    g0 += shift, g1 += shift;
     const double c0 = g0 + g.sign * h * value(e0.slope[k]) / 3, c1 = g1 - g.sign * h * value(e1.slope[k]) / 3;
     if (g1 >= 0 && c0 >= 0 && c1 >= 0) continue;
     const double s = line_crossing<Form, Integrator>(form, step, g, g0, g1, noise, hit.s);

@@ -70,19 +70,34 @@ T capacity_of(const Workspace<T>& ws, int c) {
   return larger(load_of(ws, c), T(0)) * law_hold(ws.sys.contact_law[c], ws.params + ws.sys.contact_law_param[c]);
 }
 
+/// Time derivative of the load of a contact.
+template <class T>
+T load_slope(const Workspace<T>& ws, int c) {
+  const System& sys = ws.sys;
+  return visit_contact(sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    Dual<T, 1> input[E::inputs > 0 ? E::inputs : 1];
+    for (int i = 0; i < E::inputs; ++i) {
+      input[i] = Dual<T, 1>(ws.u[sys.contact_input[c] + i]);
+      input[i].d[0] = ws.du[sys.contact_input[c] + i];
+    }
+    return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0]).d[0];
+  });
+}
+
 /// Whether a contact is closed: a load now, or one that is about to rise from zero.
 template <class T>
 bool is_loaded(const Workspace<T>& ws, int c) {
-  const System& sys = ws.sys;
   const double load = value(load_of(ws, c));
-  if (load != 0) return load > 0;
-  Dual<T, 1> input[8];
-  const int count = visit_contact(sys.contact_kind[c], [](auto tag) { return decltype(tag)::type::inputs; });
-  for (int i = 0; i < count && i < 8; ++i) {
-    input[i] = Dual<T, 1>(ws.u[sys.contact_input[c] + i]);
-    input[i].d[0] = ws.du[sys.contact_input[c] + i];
-  }
-  return value(contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0]).d[0]) > 0;
+  return load != 0 ? load > 0 : value(load_slope(ws, c)) > 0;
+}
+
+/// Static torque that a contact can use in a decision: one that rises from zero counts as it is a nanosecond later.
+template <class T>
+T usable_capacity(const Workspace<T>& ws, int c) {
+  if (value(load_of(ws, c)) > 0) return capacity_of(ws, c);
+  const T rising = larger(load_slope(ws, c), T(0)) * T(1e-9);
+  return rising * law_hold(ws.sys.contact_law[c], ws.params + ws.sys.contact_law_param[c]);
 }
 
 /// Tolerance under which a slip counts as zero.
@@ -219,7 +234,7 @@ bool settle_contacts(Workspace<T>& ws, int located) {
     BoundedProblem<T> p = gather(ws, list, n);
     for (int a = 0; a < n; ++a) {
       const int c = list[a];
-      capacity[a] = capacity_of(ws, c);
+      capacity[a] = usable_capacity(ws, c);
       const bool one_way = contact_one_way(ws, c);
       p.gradient[a] = slip_acceleration(ws, c, q);
       p.lower[a] = -capacity[a];

@@ -136,7 +136,7 @@ struct Workspace {
   T *power = nullptr;
 
   // events waiting for the caller
-  static constexpr int event_room = 64;
+  static constexpr int event_room = 256;
   double* events = nullptr;
   int n_events = 0;
 
