@@ -1,7 +1,7 @@
 #include <clutchwork/c_api.h>
 
-#include "instances.hpp"
 #include <new>
+#include "instances.hpp"
 
 using namespace clutchwork;
 
@@ -25,18 +25,21 @@ bool in_range(const System& s) {
     }
     return true;
   };
-  bool good = within(s.element_kind, s.elements, 0, torque_kinds - 1) && within(s.contact_kind, s.contacts, 0, contact_kinds - 1) &&
-              within(s.contact_law, s.contacts, 0, law_kinds - 1) && within(s.element_param, s.elements, 0, s.n_params) &&
-              within(s.contact_param, s.contacts, 0, s.n_params) && within(s.contact_law_param, s.contacts, 0, s.n_params) &&
-              within(s.element_state, s.elements, 0, s.states) && within(s.contact_state, s.contacts, 0, s.states) &&
-              within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) && within(s.input_refs, s.n_input_refs, 0, s.inputs - 1);
+  bool good =
+      within(s.element_kind, s.elements, 0, torque_kinds - 1) &&
+      within(s.contact_kind, s.contacts, 0, contact_kinds - 1) && within(s.contact_law, s.contacts, 0, law_kinds - 1) &&
+      within(s.element_param, s.elements, 0, s.n_params) && within(s.contact_param, s.contacts, 0, s.n_params) &&
+      within(s.contact_law_param, s.contacts, 0, s.n_params) && within(s.element_state, s.elements, 0, s.states) &&
+      within(s.contact_state, s.contacts, 0, s.states) && within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) &&
+      within(s.input_refs, s.n_input_refs, 0, s.inputs - 1);
   for (std::int64_t i = 0; good && i < s.inputs; ++i) {
     good = s.input_count[i] >= 0 && s.input_first[i] >= 0 && s.input_first[i] + s.input_count[i] <= s.segments;
   }
   for (std::int64_t i = 0; good && i < s.elements; ++i) {
     const int inputs = visit_torque(s.element_kind[i], [](auto tag) { return decltype(tag)::type::inputs; });
     const int states = visit_torque(s.element_kind[i], [](auto tag) { return decltype(tag)::type::states; });
-    good = s.element_input[i] >= 0 && s.element_input[i] + inputs <= s.n_input_refs && s.element_state[i] + states <= s.states;
+    good = s.element_input[i] >= 0 && s.element_input[i] + inputs <= s.n_input_refs &&
+           s.element_state[i] + states <= s.states;
   }
   for (std::int64_t i = 0; good && i < s.contacts; ++i) {
     const int inputs = visit_contact(s.contact_kind[i], [](auto tag) { return decltype(tag)::type::inputs; });
@@ -119,7 +122,8 @@ int cw_set_param(cw_run* run, std::int64_t offset, double value) {
   return 1;
 }
 
-int cw_advance(cw_run* run, double t_end, double* times, double* rows, std::int64_t n, int steps, std::int64_t* filled) {
+int cw_advance(cw_run* run, double t_end, double* times, double* rows, std::int64_t n, int steps,
+               std::int64_t* filled) {
   Sink sink{times, rows, n, 0, steps != 0};
   const Status status = advance(run->ws, t_end, sink);
   if (filled != nullptr) *filled = sink.at;

@@ -21,7 +21,8 @@ class Run {
  public:
   explicit Run(nb::bytes system) : system_(std::move(system)) {
     const std::int64_t size = cw_size(system_.c_str(), std::int64_t(system_.size()));
-    if (size < 0) throw nb::value_error("the system bytes do not fit this core: assemble the driveline again with this version");
+    if (size < 0)
+      throw nb::value_error("the system bytes do not fit this core: assemble the driveline again with this version");
     memory_ = std::make_unique<Block[]>(std::size_t(size + 63) / 64);
     size_ = size;
     run_ = cw_load(system_.c_str(), std::int64_t(system_.size()), memory_.get(), size);
@@ -63,7 +64,8 @@ class Run {
     total = cw_take_events(run_, out.get(), 4096);
     double* data = out.release();
     nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-    return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<2>>(data, {std::size_t(total), std::size_t(event_columns)}, owner));
+    return nb::cast(
+        nb::ndarray<nb::numpy, double, nb::ndim<2>>(data, {std::size_t(total), std::size_t(event_columns)}, owner));
   }
 
   nb::object row() {

@@ -106,7 +106,7 @@ def from_rows(rows: NDArray[np.float64], contacts: Sequence[str]) -> Events:
     """Name the numbers of the core."""
     at = {name: column for column, (name, _) in enumerate(EVENT)}
     # contacts that change in one instant stand in their own order
-    order = np.lexsort((rows[:, at["contact"]], rows[:, at["time"]])) if len(rows) else []
+    order = np.lexsort((rows[:, at["contact"]], rows[:, at["time"]]))
     return Events([_event(rows[i], at, contacts) for i in order])
 
 

@@ -64,7 +64,8 @@ void take_outside(Workspace<T>& ws) {
     const int k = ws.branch_of[ws.sys.elements + c];
     ws.mode_before[c] = ws.mode[c];
     ws.torque_before[c] = ws.mode[c] == locked ? ws.torque[ws.sys.elements + c] : T(0);
-    if (k >= 0 && k < ws.n_branches) ws.torque_before[c] = contact_torque(ws, ws.branch[k], rate_of(ws, ws.branch[k].direction));
+    if (k >= 0 && k < ws.n_branches)
+      ws.torque_before[c] = contact_torque(ws, ws.branch[k], rate_of(ws, ws.branch[k].direction));
     ws.slip_slope[c] = T(0);
   }
   for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];

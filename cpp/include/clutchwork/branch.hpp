@@ -77,8 +77,8 @@ CLUTCHWORK_INLINE void dual_inputs(int count, const Branch<T>& b, S* out) {
 
 /// Torque and partial derivatives by (rate, own states, time), from dual numbers.
 template <class T>
-CLUTCHWORK_INLINE Partial<T> branch_partial(const Workspace<T>& ws, const Branch<T>& b, T rate, T rate_slope, const T* state,
-                                            T* rates, const StatePartials<T>& out) {
+CLUTCHWORK_INLINE Partial<T> branch_partial(const Workspace<T>& ws, const Branch<T>& b, T rate, T rate_slope,
+                                            const T* state, T* rates, const StatePartials<T>& out) {
   if (b.law >= 0) {
     using S = Dual<T, 2>;
     const S load = visit_contact(b.kind, [&](auto tag) {

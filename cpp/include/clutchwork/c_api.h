@@ -21,7 +21,8 @@ int64_t cw_size(const void* system, int64_t bytes);
 /* Start a run at time zero in `memory` (aligned to 16 bytes); NULL when system or memory do not fit. */
 cw_run* cw_load(const void* system, int64_t bytes, void* memory, int64_t memory_bytes);
 
-/* Settings by name: rtol, atol, method, first_step, max_step, max_steps, max_events, angles, work. 0: unknown or out of range. */
+/* Settings by name: rtol, atol, method, first_step, max_step, max_steps, max_events, angles, work. 0: unknown or out of
+ * range. */
 int cw_set_option(cw_run* run, const char* name, double value);
 
 /* Value of a signal that is set from outside; 0: no such signal. */
@@ -58,7 +59,8 @@ void cw_save(const cw_run* run, void* bytes);
 int cw_restore(cw_run* run, const void* bytes, int64_t n);
 
 /* Kinetic coefficient at a slip and static coefficient of a law; 0: no such law. */
-int cw_law(int number, const double* params, const double* points, int64_t n_points, double slip, double* kinetic, double* hold);
+int cw_law(int number, const double* params, const double* points, int64_t n_points, double slip, double* kinetic,
+           double* hold);
 
 #ifdef __cplusplus
 }

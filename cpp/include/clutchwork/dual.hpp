@@ -28,15 +28,9 @@ struct Dual {
   Dual& operator/=(const Dual& b) { return *this = *this / b; }
 
   friend CLUTCHWORK_INLINE Dual operator-(const Dual& a) { return chain(a, -a.v, T(-1)); }
-  friend CLUTCHWORK_INLINE Dual operator+(const Dual& a, const Dual& b) {
-    return chain(a, T(1), b, T(1), a.v + b.v);
-  }
-  friend CLUTCHWORK_INLINE Dual operator-(const Dual& a, const Dual& b) {
-    return chain(a, T(1), b, T(-1), a.v - b.v);
-  }
-  friend CLUTCHWORK_INLINE Dual operator*(const Dual& a, const Dual& b) {
-    return chain(a, b.v, b, a.v, a.v * b.v);
-  }
+  friend CLUTCHWORK_INLINE Dual operator+(const Dual& a, const Dual& b) { return chain(a, T(1), b, T(1), a.v + b.v); }
+  friend CLUTCHWORK_INLINE Dual operator-(const Dual& a, const Dual& b) { return chain(a, T(1), b, T(-1), a.v - b.v); }
+  friend CLUTCHWORK_INLINE Dual operator*(const Dual& a, const Dual& b) { return chain(a, b.v, b, a.v, a.v * b.v); }
   // the value is a.v / b.v as the plain scalar computes it, so that the bits agree
   friend CLUTCHWORK_INLINE Dual operator/(const Dual& a, const Dual& b) {
     const T q = a.v / b.v;

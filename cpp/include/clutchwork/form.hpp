@@ -70,7 +70,8 @@ struct SmallForm {
       for (int r = 0; r < NZ; ++r) {
         if (r == c) continue;
         const T factor = w[r * NZ + c];
-        for (int j = 0; j < NZ; ++j) w[r * NZ + j] = j == c ? -factor * inverse : w[r * NZ + j] - factor * w[c * NZ + j];
+        for (int j = 0; j < NZ; ++j)
+          w[r * NZ + j] = j == c ? -factor * inverse : w[r * NZ + j] - factor * w[c * NZ + j];
       }
     }
     return true;
@@ -133,7 +134,8 @@ struct SparseForm {
     const int size = envelope_size();
     for (int i = 0; i < size; ++i) a[i] = T(0);
     for (int i = 0; i < ws.nz; ++i) {
-      for (int e = ws.m_first[i]; e < ws.m_first[i + 1] && ws.m_col[e] <= i; ++e) a[ws.sky[i] + ws.m_col[e]] = scale * ws.m_val[e];
+      for (int e = ws.m_first[i]; e < ws.m_first[i + 1] && ws.m_col[e] <= i; ++e)
+        a[ws.sky[i] + ws.m_col[e]] = scale * ws.m_val[e];
     }
     for (int k = 0; stiff != nullptr && k < ws.n_branches; ++k) {
       if (value(stiff[k]) == 0) continue;

@@ -7,8 +7,8 @@ namespace clutchwork::elements {
 struct Spring {
   template <class T>
   struct Params {
-    T stiffness;       ///< [N m/rad]
-    T initial_twist;   ///< [rad]
+    T stiffness;      ///< [N m/rad]
+    T initial_twist;  ///< [rad]
   };
   static constexpr int states = 1;
   static constexpr int inputs = 0;

@@ -7,9 +7,9 @@ namespace clutchwork::elements {
 struct SpringDamper {
   template <class T>
   struct Params {
-    T stiffness;       ///< [N m/rad]
-    T damping;         ///< [N m s/rad]
-    T initial_twist;   ///< [rad]
+    T stiffness;      ///< [N m/rad]
+    T damping;        ///< [N m s/rad]
+    T initial_twist;  ///< [rad]
   };
   static constexpr int states = 1;
   static constexpr int inputs = 0;
