@@ -24,7 +24,7 @@ struct BoundedProblem {
 
 /// Weights of the regularisation: equal share of capacity among redundant contacts. capacity[i] may be infinite.
 template <class T>
-void capacity_weights(BoundedProblem<T>& p, const T* capacity) {
+void capacity_weights(BoundedProblem<T>& p, const T* capacity, double small = 1e-10) {
   double largest = 0;
   for (int i = 0; i < p.n; ++i) {
     const double c = value(capacity[i]);
@@ -33,7 +33,7 @@ void capacity_weights(BoundedProblem<T>& p, const T* capacity) {
   for (int i = 0; i < p.n; ++i) {
     const double c = value(capacity[i]);
     const double ratio = c > 0 && c < infinity ? largest / c : 1;
-    p.weight[i] = p.matrix[i * p.n + i] * T(1e-10 * (ratio * ratio < 1e4 ? ratio * ratio : 1e4));
+    p.weight[i] = p.matrix[i * p.n + i] * T(small * (ratio * ratio < 1e4 ? ratio * ratio : 1e4));
   }
 }
 

@@ -73,12 +73,40 @@ CLUTCHWORK_INLINE void slopes(Form& form, const T* velocity, Edge<T>& edge) {
   for (int k = 0; k < ws.n_rates; ++k) edge.slope[k] = form.rate(k, velocity) + offset_slope(ws, k);
 }
 
-/// Torque of locked contact a for given branch torques.
+/// Torques of many locked contacts for given branch torques: free acceleration, then one solve with the factor of their mobility.
 template <class T>
-CLUTCHWORK_INLINE T multiplier(const Workspace<T>& ws, int a, const T* torque) {
-  T s = dot(ws.n_branches, ws.reach + a * ws.n_branches, torque);
-  for (int p = 0; p < ws.sys.prescribed; ++p) s += ws.reach_prescribed[a * ws.sys.prescribed + p] * ws.prescribed_slope[p];
-  return s;
+void sparse_multipliers(const Workspace<T>& ws, const T* torque, int np, T* out) {
+  const System& sys = ws.sys;
+  const int m = ws.n_locked, nv = int(sys.speeds), ne = int(sys.elements);
+  T *q = ws.dense_v, *b = ws.qp_g + 2 * sys.contacts;
+  for (int i = 0; i < nv; ++i) q[i] = T(0);
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const int d = ws.branch[k].direction;
+    for (int e = ws.white_first[d]; e < ws.white_first[d + 1]; ++e) q[ws.white_col[e]] += torque[k] * ws.white[e];
+  }
+  for (int p = 0; p < np; ++p) axpy(nv, -ws.prescribed_slope[p], ws.prescribed_momentum + p * nv, q);
+  for (int a = 0; a < m; ++a) {
+    const int d = ne + ws.locked[a];
+    b[a] = T(0);
+    for (int e = ws.white_first[d]; e < ws.white_first[d + 1]; ++e) b[a] -= q[ws.white_col[e]] * ws.white[e];
+    for (int p = 0; p < np; ++p) b[a] -= prescribed_share(ws, d, p) * ws.prescribed_slope[p];
+  }
+  solve_locked(ws, b, out);
+}
+
+/// Torques of the locked contacts for given branch torques; `moving`: with the prescribed accelerations.
+template <class T>
+CLUTCHWORK_INLINE void multipliers(const Workspace<T>& ws, const T* torque, bool moving, T* out) {
+  const System& sys = ws.sys;
+  const int m = ws.n_locked, nb = ws.n_branches, np = moving ? int(sys.prescribed) : 0;
+  if (!ws.sparse) {
+    for (int a = 0; a < m; ++a) {
+      out[a] = dot(nb, ws.reach + a * nb, torque);
+      for (int p = 0; p < np; ++p) out[a] += ws.reach_prescribed[a * sys.prescribed + p] * ws.prescribed_slope[p];
+    }
+    return;
+  }
+  sparse_multipliers(ws, torque, np, out);
 }
 
 /// Multipliers of the locked contacts, their drift and their capacities at the point that was linearized last.
@@ -87,29 +115,20 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
   const int m = ws.n_locked, nb = ws.n_branches;
   if (m == 0) return;
-  T* drift = ws.torque;
-  for (int a = 0; a < m; ++a) edge.multiplier[a] = edge.drift[a] = T(0);
+  T *drift = ws.torque, *torque = ws.output_torque;
   const T* states = d + form.nz();
+  T size = T(0);
   for (int k = 0; k < nb; ++k) {
     const Branch<T>& b = ws.branch[k];
     const Partial<T>& p = ws.partial[k];
+    torque[k] = p.torque;
+    size += abs(p.torque);
     drift[k] = p.by_rate * (edge.slope[k] - offset_slope(ws, k)) + p.by_time;
     for (int s = 0; s < b.states; ++s) drift[k] += ws.f_state[b.state + s] * states[b.state + s];
   }
+  multipliers(ws, torque, true, edge.multiplier);
+  multipliers(ws, drift, false, edge.drift);
   for (int a = 0; a < m; ++a) {
-    const T* reach = ws.reach + a * nb;
-    T x = T(0), dx = T(0), size = T(0);
-    for (int k = 0; k < nb; ++k) {
-      const T part = reach[k] * ws.partial[k].torque;
-      x += part;
-      size += abs(part);
-      dx += reach[k] * drift[k];
-    }
-    for (int p = 0; p < ws.sys.prescribed; ++p) {
-      x += ws.reach_prescribed[a * ws.sys.prescribed + p] * ws.prescribed_slope[p];
-    }
-    edge.multiplier[a] = x;
-    edge.drift[a] = dx;
     edge.noise[a] = T(1e-12) * size;
     edge.capacity[a] = capacity_of(ws, ws.locked[a]);
   }

@@ -62,6 +62,25 @@ bool stands_still(Workspace<T>& ws) {
   return ++ws.stand_events > 50;
 }
 
+/// Whether the load of a contact can pass zero before the next knot. A load is monotonic in each of its inputs.
+template <class T>
+bool load_may_turn(const Workspace<T>& ws, int c) {
+  const System& sys = ws.sys;
+  return visit_contact(sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    T low[E::inputs > 0 ? E::inputs : 1], high[E::inputs > 0 ? E::inputs : 1];
+    for (int i = 0; i < E::inputs; ++i) {
+      double a, b;
+      signal_range(ws, sys.input_refs[sys.contact_input[c] + i], ws.time, a, b);
+      if (b - a == infinity || b - a != b - a) return true;
+      low[i] = T(a), high[i] = T(b);
+    }
+    const T* params = ws.params + sys.contact_param[c];
+    return (contact_load(sys.contact_kind[c], params, &low[0]) < T(0)) !=
+           (contact_load(sys.contact_kind[c], params, &high[0]) < T(0));
+  });
+}
+
 /// Flags that follow from the signals: which contacts are closed, which loads vary.
 template <class T>
 bool refresh_loads(Workspace<T>& ws) {
@@ -72,12 +91,7 @@ bool refresh_loads(Workspace<T>& ws) {
     const int closed = is_loaded(ws, c) || contact_one_way(ws, c);
     changed = changed || closed != ws.loaded[c];
     ws.loaded[c] = closed;
-    const int count = visit_contact(sys.contact_kind[c], [](auto tag) { return decltype(tag)::type::inputs; });
-    for (int i = 0; i < count; ++i) {
-      if (!ws.signal[sys.input_refs[sys.contact_input[c] + i]].varying) continue;
-      ws.watch[ws.n_watch++] = c;
-      break;
-    }
+    if (load_may_turn(ws, c)) ws.watch[ws.n_watch++] = c;
   }
   return changed;
 }

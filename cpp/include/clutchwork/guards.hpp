@@ -167,10 +167,11 @@ double least_margin(Form& form, Step<Form>& step, double s, const int* watched, 
   if (ws.sys.prescribed > 0) input_slopes_at(ws, t);
   T* rates = ws.scratch;
   observe(form, t, step.point(), step.slope(), rates, ws.torque);
+  multipliers(ws, ws.torque, true, ws.output_torque);
   double least = infinity;
   for (int i = 0; i < n; ++i) {
     const int a = watched[i];
-    const double m = margin(ws, a, multiplier(ws, a, ws.torque), capacity_of(ws, ws.locked[a]));
+    const double m = margin(ws, a, ws.output_torque[a], capacity_of(ws, ws.locked[a]));
     if (m < least) least = m, who = a;
   }
   ++ws.statistics.locations;

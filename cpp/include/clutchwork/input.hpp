@@ -88,6 +88,23 @@ CLUTCHWORK_INLINE double signal_slope(const Workspace<T>& ws, int i, double t) {
   return signal.varying ? segment_slope(signal.coef, t - signal.start) : 0.0;
 }
 
+/// Bounds of signal i from time t to its next knot; infinite where they are not plain.
+template <class T>
+void signal_range(const Workspace<T>& ws, int i, double t, double& low, double& high) {
+  const Signal& signal = ws.signal[i];
+  low = high = signal_value(ws, i, t);
+  if (!signal.varying) return;
+  const double* c = signal.coef;
+  if (signal.linear) {
+    const double end = signal.knot < infinity ? signal_value(ws, i, signal.knot) : c[1] > 0 ? infinity : -infinity;
+    low = smaller(low, end), high = larger(high, end);
+  } else if (c[1] == 0 && c[2] == 0 && c[3] == 0 && c[7] >= 0) {
+    low = c[0] - abs(c[4]), high = c[0] + abs(c[4]);
+  } else {
+    low = -infinity, high = infinity;
+  }
+}
+
 /// Values of all references at time t; only the varying ones are computed again.
 template <class T>
 CLUTCHWORK_INLINE void inputs_at(Workspace<T>& ws, double t) {
@@ -120,7 +137,7 @@ void load_inputs(Workspace<T>& ws, double t) {
   for (int ref = 0; ref < ws.n_refs; ++ref) {
     const int i = ws.ref_signal[ref];
     ws.u[ref] = T(signal_value(ws, i, t));
-    ws.du[ref] = T(0);
+    ws.du[ref] = T(signal_slope(ws, i, t));
     if (ws.signal[i].varying) ws.varying[ws.n_varying++] = ref;
   }
   ws.input_time = t;

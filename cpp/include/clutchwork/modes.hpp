@@ -118,11 +118,15 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   const int nv = int(sys.speeds);
   for (int i = 0; i < nv; ++i) q[i] = T(0);
   ws.effort = 0;
-  auto add = [&](T size, const T* row) {
-    axpy(nv, size, row, q);
-    ws.effort += abs(value(size)) * sqrt(value(dot(nv, row, row)));
+  auto add = [&](T size, int d) {
+    T square = T(0);
+    for (int e = ws.white_first[d]; e < ws.white_first[d + 1]; ++e) {
+      q[ws.white_col[e]] += size * ws.white[e];
+      square += ws.white[e] * ws.white[e];
+    }
+    ws.effort += abs(value(size)) * sqrt(value(square));
   };
-  for (int p = 0; p < sys.prescribed; ++p) add(-ws.prescribed_slope[p], ws.prescribed_momentum + p * nv);
+  for (int p = 0; p < sys.prescribed; ++p) axpy(nv, -ws.prescribed_slope[p], ws.prescribed_momentum + p * nv, q);
   for (int d = 0; d < ws.n_directions; ++d) {
     const int c = d - int(sys.elements);
     int sign = 0;
@@ -133,7 +137,7 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
     }
     const Branch<T> b = make_branch(ws, d, sign, false);
     T* rates = ws.scratch;
-    add(branch_torque(ws, b, rate_of(ws, d), ws.state, rates), ws.direction + d * nv);
+    add(branch_torque(ws, b, rate_of(ws, d), ws.state, rates), d);
   }
 }
 
@@ -149,12 +153,9 @@ T slip_acceleration(const Workspace<T>& ws, int c, const T* q) {
 /// Gather the problem of the contacts in list[0..n): matrix and views.
 template <class T>
 BoundedProblem<T> gather(Workspace<T>& ws, const int* list, int n) {
-  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
+  const int nc = int(ws.sys.contacts);
   for (int a = 0; a < n; ++a) {
-    for (int b = 0; b <= a; ++b) {
-      const T s = dot(nv, ws.direction + (ne + list[a]) * nv, ws.direction + (ne + list[b]) * nv);
-      ws.qp_m[a * n + b] = ws.qp_m[b * n + a] = s;
-    }
+    for (int b = 0; b < n; ++b) ws.qp_m[a * n + b] = ws.mobility[list[a] * nc + list[b]];
   }
   return {n,        ws.qp_m,           ws.qp_g,           ws.qp_lo, ws.qp_hi,  ws.qp_w,
           ws.qp_x,  ws.qp_x + nc,      ws.qp_x + 2 * nc,  ws.qp_f,  ws.qp_fix, ws.qp_fix + nc};
@@ -163,9 +164,32 @@ BoundedProblem<T> gather(Workspace<T>& ws, const int* list, int n) {
 /// A contact without inertia on either side of its slip: prescribed speeds alone decide it.
 template <class T>
 bool is_rigid(const Workspace<T>& ws, int c) {
-  const int nv = int(ws.sys.speeds);
-  const T* row = ws.direction + (ws.sys.elements + c) * nv;
-  return value(dot(nv, row, row)) == 0;
+  return value(ws.mobility[c * ws.sys.contacts + c]) == 0;
+}
+
+/// Whether the direction of contact list[a] is spanned by those of the list that still have room.
+template <class T>
+bool is_spanned(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list, int a) {
+  if (!ws.redundant) return false;
+  const int nc = int(ws.sys.contacts), nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
+  T* rows = ws.scratch + ws.sys.states + 1 + nv;
+  T* basis = rows + nc * nv;
+  int m = 0;
+  for (int b = 0; b < p.n; ++b) {
+    const double x = value(p.x[b]), room = x > 0 ? value(p.upper[b]) : -value(p.lower[b]);
+    if (b == a || p.bound[b] != 0 || abs(x) >= room * (1 - 1e-7)) continue;
+    for (int i = 0; i < nv; ++i) rows[m * nv + i] = ws.direction[(ne + list[b]) * nv + i];
+    ++m;
+  }
+  const int rank = orthonormal_split(m, nv, rows, basis, ws.iscratch + 2 * nc, ws.qp_f);
+  const T* row = ws.direction + (ne + list[a]) * nv;
+  double outside = 0;
+  for (int j = rank; j < nv; ++j) {
+    T s = T(0);
+    for (int i = 0; i < nv; ++i) s += basis[i * nv + j] * row[i];
+    outside += value(s * s);
+  }
+  return outside <= 1e-16 * value(ws.mobility[list[a] * nc + list[a]]);
 }
 
 /// Let a contact slip from rest.
@@ -280,27 +304,7 @@ bool settle_contacts(Workspace<T>& ws, int located) {
       const bool breaks = c == located && ws.cause == Cause::torque_limit;
       const bool at_limit = p.bound[a] != 0 || breaks || abs(x) >= limit * (1 - 1e-7);
       if (!at_limit || is_rigid(ws, c)) continue;
-      // is its direction spanned by those that still have room?
-      T* rows = ws.scratch + sys.states + 1 + nv;
-      T* basis = rows + nc * nv;
-      int m = 0;
-      for (int b = 0; b < n; ++b) {
-        const double xb = value(p.x[b]), room = xb > 0 ? value(p.upper[b]) : -value(p.lower[b]);
-        if (b == a || p.bound[b] != 0 || abs(xb) >= room * (1 - 1e-7)) continue;
-        const T* row = ws.direction + (sys.elements + list[b]) * nv;
-        for (int i = 0; i < nv; ++i) rows[m * nv + i] = row[i];
-        ++m;
-      }
-      const int rank = orthonormal_split(m, nv, rows, basis, ws.iscratch + 2 * nc, ws.qp_f);
-      const T* row = ws.direction + (sys.elements + c) * nv;
-      double outside = 0;
-      for (int j = rank; j < nv; ++j) {
-        T s = T(0);
-        for (int i = 0; i < nv; ++i) s += basis[i * nv + j] * row[i];
-        outside += value(s * s);
-      }
-      const bool spanned = outside <= 1e-16 * value(dot(nv, row, row));
-      if (spanned && limit > 0) {
+      if (limit > 0 && is_spanned(ws, p, list, a)) {
         ws.held[c] = x > 0 ? 1 : -1;
       } else if (breaks) {
         ws.forced[c] = ws.pull > 0 && !contact_one_way(ws, c) ? backward : forward;

@@ -51,7 +51,9 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
     const int k = ws.branch_of[d];
     ws.output_torque[d] = k >= 0 && k < ws.n_branches ? ws.torque[k] : T(0);
   }
-  for (int a = 0; a < ws.n_locked; ++a) ws.output_torque[ne + ws.locked[a]] = multiplier(ws, a, ws.torque);
+  T* held = ws.qp_g + 3 * nc;
+  multipliers(ws, ws.torque, true, held);
+  for (int a = 0; a < ws.n_locked; ++a) ws.output_torque[ne + ws.locked[a]] = held[a];
   expand(form, shot.y, shot.v);
   bool algebraic = false;
   for (int i = 0; i < nv; ++i) algebraic = algebraic || sys.massless[i] != 0;

@@ -39,13 +39,18 @@ template <class T>
 void enter_mode(Workspace<T>& ws) {
   const System& sys = ws.sys;
   T* basis = ws.envelope;
-  split_locked(ws, basis);
-  invert_mobility(ws);
-  map_prescribed(ws, basis);
+  list_locked(ws);
   pack_branches(ws);
-  map_multipliers(ws);
+  // many speeds: the rank from sparse elimination, the dense basis only where it is used
+  const bool many = sys.speeds > 3 * small_speeds;
+  ws.rank = many ? eliminate_locked(ws, ws.scratch + sys.speeds) : split_locked(ws, basis);
+  ws.nz = int(sys.speeds) - ws.rank;
   ws.is_explicit = explicit_suits(ws);
   ws.sparse = ws.is_explicit || ws.nz > small_speeds || sys.states > small_states || has_massless(ws);
+  if (many && (!ws.sparse || sys.prescribed > 0)) split_locked(ws, basis);
+  factor_mobility(ws);
+  map_prescribed(ws, basis);
+  if (!ws.sparse) map_multipliers(ws);
   if (ws.sparse) {
     reduce_rates(ws);
     reduce_sparse(ws);
@@ -212,7 +217,8 @@ void direct_open(Form& form, const Edge<typename Form::Scalar>& edge) {
   if (changed) list_lines(ws);
 }
 
-/// Longest step that resolves the oscillating signals: half a radian of a sine, half a time constant of a decay.
+/// Longest step that resolves the oscillating signals, which the error estimate may not see: with work half a radian
+/// of a sine or half a time constant of a decay, for the quadrature; else what the samples of the guards need.
 template <class T>
 double signal_step(const Workspace<T>& ws) {
   double fastest = 0;
@@ -224,7 +230,7 @@ double signal_step(const Workspace<T>& ws) {
     if (c[7] * (ws.time - signal.start) > 25) continue;
     fastest = larger(fastest, larger(abs(c[5]), abs(c[7])));
   }
-  return fastest > 0 ? 0.5 / fastest : infinity;
+  return fastest > 0 ? (ws.options.work ? 0.5 : 1.5) / fastest : infinity;
 }
 
 /// Integrate until an event, the end time, or a full buffer. `running`: an event is waiting to be settled.

@@ -6,6 +6,28 @@ namespace clutchwork {
 
 inline constexpr int small_speeds = 4, small_states = 3;
 
+/// The mass-weighted directions without their zeros, and the mobility of the contacts: their products.
+template <class T>
+void compress_directions(Workspace<T>& ws) {
+  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
+  int at = 0;
+  for (int d = 0; d < ws.n_directions; ++d) {
+    ws.white_first[d] = at;
+    for (int i = 0; i < nv; ++i) {
+      if (value(ws.direction[d * nv + i]) == 0) continue;
+      ws.white_col[at] = i;
+      ws.white[at++] = ws.direction[d * nv + i];
+    }
+  }
+  ws.white_first[ws.n_directions] = at;
+  for (int a = 0; a < nc; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      const T s = dot(nv, ws.direction + (ne + a) * nv, ws.direction + (ne + b) * nv);
+      ws.mobility[a * nc + b] = ws.mobility[b * nc + a] = s;
+    }
+  }
+}
+
 /// Once per run: mass-weighted directions L^-1 D' and prescribed momentum L^-1 M_p. False when M is not positive definite.
 template <class T>
 bool prepare_geometry(Workspace<T>& ws) {
@@ -24,28 +46,39 @@ bool prepare_geometry(Workspace<T>& ws) {
     for (int i = 0; i < nv; ++i) ws.prescribed_momentum[p * nv + i] = T(sys.mass_prescribed[i * np + p]);
     forward_solve(nv, ws.factor, nv, ws.prescribed_momentum + p * nv);
   }
+  compress_directions(ws);
+  // without redundant contacts nothing is ever held by others
+  const int nc = int(sys.contacts);
+  T* rows = ws.scratch;
+  for (int i = 0; i < nc * nv; ++i) rows[i] = ws.direction[sys.elements * nv + i];
+  ws.redundant = orthonormal_split(nc, nv, rows, ws.envelope, ws.iscratch, ws.qp_f) < nc;
   return true;
 }
 
-/// The locked contacts as orthonormal directions: fills ws.locked, ws.rank; basis holds range and null space.
+/// The contacts that are locked and carry what the motion asks.
 template <class T>
-void split_locked(Workspace<T>& ws, T* basis) {
-  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
-  T* rows = ws.scratch;
+void list_locked(Workspace<T>& ws) {
   ws.n_locked = 0;
-  for (int c = 0; c < nc; ++c) {
-    if (ws.mode[c] != locked || ws.held[c] != 0) continue;
-    for (int i = 0; i < nv; ++i) rows[ws.n_locked * nv + i] = ws.direction[(ne + c) * nv + i];
-    ws.locked[ws.n_locked++] = c;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (ws.mode[c] == locked && ws.held[c] == 0) ws.locked[ws.n_locked++] = c;
   }
-  ws.rank = orthonormal_split(ws.n_locked, nv, rows, basis, ws.iscratch, ws.qp_f);
-  ws.nz = nv - ws.rank;
 }
 
-/// Inverse of the mobility of the locked contacts; weighted minimum norm where it is singular.
+/// Orthonormal directions whose first `rank` span the locked contacts, the others the motion that is left.
 template <class T>
-void invert_mobility(Workspace<T>& ws) {
-  const int m = ws.n_locked, nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
+int split_locked(Workspace<T>& ws, T* basis) {
+  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
+  T* rows = ws.scratch;
+  for (int a = 0; a < ws.n_locked; ++a) {
+    for (int i = 0; i < nv; ++i) rows[a * nv + i] = ws.direction[(ne + ws.locked[a]) * nv + i];
+  }
+  return orthonormal_split(ws.n_locked, nv, rows, basis, ws.iscratch, ws.qp_f);
+}
+
+/// Factor of the mobility of the locked contacts; weighted by capacity where it is singular.
+template <class T>
+void factor_mobility(Workspace<T>& ws) {
+  const int m = ws.n_locked;
   BoundedProblem<T> p = gather(ws, ws.locked, m);
   T* capacity = ws.qp_g + ws.sys.contacts;
   for (int a = 0; a < m; ++a) {
@@ -53,44 +86,52 @@ void invert_mobility(Workspace<T>& ws) {
     if (is_rigid(ws, ws.locked[a])) p.matrix[a * m + a] = T(1);
     p.bound[a] = 0;
   }
-  capacity_weights(p, capacity);
-  if (ws.rank == m) {
-    for (int a = 0; a < m; ++a) p.weight[a] = T(0);
-  }
+  // larger than in the decision: round-off in the shares of redundant contacts is divided by it
+  capacity_weights(p, capacity, 1e-7);
+  for (int a = 0; a < m && ws.rank == m; ++a) p.weight[a] = T(0);
+  p.factor = ws.mobility_factor;
   factor_free(p);
-  for (int a = 0; a < m; ++a) {
-    T* column = ws.pinv + a * m;
-    for (int b = 0; b < m; ++b) column[b] = T(a == b ? 1.0 : 0.0);
-    forward_solve(m, p.factor, m, column);
-    backward_solve(m, p.factor, m, column);
-    // two refinements take the regularisation out again
-    for (int k = 0; k < 2 && ws.rank < m; ++k) {
-      for (int b = 0; b < m; ++b) p.trial[b] = T(a == b ? 1.0 : 0.0) - dot(m, p.matrix + b * m, column);
-      forward_solve(m, p.factor, m, p.trial);
-      backward_solve(m, p.factor, m, p.trial);
-      axpy(m, T(1), p.trial, column);
-    }
-  }
-  (void)nv, (void)ne;
 }
 
-/// Multipliers as a linear map of branch torques and prescribed accelerations.
+/// Torques x of the locked contacts for slip accelerations b: mobility x = b; minimum norm where it is singular.
+template <class T>
+void solve_locked(const Workspace<T>& ws, const T* b, T* x) {
+  const int m = ws.n_locked, nc = int(ws.sys.contacts);
+  for (int a = 0; a < m; ++a) x[a] = b[a];
+  forward_solve(m, ws.mobility_factor, m, x);
+  backward_solve(m, ws.mobility_factor, m, x);
+  // refinements take the weight out again
+  T* r = ws.qp_g + 4 * nc;
+  for (int k = 0; k < 4 && ws.rank < m; ++k) {
+    for (int a = 0; a < m; ++a) {
+      r[a] = b[a];
+      for (int c = 0; c < m; ++c) r[a] -= ws.mobility[ws.locked[a] * nc + ws.locked[c]] * x[c];
+    }
+    forward_solve(m, ws.mobility_factor, m, r);
+    backward_solve(m, ws.mobility_factor, m, r);
+    axpy(m, T(1), r, x);
+  }
+}
+
+/// Multipliers as a linear map of branch torques and prescribed accelerations; few contacts only.
 template <class T>
 void map_multipliers(Workspace<T>& ws) {
   const int m = ws.n_locked, nv = int(ws.sys.speeds), ne = int(ws.sys.elements), np = int(ws.sys.prescribed);
-  for (int a = 0; a < m; ++a) {
-    // pull = sum over locked contacts of pinv times mass-weighted direction
-    T* pull = ws.scratch;
-    for (int i = 0; i < nv; ++i) pull[i] = T(0);
-    for (int b = 0; b < m; ++b) axpy(nv, ws.pinv[a * m + b], ws.direction + (ne + ws.locked[b]) * nv, pull);
-    for (int k = 0; k < ws.n_branches; ++k) {
-      ws.reach[a * ws.n_branches + k] = -dot(nv, pull, ws.direction + ws.branch[k].direction * nv);
+  T *b = ws.qp_g + 2 * ws.sys.contacts, *x = ws.qp_g + 3 * ws.sys.contacts;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    for (int a = 0; a < m; ++a) {
+      b[a] = -dot(nv, ws.direction + (ne + ws.locked[a]) * nv, ws.direction + ws.branch[k].direction * nv);
     }
-    for (int p = 0; p < np; ++p) {
-      T s = dot(nv, pull, ws.prescribed_momentum + p * nv);
-      for (int b = 0; b < m; ++b) s -= ws.pinv[a * m + b] * prescribed_share(ws, ne + ws.locked[b], p);
-      ws.reach_prescribed[a * np + p] = s;
+    solve_locked(ws, b, x);
+    for (int a = 0; a < m; ++a) ws.reach[a * ws.n_branches + k] = x[a];
+  }
+  for (int p = 0; p < np; ++p) {
+    for (int a = 0; a < m; ++a) {
+      const int d = ne + ws.locked[a];
+      b[a] = dot(nv, ws.direction + d * nv, ws.prescribed_momentum + p * nv) - prescribed_share(ws, d, p);
     }
+    solve_locked(ws, b, x);
+    for (int a = 0; a < m; ++a) ws.reach_prescribed[a * np + p] = x[a];
   }
 }
 
@@ -108,11 +149,10 @@ void map_prescribed(Workspace<T>& ws, const T* basis) {
       for (int i = 0; i < nv; ++i) s += basis[i * nv + j] * momentum[i];
       for (int i = 0; i < nv; ++i) x[i] -= s * basis[i * nv + j];
     }
-    for (int a = 0; a < m; ++a) {
-      T s = T(0);
-      for (int b = 0; b < m; ++b) s += ws.pinv[a * m + b] * prescribed_share(ws, ne + ws.locked[b], p);
-      axpy(nv, -s, ws.direction + (ne + ws.locked[a]) * nv, x);
-    }
+    T *share = ws.qp_g + 2 * sys.contacts, *size = ws.qp_g + 3 * sys.contacts;
+    for (int a = 0; a < m; ++a) share[a] = prescribed_share(ws, ne + ws.locked[a], p);
+    solve_locked(ws, share, size);
+    for (int a = 0; a < m; ++a) axpy(nv, -size[a], ws.direction + (ne + ws.locked[a]) * nv, x);
     backward_solve(nv, ws.factor, nv, x);
     for (int i = 0; i < nv; ++i) ws.y_basis[i * np + p] = x[i];
   }

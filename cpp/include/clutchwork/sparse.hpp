@@ -4,9 +4,11 @@
 /// Reduced coordinates for many speeds: a subset of v, each locked contact eliminating one; everything stays sparse.
 namespace clutchwork {
 
-/// Row i of the expansion v = N z as a dense scratch row of length nv (columns still numbered by v).
+/// Expansion v = N z with one speed eliminated per independent locked contact (columns still numbered by v).
+/// Returns how many were eliminated.
 template <class T>
-void eliminate_locked(Workspace<T>& ws, T* n) {
+int eliminate_locked(Workspace<T>& ws, T* n) {
+  int eliminated = 0;
   const int nv = int(ws.sys.speeds);
   for (int i = 0; i < nv * nv; ++i) n[i] = T(0);
   for (int i = 0; i < nv; ++i) n[i * nv + i] = T(1), ws.pivot_of[i] = -1;
@@ -26,6 +28,7 @@ void eliminate_locked(Workspace<T>& ws, T* n) {
     }
     if (pivot < 0) continue;
     ws.pivot_of[pivot] = a;
+    ++eliminated;
     for (int i = 0; i < nv; ++i) {
       const T share = n[i * nv + pivot];
       if (value(share) == 0) continue;
@@ -36,6 +39,7 @@ void eliminate_locked(Workspace<T>& ws, T* n) {
       n[i * nv + pivot] = T(0);
     }
   }
+  return eliminated;
 }
 
 /// Compressed rows of a dense matrix, keeping only the columns in `keep` (renumbered); returns the entries.

@@ -104,14 +104,14 @@ struct Workspace {
   T *params = nullptr, *prescribed = nullptr, *prescribed_slope = nullptr, *prescribed_before = nullptr;
 
   // geometry in mass-weighted coordinates x = L' v
-  T *factor = nullptr, *direction = nullptr, *prescribed_momentum = nullptr;
-  const double *rate_rows = nullptr, *rate_prescribed = nullptr;
+  T *factor = nullptr, *direction = nullptr, *prescribed_momentum = nullptr, *white = nullptr;
+  int *white_first = nullptr, *white_col = nullptr;
 
   // the present mode
   int n_locked = 0, rank = 0, nz = 0, n_branches = 0, n_rates = 0, n_lines = 0, n_watch = 0, n_undirected = 0;
   int* locked = nullptr;
-  bool sparse = false, is_explicit = false;
-  T *z_basis = nullptr, *y_basis = nullptr, *pinv = nullptr;
+  bool sparse = false, is_explicit = false, redundant = false;
+  T *z_basis = nullptr, *y_basis = nullptr, *mobility = nullptr, *mobility_factor = nullptr;
   T *row_z = nullptr, *offset = nullptr, *reach = nullptr, *reach_prescribed = nullptr;
   Branch<T>* branch = nullptr;
   int* branch_of = nullptr;
@@ -181,7 +181,8 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   a.take(ws.signal, s.inputs), a.take(ws.ref_signal, ws.n_refs), a.take(ws.varying, ws.n_refs);
   a.take(ws.u, ws.n_refs), a.take(ws.du, ws.n_refs), a.take(ws.params, s.n_params), a.take(ws.prescribed_before, np);
   a.take(ws.factor, nv * nv), a.take(ws.direction, nd * nv), a.take(ws.prescribed_momentum, np * nv);
-  a.take(ws.locked, nc), a.take(ws.z_basis, nv * nv), a.take(ws.y_basis, nv * np), a.take(ws.pinv, nc * nc);
+  a.take(ws.locked, nc), a.take(ws.z_basis, nv * nv), a.take(ws.y_basis, nv * np), a.take(ws.mobility, nc * nc);
+  a.take(ws.mobility_factor, nc * nc), a.take(ws.white_first, nd + 1), a.take(ws.white_col, nd * nv), a.take(ws.white, nd * nv);
   a.take(ws.row_z, nd * nv), a.take(ws.offset, nd * np), a.take(ws.reach, nc * nd), a.take(ws.reach_prescribed, nc * np);
   a.take(ws.branch, nd), a.take(ws.branch_of, nd), a.take(ws.line, 3 * nd + nc), a.take(ws.partial, nd);
   a.take(ws.f_state, ns), a.take(ws.g_rate, ns), a.take(ws.g_time, ns), a.take(ws.block, nd);
@@ -199,7 +200,7 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   a.take(ws.exp_first, nv + 1), a.take(ws.exp_col, nv * nv), a.take(ws.exp_val, nv * nv);
   a.take(ws.y, nv + ns), a.take(ws.stages, 20 * (nv + ns)), a.take(ws.scratch, 8 * (nv + nd + ns) + 3 * nv * nv + nc * (nv + nc));
   a.take(ws.dense_v, 4 * nv + 2 * s.nodes + np), a.take(ws.iscratch, 4 * (nv + nd + nc));
-  a.take(ws.qp_g, 3 * nc), a.take(ws.qp_m, nc * nc), a.take(ws.qp_x, 3 * nc), a.take(ws.qp_lo, nc), a.take(ws.qp_hi, nc);
+  a.take(ws.qp_g, 5 * nc), a.take(ws.qp_m, nc * nc), a.take(ws.qp_x, 3 * nc), a.take(ws.qp_lo, nc), a.take(ws.qp_hi, nc);
   a.take(ws.qp_w, nc), a.take(ws.qp_f, nc * nc), a.take(ws.qp_fix, 3 * nc);
   a.take(ws.events, event_size * (Workspace<T>::event_room + 2 * nc));
   ws.prescribed = ws.u + s.n_input_refs;
