@@ -57,19 +57,17 @@ int factor_free(BoundedProblem<T>& p) {
   return cholesky(m, p.factor, p.n) ? m : -1;
 }
 
-/// Newton step of the free contacts towards the minimum, bounds ignored; `regular` keeps the weight in the residual.
+/// Newton step of the m free contacts, already factored, towards the minimum, bounds ignored; `regular` keeps the
+/// weight in the residual.
 template <class T>
-bool newton_step(BoundedProblem<T>& p, bool regular) {
-  const int m = factor_free(p);
-  if (m < 0) return false;
+void newton_step(BoundedProblem<T>& p, int m, bool regular) {
   for (int a = 0; a < m; ++a) {
     const int i = p.free[a];
     p.trial[a] = -(slope_of(p, i) + (regular ? p.weight[i] * p.x[i] : T(0)));
   }
   forward_solve(m, p.factor, p.n, p.trial);
   backward_solve(m, p.factor, p.n, p.trial);
-  for (int a = m - 1; a >= 0; --a) p.slope[p.free[a]] = p.trial[a];
-  return true;
+  for (int a = 0; a < m; ++a) p.slope[p.free[a]] = p.trial[a];
 }
 
 /// Longest step in [0, 1] that keeps the bounds, and the contact that stops it (-1: none).
@@ -116,8 +114,11 @@ bool solve(BoundedProblem<T>& p) {
     p.bound[i] = p.lower[i] < p.upper[i] ? 0 : 1;
   }
   bool solved = false;
+  int m = 0;
   for (int round = 0; round < 20 * p.n + 50 && !solved; ++round) {
-    if (!newton_step(p, true)) return false;
+    m = factor_free(p);
+    if (m < 0) return false;
+    newton_step(p, m, true);
     int blocking;
     const T alpha = longest_step(p, blocking);
     for (int i = 0; i < p.n; ++i) {
@@ -136,7 +137,8 @@ bool solve(BoundedProblem<T>& p) {
     }
   }
   // take the weight out again: two refinements with the exact matrix, inside the bounds
-  for (int k = 0; k < 2 && newton_step(p, false); ++k) {
+  for (int k = 0; k < 2; ++k) {
+    newton_step(p, m, false);
     for (int i = 0; i < p.n; ++i) {
       if (p.bound[i] == 0) p.x[i] = smaller(larger(p.x[i] + p.slope[i], p.lower[i]), p.upper[i]);
     }

@@ -43,7 +43,7 @@ void enter_mode(Workspace<T>& ws) {
   pack_branches(ws);
   // many speeds: the rank from sparse elimination, the dense basis only where it is used
   const bool many = sys.speeds > 3 * small_speeds;
-  ws.rank = many ? eliminate_locked(ws, ws.scratch + sys.speeds) : split_locked(ws, basis);
+  ws.rank = many ? eliminate_locked(ws, ws.z_basis) : split_locked(ws, basis);
   ws.nz = int(sys.speeds) - ws.rank;
   ws.is_explicit = explicit_suits(ws);
   ws.sparse = ws.is_explicit || ws.nz > small_speeds || sys.states > small_states || has_massless(ws);
@@ -52,6 +52,7 @@ void enter_mode(Workspace<T>& ws) {
   map_prescribed(ws, basis);
   if (!ws.sparse) map_multipliers(ws);
   if (ws.sparse) {
+    if (!many) eliminate_locked(ws, ws.z_basis);
     reduce_rates(ws);
     reduce_sparse(ws);
   } else {

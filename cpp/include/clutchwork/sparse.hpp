@@ -58,13 +58,12 @@ int compress(int rows, int cols, const T* dense, const int* number, int* first, 
   return at;
 }
 
-/// Expansion, rates, mass and envelope of the present mode.
+/// Expansion, rates, mass and envelope of the present mode; ws.z_basis holds the eliminated expansion and is used up.
 template <class T>
 void reduce_sparse(Workspace<T>& ws) {
   const System& sys = ws.sys;
   const int nv = int(sys.speeds), np = int(sys.prescribed);
-  T* n = ws.scratch + nv;
-  eliminate_locked(ws, n);
+  T* n = ws.z_basis;
   int* number = ws.iscratch;
   int nz = 0;
   for (int j = 0; j < nv; ++j) number[j] = ws.pivot_of[j] < 0 ? nz++ : -1;
@@ -72,7 +71,7 @@ void reduce_sparse(Workspace<T>& ws) {
   compress(nv, nv, n, number, ws.exp_first, ws.exp_col, ws.exp_val);
 
   // rates of the branches
-  T* row = ws.scratch + nv + nv * nv;
+  T* row = ws.scratch;
   int at = 0;
   for (int k = 0; k < ws.n_rates; ++k) {
     ws.sp_first[k] = at;
