@@ -10,6 +10,7 @@ import re
 import sys
 import types
 from collections.abc import Iterator
+from importlib.machinery import BuiltinImporter, FrozenImporter, PathFinder
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,8 @@ def load(root: Path) -> tuple[Any, Any]:
     """Import the declarations without the package's own __init__, which needs the compiled core."""
     # the finder of an editable install, an instance among classes, would answer with the files of another checkout
     sys.meta_path[:] = [finder for finder in sys.meta_path if isinstance(finder, type)]
+    # an installed clutchwork may redirect imports to other sources: only the plain finders are wanted here
+    sys.meta_path[:] = [BuiltinImporter, FrozenImporter, PathFinder]
     package = types.ModuleType("clutchwork")
     package.__path__ = [str(root / "src/clutchwork")]
     sys.modules["clutchwork"] = package

@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     from clutchwork.signals.sine import Sine as Sine
     from clutchwork.signals.step import Step as Step
     from clutchwork.signals.table import Table as Table
-    from clutchwork.simulate import simulate as simulate
+    from clutchwork.simulation import simulate as simulate
     from clutchwork.system import System as System
     from clutchwork.trajectory import Trajectory as Trajectory
 
@@ -78,7 +78,7 @@ _LAZY = {
     "StoppedEarly": "failure",
     "System": "system",
     "Trajectory": "trajectory",
-    "simulate": "simulate",
+    "simulate": "simulation",
 }
 
 _DECLARED = {cls.__name__: cls for kinds in REGISTRY.values() for cls in kinds.values()}

@@ -109,7 +109,7 @@ def _run(asked: argparse.Namespace) -> int:
 def _simulated(driveline: Driveline, system: System, asked: argparse.Namespace) -> Trajectory:
     """Run with the settings of the file, overruled by those of the command line."""
     from clutchwork.failure import StoppedEarly
-    from clutchwork.simulate import simulate
+    from clutchwork.simulation import simulate
 
     settings = dict(driveline.simulation)
     for name in ("t_end", "rtol", "atol", "method", "dt", "max_step"):

@@ -95,7 +95,7 @@ class Driveline:
 
     def simulate(self, t_end: float, **options: Any) -> Trajectory:
         """Assemble and run up to t_end [s]; options as for `clutchwork.simulate`."""
-        from clutchwork.simulate import simulate
+        from clutchwork.simulation import simulate
 
         return simulate(self.assemble(), t_end, **options)
 

@@ -94,7 +94,7 @@ class Trajectory:
 
         The run is repeated, bit for bit; controllers are not called again, their decisions are replayed.
         """
-        from clutchwork.simulate import again
+        from clutchwork.simulation import again
 
         return again(self, times)
 

@@ -12,7 +12,7 @@ from clutchwork import record as module
 from clutchwork.control import Control, Controller
 from clutchwork.failure import DONE, SimulationError
 from clutchwork.record import Recording, record
-from clutchwork.simulate import refined
+from clutchwork.simulation import refined
 
 Make = Callable[..., Any]
 
