@@ -55,7 +55,8 @@ CLUTCHWORK_INLINE void linearize(Form& form, double t, const T* y, T* d, T* dt, 
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
     edge.rate[k] = form.rate(k, y) + offset_rate(ws, k);
-    const StatePartials<T> out{ws.f_state + b.state, ws.g_rate + b.state, ws.g_time + b.state, ws.g_state + ws.block[k]};
+    const StatePartials<T> out{ws.f_state + b.state, ws.g_rate + b.state, ws.g_time + b.state,
+                               ws.g_state + ws.block[k]};
     const Partial<T> p = branch_partial(ws, b, edge.rate[k], offset_slope(ws, k), y + nz, d + nz, out);
     ws.partial[k] = p;
     form.push(k, p.torque, d);
@@ -73,7 +74,8 @@ CLUTCHWORK_INLINE void slopes(Form& form, const T* velocity, Edge<T>& edge) {
   for (int k = 0; k < ws.n_rates; ++k) edge.slope[k] = form.rate(k, velocity) + offset_slope(ws, k);
 }
 
-/// Torques of many locked contacts for given branch torques: free acceleration, then one solve with the factor of their mobility.
+/// Torques of many locked contacts for given branch torques: free acceleration, then one solve with the factor of their
+/// mobility.
 template <class T>
 void sparse_multipliers(const Workspace<T>& ws, const T* torque, int np, T* out) {
   const System& sys = ws.sys;

@@ -132,8 +132,8 @@ Status switch_modes(Workspace<T>& ws) {
     if (ws.mode[c] == ws.mode_before[c] || (at_start && !ws.impulse[c])) continue;
     const Cause cause = at_start ? Cause::impulse : c == ws.located || ws.located < 0 ? ws.cause : Cause::consequence;
     const double hits = value(ws.mode[c] == locked ? ws.slip_slope[c] : acceleration[c]);
-    record(ws, c, ws.mode_before[c], ws.mode[c], cause, hits, value(ws.torque_before[c]), value(torque_after(ws, c)), before,
-           after);
+    record(ws, c, ws.mode_before[c], ws.mode[c], cause, hits, value(ws.torque_before[c]), value(torque_after(ws, c)),
+           before, after);
   }
   return Status::running;
 }

@@ -209,7 +209,8 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   int n = 0;
   double m0 = infinity, m1 = infinity;
   for (int a = 0; a < ws.n_locked; ++a) {
-    const double before = margin(ws, a, e0.multiplier[a], e0.capacity[a]), after = margin(ws, a, e1.multiplier[a], e1.capacity[a]);
+    const double before = margin(ws, a, e0.multiplier[a], e0.capacity[a]),
+                 after = margin(ws, a, e1.multiplier[a], e1.capacity[a]);
     const double change = abs(value(e1.multiplier[a] - e0.multiplier[a])) + abs(value(e1.capacity[a] - e0.capacity[a]));
     const double drift = h * larger(abs(value(e0.drift[a])), abs(value(e1.drift[a])));
     if (smaller(before, after) > larger(change, drift)) continue;

@@ -157,8 +157,8 @@ BoundedProblem<T> gather(Workspace<T>& ws, const int* list, int n) {
   for (int a = 0; a < n; ++a) {
     for (int b = 0; b < n; ++b) ws.qp_m[a * n + b] = ws.mobility[list[a] * nc + list[b]];
   }
-  return {n,        ws.qp_m,           ws.qp_g,           ws.qp_lo, ws.qp_hi,  ws.qp_w,
-          ws.qp_x,  ws.qp_x + nc,      ws.qp_x + 2 * nc,  ws.qp_f,  ws.qp_fix, ws.qp_fix + nc};
+  return {n,       ws.qp_m,      ws.qp_g,          ws.qp_lo, ws.qp_hi,  ws.qp_w,
+          ws.qp_x, ws.qp_x + nc, ws.qp_x + 2 * nc, ws.qp_f,  ws.qp_fix, ws.qp_fix + nc};
 }
 
 /// A contact without inertia on either side of its slip: prescribed speeds alone decide it.
@@ -234,8 +234,10 @@ bool settle_contacts(Workspace<T>& ws, int located) {
     const bool arrived = c == located && ws.cause != Cause::input;
     candidate[c] = ws.loaded[c] && (ws.mode[c] == locked || abs(slip) <= tolerance || arrived);
     if (!ws.loaded[c]) {
-      if (abs(slip) > tolerance) ws.mode[c] = slip > 0 ? forward : backward;
-      else if (ws.mode[c] == locked) ws.mode[c] = open;
+      if (abs(slip) > tolerance)
+        ws.mode[c] = slip > 0 ? forward : backward;
+      else if (ws.mode[c] == locked)
+        ws.mode[c] = open;
     } else if (candidate[c] && ws.forced[c] != 0) {
       candidate[c] = 0;
       ws.mode[c] = ws.forced[c];

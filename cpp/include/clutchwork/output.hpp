@@ -21,7 +21,8 @@ double kinetic_energy(const Workspace<T>& ws) {
   for (int n = 0; n < sys.nodes; ++n) {
     double w = 0;
     for (int i = 0; i < sys.speeds; ++i) w += sys.basis[n * sys.speeds + i] * value(ws.v[i]);
-    for (int p = 0; p < sys.prescribed; ++p) w += sys.basis_prescribed[n * sys.prescribed + p] * value(ws.prescribed[p]);
+    for (int p = 0; p < sys.prescribed; ++p)
+      w += sys.basis_prescribed[n * sys.prescribed + p] * value(ws.prescribed[p]);
     e += 0.5 * sys.inertia[n] * w * w;
   }
   return e;
@@ -78,7 +79,8 @@ T source_torque(const Workspace<T>& ws, const Snapshot<T>& shot, int p) {
   for (int i = 0; i < nv; ++i) torque += T(sys.mass_prescribed[i * np + p]) * shot.dv[i];
   for (int n = 0; n < sys.nodes; ++n) {
     for (int o = 0; o < np; ++o) {
-      torque += T(sys.basis_prescribed[n * np + p] * sys.inertia[n] * sys.basis_prescribed[n * np + o]) * ws.prescribed_slope[o];
+      torque += T(sys.basis_prescribed[n * np + p] * sys.inertia[n] * sys.basis_prescribed[n * np + o]) *
+                ws.prescribed_slope[o];
     }
   }
   for (int d = 0; d < ws.n_directions; ++d) torque -= ws.output_torque[d] * prescribed_share(ws, d, p);
@@ -186,7 +188,8 @@ void fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row)
   const Snapshot<T> shot = take_snapshot(form, step, s);
   for (int n = 0; n < sys.nodes; ++n) {
     double w = 0, a = 0;
-    for (int i = 0; i < nv; ++i) w += sys.basis[n * nv + i] * value(shot.v[i]), a += sys.basis[n * nv + i] * value(shot.dv[i]);
+    for (int i = 0; i < nv; ++i)
+      w += sys.basis[n * nv + i] * value(shot.v[i]), a += sys.basis[n * nv + i] * value(shot.dv[i]);
     for (int p = 0; p < np; ++p) {
       w += sys.basis_prescribed[n * np + p] * value(ws.prescribed[p]);
       a += sys.basis_prescribed[n * np + p] * value(ws.prescribed_slope[p]);

@@ -23,7 +23,8 @@ bool explicit_suits(Workspace<T>& ws) {
   double damping = 0, stiffness = 0;
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
-    const StatePartials<T> out{ws.f_state + b.state, ws.g_rate + b.state, ws.g_time + b.state, ws.g_state + ws.block[k]};
+    const StatePartials<T> out{ws.f_state + b.state, ws.g_rate + b.state, ws.g_time + b.state,
+                               ws.g_state + ws.block[k]};
     const Partial<T> p = branch_partial(ws, b, rate_of(ws, b.direction), T(0), ws.state, ws.scratch, out);
     const T* row = ws.direction + b.direction * nv;
     const double mobility = value(dot(nv, row, row));
@@ -331,8 +332,10 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
     // switch
     // after an event a quarter of the step before it; events at one instant do not shrink it further
     ws.last_step = s * reach > 1e-9 * larger(1e-3, h) ? larger(h, reach) : larger(4 * h, reach);
-    if (s > 0) note_before(form, step, s);
-    else note_before(form, step, 0.0);
+    if (s > 0)
+      note_before(form, step, s);
+    else
+      note_before(form, step, 0.0);
     interpolate(form, step, s, step.u());
     ws.time = smaller(ws.time + s * reach, stop);
     for (int i = 0; i < n; ++i) step.y0()[i] = step.u()[i];
@@ -348,14 +351,19 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
       continue;
     }
     switch (hit.what) {
-      case Hit::line: ws.located = ws.branch[guard->branch].direction - int(ws.sys.elements); break;
+      case Hit::line:
+        ws.located = ws.branch[guard->branch].direction - int(ws.sys.elements);
+        break;
       case Hit::multiplier:
         ws.located = ws.locked[hit.index];
         ws.pull = s > 0 ? value(ws.torque_before[ws.located]) : value(ws.there.multiplier[hit.index]);
         break;
-      default: ws.located = hit.index;
+      default:
+        ws.located = hit.index;
     }
-    ws.cause = hit.what == Hit::line ? Cause::slip_zero : hit.what == Hit::multiplier ? Cause::torque_limit : Cause::input;
+    ws.cause = hit.what == Hit::line         ? Cause::slip_zero
+               : hit.what == Hit::multiplier ? Cause::torque_limit
+                                             : Cause::input;
     if (hit.what == Hit::load) ws.loaded[hit.index] = !ws.loaded[hit.index] || contact_one_way(ws, hit.index);
     return Status::running;
   }

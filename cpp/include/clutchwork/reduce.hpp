@@ -28,7 +28,8 @@ void compress_directions(Workspace<T>& ws) {
   }
 }
 
-/// Once per run: mass-weighted directions L^-1 D' and prescribed momentum L^-1 M_p. False when M is not positive definite.
+/// Once per run: mass-weighted directions L^-1 D' and prescribed momentum L^-1 M_p. False when M is not positive
+/// definite.
 template <class T>
 bool prepare_geometry(Workspace<T>& ws) {
   const System& sys = ws.sys;

@@ -24,7 +24,8 @@ int eliminate_locked(Workspace<T>& ws, T* n) {
     }
     int pivot = -1;
     for (int j = 0; j < nv; ++j) {
-      if (abs(value(row[j])) > 1e-10 * full && (pivot < 0 || abs(value(row[j])) > 1.01 * abs(value(row[pivot])))) pivot = j;
+      if (abs(value(row[j])) > 1e-10 * full && (pivot < 0 || abs(value(row[j])) > 1.01 * abs(value(row[pivot]))))
+        pivot = j;
     }
     if (pivot < 0) continue;
     ws.pivot_of[pivot] = a;

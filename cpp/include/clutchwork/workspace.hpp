@@ -12,15 +12,15 @@ enum class Method : int { automatic, rodas5p, dopri5 };
 
 /// Settings of a run.
 struct Options {
-  double rtol = 1e-6;             ///< [1] relative tolerance of a step
-  double atol = 1e-8;             ///< [SI] absolute tolerance of a step
+  double rtol = 1e-6;  ///< [1] relative tolerance of a step
+  double atol = 1e-8;  ///< [SI] absolute tolerance of a step
   Method method = Method::rodas5p;
-  double first_step = 0;          ///< [s] 0: found from the slopes
-  double max_step = infinity;     ///< [s]
+  double first_step = 0;       ///< [s] 0: found from the slopes
+  double max_step = infinity;  ///< [s]
   std::int64_t max_steps = 10'000'000;
   std::int64_t max_events = 100'000;
-  bool angles = true;             ///< integrate the angles
-  bool work = true;               ///< integrate the work of every component
+  bool angles = true;  ///< integrate the angles
+  bool work = true;    ///< integrate the work of every component
 };
 
 /// Counters of a run.
@@ -31,10 +31,10 @@ struct Statistics {
 /// Cursor of one signal.
 struct Signal {
   std::int64_t segment = 0;
-  double start = 0;             ///< [s] start of the present segment
-  double knot = 0;              ///< [s] start of the next one
+  double start = 0;  ///< [s] start of the present segment
+  double knot = 0;   ///< [s] start of the next one
   const double* coef = nullptr;
-  double held = 0;              ///< value of a signal that is set from outside
+  double held = 0;  ///< value of a signal that is set from outside
   bool varying = false, linear = true, idle = false;
 };
 
@@ -45,12 +45,12 @@ struct Branch {
   const T* law_params;
   const T* input;
   const T* input_slope;
-  int kind, law;       ///< law is -1 for a torque element
-  int direction;       ///< number among elements, then contacts
-  int state, states;   ///< own states: offset and number
-  int piece;           ///< smooth piece of the element or of the law
-  int sign;            ///< direction of slip of a contact
-  bool held;           ///< a saturated contact that does not slip: applies its static torque
+  int kind, law;      ///< law is -1 for a torque element
+  int direction;      ///< number among elements, then contacts
+  int state, states;  ///< own states: offset and number
+  int piece;          ///< smooth piece of the element or of the law
+  int sign;           ///< direction of slip of a contact
+  bool held;          ///< a saturated contact that does not slip: applies its static torque
 };
 
 /// Value and partial derivatives of one branch.
@@ -89,7 +89,7 @@ struct Workspace {
   double time = 0;
   T *v = nullptr, *state = nullptr, *angle = nullptr, *work = nullptr, *prescribed_work = nullptr;
   int *mode = nullptr, *piece = nullptr, *loaded = nullptr, *forced = nullptr, *held = nullptr;
-  double last_step = 0;        ///< [s] last step that was not cut short
+  double last_step = 0;  ///< [s] last step that was not cut short
   bool started = false, fresh_phase = true, input_changed = false;
   double stand_time = -infinity, forced_time = -infinity;
   int stand_events = 0;
@@ -131,9 +131,10 @@ struct Workspace {
   // scratch
   T *y = nullptr, *stages = nullptr, *scratch = nullptr, *dense_v = nullptr;
   int* iscratch = nullptr;
-  T *qp_g = nullptr, *qp_m = nullptr, *qp_x = nullptr, *qp_lo = nullptr, *qp_hi = nullptr, *qp_w = nullptr, *qp_f = nullptr;
+  T *qp_g = nullptr, *qp_m = nullptr, *qp_x = nullptr, *qp_lo = nullptr, *qp_hi = nullptr, *qp_w = nullptr,
+    *qp_f = nullptr;
   int* qp_fix = nullptr;
-  T *power = nullptr;
+  T* power = nullptr;
 
   // events waiting for the caller
   static constexpr int event_room = 256;
@@ -176,14 +177,17 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   const auto nv = s.speeds, np = s.prescribed, ns = s.states, nc = s.contacts, nd = s.elements + s.contacts;
   ws.n_refs = int(s.n_input_refs + np);
   ws.n_directions = int(nd);
-  a.take(ws.v, nv), a.take(ws.state, ns), a.take(ws.angle, s.nodes), a.take(ws.work, nd), a.take(ws.prescribed_work, np);
+  a.take(ws.v, nv), a.take(ws.state, ns), a.take(ws.angle, s.nodes), a.take(ws.work, nd),
+      a.take(ws.prescribed_work, np);
   a.take(ws.mode, nc), a.take(ws.piece, nd), a.take(ws.loaded, nc), a.take(ws.forced, nc), a.take(ws.held, nc);
   a.take(ws.signal, s.inputs), a.take(ws.ref_signal, ws.n_refs), a.take(ws.varying, ws.n_refs);
   a.take(ws.u, ws.n_refs), a.take(ws.du, ws.n_refs), a.take(ws.params, s.n_params), a.take(ws.prescribed_before, np);
   a.take(ws.factor, nv * nv), a.take(ws.direction, nd * nv), a.take(ws.prescribed_momentum, np * nv);
   a.take(ws.locked, nc), a.take(ws.z_basis, nv * nv), a.take(ws.y_basis, nv * np), a.take(ws.mobility, nc * nc);
-  a.take(ws.mobility_factor, nc * nc), a.take(ws.white_first, nd + 1), a.take(ws.white_col, nd * nv), a.take(ws.white, nd * nv);
-  a.take(ws.row_z, nd * nv), a.take(ws.offset, nd * np), a.take(ws.reach, nc * nd), a.take(ws.reach_prescribed, nc * np);
+  a.take(ws.mobility_factor, nc * nc), a.take(ws.white_first, nd + 1), a.take(ws.white_col, nd * nv),
+      a.take(ws.white, nd * nv);
+  a.take(ws.row_z, nd * nv), a.take(ws.offset, nd * np), a.take(ws.reach, nc * nd),
+      a.take(ws.reach_prescribed, nc * np);
   a.take(ws.branch, nd), a.take(ws.branch_of, nd), a.take(ws.line, 3 * nd + nc), a.take(ws.partial, nd);
   a.take(ws.f_state, ns), a.take(ws.g_rate, ns), a.take(ws.g_time, ns), a.take(ws.block, nd);
   a.take(ws.g_state, ns * ns), a.take(ws.a_state, ns * ns);
@@ -193,14 +197,17 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
     a.take(e->capacity, nc), a.take(e->noise, nc);
   }
   a.take(ws.torque, nd), a.take(ws.output_torque, nd), a.take(ws.power, 4 * (nd + np));
-  a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.take(ws.watch, nc), a.take(ws.mode_before, nc), a.take(ws.impulse, nc);
+  a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.take(ws.watch, nc), a.take(ws.mode_before, nc),
+      a.take(ws.impulse, nc);
   a.take(ws.sp_first, nd + 1), a.take(ws.sp_col, nd * nv), a.take(ws.sp_val, nd * nv);
   a.take(ws.m_first, nv + 1), a.take(ws.m_col, nv * nv), a.take(ws.m_val, nv * nv);
   a.take(ws.sky, nv + 1), a.take(ws.pivot_of, nv), a.take(ws.envelope, 2 * nv * nv);
   a.take(ws.exp_first, nv + 1), a.take(ws.exp_col, nv * nv), a.take(ws.exp_val, nv * nv);
-  a.take(ws.y, nv + ns), a.take(ws.stages, 20 * (nv + ns)), a.take(ws.scratch, 8 * (nv + nd + ns) + 3 * nv * nv + nc * (nv + nc));
+  a.take(ws.y, nv + ns), a.take(ws.stages, 20 * (nv + ns)),
+      a.take(ws.scratch, 8 * (nv + nd + ns) + 3 * nv * nv + nc * (nv + nc));
   a.take(ws.dense_v, 4 * nv + 2 * s.nodes + np), a.take(ws.iscratch, 4 * (nv + nd + nc));
-  a.take(ws.qp_g, 5 * nc), a.take(ws.qp_m, nc * nc), a.take(ws.qp_x, 3 * nc), a.take(ws.qp_lo, nc), a.take(ws.qp_hi, nc);
+  a.take(ws.qp_g, 5 * nc), a.take(ws.qp_m, nc * nc), a.take(ws.qp_x, 3 * nc), a.take(ws.qp_lo, nc),
+      a.take(ws.qp_hi, nc);
   a.take(ws.qp_w, nc), a.take(ws.qp_f, nc * nc), a.take(ws.qp_fix, 3 * nc);
   a.take(ws.events, event_size * (Workspace<T>::event_room + 2 * nc));
   ws.prescribed = ws.u + s.n_input_refs;
