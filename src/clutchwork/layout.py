@@ -50,7 +50,7 @@ FIELDS = (
     ("input_count", "i4", ("inputs",), "number of segments; 0: set from outside, held constant"),
     ("input_period", "f8", ("inputs",), "period [s] with which the segments repeat, 0: never"),
     ("input_value", "f8", ("inputs",), "initial value of a signal that is set from outside"),
-    ("segment_time", "f8", ("segments",), "start of each segment [s]; before: the first, or the last where they repeat"),
+    ("segment_time", "f8", ("segments",), "start of each segment [s]; before: the first, the last where they repeat"),
     (
         "segment_coef",
         "f8",
