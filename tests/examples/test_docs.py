@@ -136,7 +136,7 @@ def test_links_lead_somewhere(path: Path) -> None:
 
 def labels(path: Path) -> list[str]:
     """Labels of the numbered equations of a page, in order."""
-    return re.findall(r"^\$\$ \(([a-z]+-\d+)\)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+    return re.findall(r"^ *\$\$ \(([a-z]+-\d+)\)$", path.read_text(encoding="utf-8"), re.MULTILINE)
 
 
 @pytest.mark.parametrize("path", [path for path in THEORY if path.stem != "index"], ids=named)
