@@ -2,7 +2,9 @@
 #include <cmath>
 #include <type_traits>
 
+#ifndef CLUTCHWORK_INLINE
 #define CLUTCHWORK_INLINE inline __attribute__((always_inline))
+#endif
 
 /// What the core asks of a number. Scalars: double, float, Dual<double, N>, Dual<float, N>.
 namespace clutchwork {

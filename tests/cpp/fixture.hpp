@@ -1,0 +1,191 @@
+#pragma once
+#include <clutchwork/c_api.h>
+
+#include <clutchwork/registry.gen.hpp>
+#include <memory>
+#include <vector>
+
+/// Builds the bytes of a System from shafts, elements, contacts and signals; speeds are those of the free shafts.
+namespace fixture {
+
+using namespace clutchwork;
+using Bytes = std::vector<unsigned char>;
+using Numbers = std::vector<double>;
+using Indices = std::vector<std::int32_t>;
+inline constexpr int housing = -1;
+
+/// Number of a kind in the registry.
+template <class E>
+int torque_kind() {
+  int kind = 0;
+  while (!visit_torque(kind, [](auto tag) { return std::is_same_v<typename decltype(tag)::type, E>; })) ++kind;
+  return kind;
+}
+template <class E>
+int contact_kind() {
+  int kind = 0;
+  while (!visit_contact(kind, [](auto tag) { return std::is_same_v<typename decltype(tag)::type, E>; })) ++kind;
+  return kind;
+}
+template <class L>
+int law_kind() {
+  int kind = 0;
+  while (!visit_law(kind, [](auto tag) { return std::is_same_v<typename decltype(tag)::type, L>; })) ++kind;
+  return kind;
+}
+
+/// From `time` on: c0 + c1 s + c2 s^2 + c3 s^3 + amplitude exp(-decay s) sin(omega s + phase).
+struct Segment {
+  double time, coef[8];
+};
+
+class Model {
+ public:
+  int shaft(double inertia, double speed = 0) {
+    inertia_.push_back(inertia), speed_.push_back(speed), source_.push_back(-1);
+    return int(inertia_.size()) - 1;
+  }
+  int prescribed(double inertia, int signal) {
+    const int n = shaft(inertia);
+    source_[n] = signal;
+    return n;
+  }
+  /// A signal of segments; none: set from outside, starting at `value`.
+  int signal(const std::vector<Segment>& segments, double value = 0, double period = 0) {
+    input_first_.push_back(std::int32_t(segment_time_.size()));
+    input_count_.push_back(std::int32_t(segments.size()));
+    input_period_.push_back(period), input_value_.push_back(value);
+    for (const Segment& s : segments) {
+      segment_time_.push_back(s.time);
+      segment_coef_.insert(segment_coef_.end(), s.coef, s.coef + 8);
+    }
+    return int(input_first_.size()) - 1;
+  }
+  int constant(double x) { return signal({{0, {x}}}); }
+  /// Points (x, y) of a curve; returns what stands for it among the parameters.
+  Numbers curve(const Numbers& x, const Numbers& y) {
+    const double first = double(points_.size() / 3), n = double(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const std::size_t a = i + 1 < x.size() ? i : i - 1;
+      points_.insert(points_.end(), {x[i], y[i], (y[a + 1] - y[a]) / (x[a + 1] - x[a])});
+    }
+    return {first, n};
+  }
+  template <class E>
+  int element(int base, int follower, const Numbers& params, const Indices& signals = {}, const Numbers& state = {}) {
+    elements_.push_back({base, follower});
+    element_kind_.push_back(torque_kind<E>());
+    element_param_.push_back(put(params_, params)), element_input_.push_back(put(refs_, signals));
+    Numbers own = state;
+    own.resize(E::states);
+    element_state_.push_back(put(state_, own));
+    return int(elements_.size()) - 1;
+  }
+  template <class E, class L>
+  int contact(int base, int follower, const Numbers& params, const Indices& signals, const Numbers& law,
+              bool locked = false) {
+    contacts_.push_back({base, follower});
+    contact_kind_.push_back(contact_kind<E>()), contact_law_.push_back(law_kind<L>());
+    contact_param_.push_back(put(params_, params)), contact_law_param_.push_back(put(params_, law));
+    contact_input_.push_back(put(refs_, signals)), contact_state_.push_back(0);
+    contact_tolerance_.push_back(0), contact_initial_.push_back(locked);
+    return int(contacts_.size()) - 1;
+  }
+
+  Bytes bytes() const {
+    const int n = int(inertia_.size());
+    Indices free_of(n, -1), given_of(n, -1), given;
+    int nv = 0, np = 0;
+    for (int i = 0; i < n; ++i) {
+      if (source_[i] < 0)
+        free_of[i] = nv++;
+      else
+        given_of[i] = np++, given.push_back(source_[i]);
+    }
+    auto rates = [&](const std::vector<Pair>& pairs, const Indices& number, int count) {
+      Numbers rows(pairs.size() * count);
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        if (pairs[k].follower >= 0 && number[pairs[k].follower] >= 0) rows[k * count + number[pairs[k].follower]] += 1;
+        if (pairs[k].base >= 0 && number[pairs[k].base] >= 0) rows[k * count + number[pairs[k].base]] -= 1;
+      }
+      return rows;
+    };
+    std::vector<Pair> all(n);
+    for (int i = 0; i < n; ++i) all[i] = {housing, i};
+    Numbers mass(nv * nv), start, none(nv * np), angles(n);
+    for (int i = 0; i < n; ++i) {
+      if (free_of[i] < 0) continue;
+      mass[free_of[i] * nv + free_of[i]] = inertia_[i];
+      start.push_back(speed_[i]);
+    }
+    Bytes out;
+    auto add = [&](const auto& items) {
+      const auto* from = reinterpret_cast<const unsigned char*>(items.data());
+      if (!items.empty()) out.insert(out.end(), from, from + items.size() * sizeof(items[0]));
+      out.resize((out.size() + 7) / 8 * 8);
+    };
+    const char magic[9] = "CLUTCHWK";
+    out.insert(out.end(), magic, magic + 8);
+    auto count = [](const auto& items) { return std::int64_t(items.size()); };
+    add(std::vector<std::int64_t>{schema_hash, n, nv, np, count(elements_), count(contacts_), count(state_),
+                                  count(input_first_), count(segment_time_), count(params_), count(points_) / 3,
+                                  count(refs_)});
+    add(rates(all, free_of, nv)), add(rates(all, given_of, np)), add(inertia_), add(mass), add(none);
+    add(Indices(nv));
+    add(rates(elements_, free_of, nv)), add(rates(elements_, given_of, np));
+    add(element_kind_), add(element_param_), add(element_state_), add(element_input_);
+    add(rates(contacts_, free_of, nv)), add(rates(contacts_, given_of, np));
+    add(contact_kind_), add(contact_param_), add(contact_input_), add(contact_law_), add(contact_law_param_);
+    add(contact_state_), add(contact_tolerance_), add(contact_initial_);
+    add(given), add(refs_), add(input_first_), add(input_count_), add(input_period_), add(input_value_);
+    add(segment_time_), add(segment_coef_), add(params_), add(points_), add(start), add(angles), add(state_);
+    return out;
+  }
+
+ private:
+  struct Pair {
+    int base, follower;
+  };
+  template <class V>
+  static std::int32_t put(V& pool, const V& more) {
+    pool.insert(pool.end(), more.begin(), more.end());
+    return std::int32_t(pool.size() - more.size());
+  }
+  Numbers inertia_, speed_, params_, points_, state_, input_period_, input_value_, segment_time_, segment_coef_;
+  Numbers contact_tolerance_;
+  Indices source_, refs_, input_first_, input_count_, element_kind_, element_param_, element_state_, element_input_;
+  Indices contact_kind_, contact_law_, contact_param_, contact_law_param_, contact_input_, contact_state_;
+  Indices contact_initial_;
+  std::vector<Pair> elements_, contacts_;
+};
+
+/// A run in memory of exactly the size it asked for.
+struct Run {
+  Bytes system, memory;
+  cw_run* run;
+  System sys{};
+  RowLayout at{sys};
+
+  explicit Run(Bytes bytes) : system(std::move(bytes)) {
+    const std::int64_t size = cw_size(system.data(), std::int64_t(system.size()));
+    memory.resize(std::size_t(size > 0 ? size : 0));
+    run = cw_load(system.data(), std::int64_t(system.size()), memory.data(), size);
+    bind(sys, system.data(), std::int64_t(system.size()));
+    at = RowLayout(sys);
+  }
+  explicit Run(const Model& model) : Run(model.bytes()) {}
+  int advance(double t) { return cw_advance(run, t, nullptr, nullptr, 0, 0, nullptr); }
+  Numbers row() {
+    Numbers row(std::size_t(at.size));
+    cw_row(run, row.data());
+    return row;
+  }
+  /// Waiting events, event_size numbers each.
+  Numbers events() {
+    Numbers events(std::size_t(1000 * event_size));
+    events.resize(std::size_t(cw_take_events(run, events.data(), 1000) * event_size));
+    return events;
+  }
+};
+
+}  // namespace fixture

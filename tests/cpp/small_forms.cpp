@@ -1,0 +1,10 @@
+#define CLUTCHWORK_INSTANCES
+#include <instances.hpp>
+
+/// The small forms that the tests run under sanitizers.
+namespace clutchwork {
+CLUTCHWORK_SMALL(, 0, 0)
+CLUTCHWORK_SMALL(, 1, 0)
+CLUTCHWORK_SMALL(, 2, 0)
+CLUTCHWORK_SMALL(, 3, 1)
+}  // namespace clutchwork
