@@ -328,11 +328,26 @@ bool settle_contacts(Workspace<T>& ws, int located) {
   return false;
 }
 
+/// Apply the impulses of a solved problem over speeds: new speeds, and the work of each contact.
+template <class T>
+void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list) {
+  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
+  T* x = ws.scratch;
+  for (int i = 0; i < nv; ++i) x[i] = T(0);
+  for (int a = 0; a < p.n; ++a) {
+    axpy(nv, p.x[a], ws.direction + (ne + list[a]) * nv, x);
+    // work of an impulse: impulse times mean slip
+    ws.work[ne + list[a]] += p.x[a] * (p.gradient[a] + p.slope[a]) * T(0.5);
+  }
+  backward_solve(nv, ws.factor, nv, x);
+  for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
+}
+
 /// Impulses that bring inconsistent slips to rest: contacts declared locked and freewheels that run backward.
 template <class T>
 bool settle_impulses(Workspace<T>& ws, bool at_start) {
   const System& sys = ws.sys;
-  const int nc = int(sys.contacts), nv = int(sys.speeds), ne = int(sys.elements);
+  const int nc = int(sys.contacts), ne = int(sys.elements);
   const double tolerance = slip_tolerance(ws);
   int* list = ws.iscratch;
   int n = 0;
@@ -357,18 +372,35 @@ bool settle_impulses(Workspace<T>& ws, bool at_start) {
   }
   capacity_weights(p, capacity);
   if (!solve(p)) return false;
-  T* x = ws.scratch;
-  for (int i = 0; i < nv; ++i) x[i] = T(0);
-  for (int a = 0; a < n; ++a) {
-    axpy(nv, p.x[a], ws.direction + (ne + list[a]) * nv, x);
-    // work of an impulse: impulse times mean slip
-    ws.work[ne + list[a]] += p.x[a] * (p.gradient[a] + p.slope[a]) * T(0.5);
-  }
-  backward_solve(nv, ws.factor, nv, x);
-  for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
+  apply_impulses(ws, p, list);
   for (int a = 0; a < n; ++a) {
     if (abs(value(p.slope[a])) <= tolerance) ws.mode[list[a]] = locked;
   }
+  return true;
+}
+
+/// A contact that may lock below a slip of its own is stopped by an impulse; the others that are locked stay so.
+template <class T>
+bool stop_within_tolerance(Workspace<T>& ws, int located) {
+  const System& sys = ws.sys;
+  if (located < 0 || ws.mode[located] != locked || sys.contact_tolerance[located] == 0) return true;
+  const int nc = int(sys.contacts), ne = int(sys.elements);
+  int* list = ws.iscratch;
+  int n = 0;
+  for (int c = 0; c < nc; ++c) {
+    if (ws.mode[c] == locked && !is_rigid(ws, c)) list[n++] = c;
+  }
+  BoundedProblem<T> p = gather(ws, list, n);
+  T* capacity = ws.qp_g + nc;
+  for (int a = 0; a < n; ++a) {
+    p.gradient[a] = rate_of(ws, ne + list[a]);
+    p.lower[a] = T(-infinity);
+    p.upper[a] = capacity[a] = T(infinity);
+    p.x[a] = T(0);
+  }
+  capacity_weights(p, capacity);
+  if (!solve(p)) return false;
+  apply_impulses(ws, p, list);
   return true;
 }
 
