@@ -94,7 +94,12 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
     before = ends[0, wiring.columns["contact_work"]] if lost else np.zeros(len(wiring.contacts))
     for branch, work in zip(wiring.contacts, before, strict=True):
         heat[branch.name] -= float(work)
-    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, _impulses(events))
+    driven = ends[0, wiring.columns["prescribed_work"]] if lost else np.zeros(len(wiring.motions))
+    for branch, work in zip(wiring.motions, driven, strict=True):
+        sources[branch.name] += float(work)
+    # where sources prescribe speeds, the change of kinetic energy is not what the contacts lost
+    named = 0.0 if wiring.motions else _impulses(events)
+    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, named)
 
 
 def is_spring(branch: Branch) -> bool:

@@ -58,7 +58,7 @@ bool start(Workspace<T>& ws) {
 
 /// Signals or parameters were set from outside: decide the modes anew, like at a knot.
 template <class T>
-void take_outside(Workspace<T>& ws) {
+Status take_outside(Workspace<T>& ws) {
   ws.input_changed = false;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int k = ws.branch_of[ws.sys.elements + c];
@@ -74,7 +74,7 @@ void take_outside(Workspace<T>& ws) {
   refresh_loads(ws);
   ws.located = -1;
   ws.cause = Cause::input;
-  switch_modes(ws);
+  return switch_modes(ws);
 }
 
 /// Integrate to t_end, filling rows and events on the way.
@@ -83,11 +83,16 @@ Status advance(Workspace<T>& ws, double t_end, Sink& sink) {
   if (!ws.started) {
     if (!start(ws)) return Status::bad_system;
     const Status status = switch_modes(ws);
-    if (status != Status::running) return status;
+    ws.started = status == Status::running;
+    if (!ws.started) return status;
   }
   while (true) {
-    if (ws.input_changed) take_outside(ws);
-    if (ws.fresh_phase) enter_mode(ws);
+    if (ws.n_events >= Workspace<T>::event_room) return Status::events_full;
+    if (ws.input_changed) {
+      const Status status = take_outside(ws);
+      if (status != Status::running) return status;
+    }
+    if (ws.fresh_phase && !enter_mode(ws)) return Status::no_mode;
     Status status = dispatch(ws, t_end, sink);
     if (status != Status::running) return status;
     status = switch_modes(ws);

@@ -52,14 +52,14 @@ void note_before(Form& form, Step<Form>& step, double s) {
   }
 }
 
-/// Too many events within a microsecond?
+/// Too many events within a microsecond, for the number of contacts?
 template <class T>
 bool stands_still(Workspace<T>& ws) {
   if (ws.time - ws.stand_time > 1e-6) {
     ws.stand_time = ws.time;
     ws.stand_events = 0;
   }
-  return ++ws.stand_events > 50;
+  return ++ws.stand_events > 50 + 4 * ws.sys.contacts;
 }
 
 /// Whether the load of a contact can pass zero before the next knot. A load is monotonic in each of its inputs.

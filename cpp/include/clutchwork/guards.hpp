@@ -178,6 +178,22 @@ double least_margin(Form& form, Step<Form>& step, double s, const int* watched, 
   return least;
 }
 
+/// Where the prescribed speeds on both sides of a held contact part; -1: not before `limit`.
+template <class Form>
+double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
+  auto& ws = form.ws;
+  const int d = int(ws.sys.elements) + ws.locked[a];
+  const double zero = slip_tolerance(ws);
+  auto f = [&](double s) {
+    double slip = 0;
+    for (int p = 0; p < ws.sys.prescribed; ++p) {
+      slip += value(prescribed_share(ws, d, p)) * signal_value(ws, ws.sys.prescribed_input[p], step.t + s * step.h);
+    }
+    return zero - abs(slip);
+  };
+  return first_crossing(f, f(0), f(1), limit);
+}
+
 /// First guard that turns negative inside the step.
 template <class Form, class Integrator>
 CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
@@ -209,6 +225,14 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   int n = 0;
   double m0 = infinity, m1 = infinity;
   for (int a = 0; a < ws.n_locked; ++a) {
+    if (is_rigid(ws, ws.locked[a])) {
+      const double s = rigid_departure(form, step, a, hit.s);
+      if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) {
+        if (!step.dense) Integrator::prepare_dense(form, step);
+        hit = {Hit::multiplier, a, s};
+      }
+      continue;
+    }
     const double before = margin(ws, a, e0.multiplier[a], e0.capacity[a]),
                  after = margin(ws, a, e1.multiplier[a], e1.capacity[a]);
     const double change = abs(value(e1.multiplier[a] - e0.multiplier[a])) + abs(value(e1.capacity[a] - e0.capacity[a]));

@@ -192,12 +192,15 @@ bool is_spanned(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list, i
   return outside <= 1e-16 * value(ws.mobility[list[a] * nc + list[a]]);
 }
 
-/// Let a contact slip from rest.
+/// Let a contact slip; one that still moves within its own tolerance goes on the way it moves.
 template <class T>
 void release(Workspace<T>& ws, int c, int sign) {
   const int d = int(ws.sys.elements) + c;
-  ws.mode[c] = sign;
-  ws.piece[d] = piece_of(ws, d, 0.0);
+  const double slip = value(rate_of(ws, d));
+  const bool moving = abs(slip) > slip_tolerance(ws);
+  ws.mode[c] = !moving ? sign : slip > 0 ? forward : backward;
+  if (moving) ws.forced[c] = ws.mode[c];
+  ws.piece[d] = piece_of(ws, d, moving ? abs(slip) : 0.0);
 }
 
 /// A contact that was released and then, others having lost torque too, accelerates the other way (-1: none).
@@ -229,10 +232,11 @@ bool settle_contacts(Workspace<T>& ws, int located) {
 
   // who may stick
   for (int c = 0; c < nc; ++c) {
-    const double slip = ws.mode[c] == locked ? 0.0 : value(rate_of(ws, int(sys.elements) + c));
+    const bool still = ws.mode[c] == locked && !is_rigid(ws, c);
+    const double slip = still ? 0.0 : value(rate_of(ws, int(sys.elements) + c));
     ws.held[c] = released[c] = 0;
     const bool arrived = c == located && ws.cause != Cause::input;
-    candidate[c] = ws.loaded[c] && (ws.mode[c] == locked || abs(slip) <= tolerance || arrived);
+    candidate[c] = ws.loaded[c] && (still || abs(slip) <= tolerance || (arrived && !is_rigid(ws, c)));
     if (!ws.loaded[c]) {
       if (abs(slip) > tolerance)
         ws.mode[c] = slip > 0 ? forward : backward;
@@ -341,6 +345,18 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
   }
   backward_solve(nv, ws.factor, nv, x);
   for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
+  // the sources behind prescribed speeds take their share
+  for (int k = 0; k < ws.sys.prescribed; ++k) {
+    T impulse = T(0);
+    for (int i = 0; i < nv; ++i) impulse += T(ws.sys.mass_prescribed[i * ws.sys.prescribed + k]) * x[i];
+    for (int a = 0; a < p.n; ++a) impulse -= p.x[a] * prescribed_share(ws, ne + list[a], k);
+    ws.prescribed_work[k] += impulse * ws.prescribed[k];
+  }
+  // friction transmits no impulse: what was locked and is moved now slips
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const double slip = value(rate_of(ws, ne + c));
+    if (ws.mode[c] == locked && abs(slip) > slip_tolerance(ws)) ws.mode[c] = slip > 0 ? forward : backward;
+  }
 }
 
 /// Impulses that bring inconsistent slips to rest: contacts declared locked and freewheels that run backward.

@@ -35,9 +35,9 @@ bool explicit_suits(Workspace<T>& ws) {
   return fastest * h < 1.0;
 }
 
-/// Reduced motion of the present modes; the state goes to ws.y.
+/// Reduced motion of the present modes; the state goes to ws.y. False: the inertias differ too much to tell them apart.
 template <class T>
-void enter_mode(Workspace<T>& ws) {
+bool enter_mode(Workspace<T>& ws) {
   const System& sys = ws.sys;
   T* basis = ws.envelope;
   list_locked(ws);
@@ -49,7 +49,7 @@ void enter_mode(Workspace<T>& ws) {
   ws.is_explicit = explicit_suits(ws);
   ws.sparse = ws.is_explicit || ws.nz > small_speeds || sys.states > small_states || has_massless(ws);
   if (many && (!ws.sparse || sys.prescribed > 0)) split_locked(ws, basis);
-  factor_mobility(ws);
+  if (!factor_mobility(ws)) return false;
   map_prescribed(ws, basis);
   if (!ws.sparse) map_multipliers(ws);
   if (ws.sparse) {
@@ -63,6 +63,7 @@ void enter_mode(Workspace<T>& ws) {
   for (int i = 0; i < sys.states; ++i) ws.y[ws.nz + i] = ws.state[i];
   list_lines(ws);
   ++ws.statistics.phases;
+  return true;
 }
 
 /// Speeds without inertia: Newton on their balance of torques. docs/theory/reduction.md
@@ -178,6 +179,7 @@ bool pass_knot(Form& form, Step<Form>& step) {
   if (decide) return true;
   look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
   for (int a = 0; a < ws.n_locked; ++a) {
+    if (is_rigid(ws, ws.locked[a])) return true;
     const T torque = ws.here.multiplier[a], capacity = ws.here.capacity[a];
     if (margin(ws, a, torque, capacity) < 0) return true;
   }
@@ -265,6 +267,7 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
       }
     }
     if (ws.time >= t_end) {
+      emit_start(form, step, sink, false);
       export_state(form, step.y0());
       return Status::done;
     }

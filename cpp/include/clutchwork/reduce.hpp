@@ -78,7 +78,7 @@ int split_locked(Workspace<T>& ws, T* basis) {
 
 /// Factor of the mobility of the locked contacts; weighted by capacity where it is singular.
 template <class T>
-void factor_mobility(Workspace<T>& ws) {
+bool factor_mobility(Workspace<T>& ws) {
   const int m = ws.n_locked;
   BoundedProblem<T> p = gather(ws, ws.locked, m);
   T* capacity = ws.qp_g + ws.sys.contacts;
@@ -91,7 +91,7 @@ void factor_mobility(Workspace<T>& ws) {
   capacity_weights(p, capacity, 1e-7);
   for (int a = 0; a < m && ws.rank == m; ++a) p.weight[a] = T(0);
   p.factor = ws.mobility_factor;
-  factor_free(p);
+  return factor_free(p) == m;
 }
 
 /// Torques x of the locked contacts for slip accelerations b: mobility x = b; minimum norm where it is singular.

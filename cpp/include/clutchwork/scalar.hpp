@@ -11,10 +11,10 @@ namespace clutchwork {
 
 using std::abs, std::cos, std::exp, std::log, std::pow, std::sin, std::sqrt, std::tanh;
 
-/// The plain number behind a scalar: comparisons and decisions use it.
+/// The plain number behind a scalar: comparisons and decisions use it, in double whatever the scalar.
 template <class T>
   requires std::is_floating_point_v<T>
-CLUTCHWORK_INLINE T value(T x) {
+CLUTCHWORK_INLINE double value(T x) {
   return x;
 }
 
