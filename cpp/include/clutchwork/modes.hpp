@@ -289,7 +289,9 @@ bool settle_contacts(Workspace<T>& ws, int located) {
       double scale = abs(value(p.gradient[a]));
       for (int b = 0; b < n; ++b) scale = larger(scale, abs(value(p.matrix[a * n + b] * p.x[b])));
       const double acceleration = value(p.slope[a]), size = abs(acceleration) / mobility;
-      const bool noise = abs(acceleration) <= larger(1e-10 * scale, 1e-12 * ws.effort * mobility);
+      // between prescribed speeds only what leaves zero within a microsecond is a departure
+      const double small = is_rigid(ws, c) ? 1e6 * tolerance : larger(1e-10 * scale, 1e-12 * ws.effort * mobility);
+      const bool noise = abs(acceleration) <= small;
       if (p.bound[a] == 0 || noise || (contact_one_way(ws, c) && acceleration < 0)) continue;
       if (size > most) first = a, most = size;
     }
