@@ -77,7 +77,8 @@ test-cpp: $(STAMPS)/tools
 	@$(BIN)/cmake -S . -B build/cpp -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja \
 		-DCMAKE_CXX_COMPILER=$(CXX) -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
 		-DCLUTCHWORK_PYTHON=OFF -DCLUTCHWORK_TESTS=ON >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
-	@$(BIN)/cmake --build build/cpp --parallel $(JOBS)
+	@echo "building the tests of the core"
+	@$(BIN)/cmake --build build/cpp --parallel $(JOBS) >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
 	@$(BIN)/ctest --test-dir build/cpp --output-on-failure
 
 test-python: $(STAMPS)/package
@@ -85,7 +86,7 @@ test-python: $(STAMPS)/package
 
 # every checker runs, so that one call shows all there is to mend
 check: $(STAMPS)/package $(STAMPS)/check
-	@bad=; try() { echo "== $$*"; "$$@" || bad="$$bad $$1"; }; \
+	@bad=; try() { echo "== $$*" | cut -c 1-60; "$$@" || bad="$$bad $$1"; }; \
 	try $(BIN)/ruff format --check --quiet .; \
 	try $(BIN)/ruff check --quiet .; \
 	try $(BIN)/mypy; \
