@@ -64,12 +64,15 @@ class Column(Signal):
         if name in header:
             return header.index(name)
         remedy = f"the columns are {', '.join(header)}" + near(name, header)
+        if len(header) == 1 and ";" in header[0]:
+            remedy = "separate the columns with commas, not with semicolons"
         raise FileError(quantity, f"{self.path!r} has no column {name!r}", remedy)
 
     def _number(self, number: int, line: list[str], place: int, header: list[str]) -> float:
         cell = line[place].strip() if place < len(line) else ""
         try:
-            value = float(cell)
+            # Python reads 1_0 as ten, a spreadsheet does not
+            value = float(cell.replace("_", "?"))
         except ValueError:
             value = float("nan")
         if isfinite(value):
