@@ -91,6 +91,13 @@ def test_every_status_is_explained() -> None:
     assert [name for name, *_ in STATUS if name not in internal and f"`{name}`" not in page] == []
 
 
+def test_every_cause_is_explained() -> None:
+    from clutchwork.events import CAUSES
+
+    page = (ROOT / "docs" / "guide" / "results.md").read_text(encoding="utf-8")
+    assert [cause for cause in CAUSES if f"`{cause}`" not in page] == []
+
+
 def test_every_option_is_explained() -> None:
     from dataclasses import fields
 
