@@ -141,6 +141,12 @@ def test_links_lead_somewhere(path: Path) -> None:
     assert [link for link in local if not (path.parent / link).exists()] == []
 
 
+def test_the_tests_that_the_validation_page_names_exist() -> None:
+    named_there = re.findall(r"`(tests/[\w./]+)`", (ROOT / "docs" / "validation.md").read_text(encoding="utf-8"))
+    assert named_there
+    assert [name for name in named_there if not (ROOT / name).exists()] == []
+
+
 def labels(path: Path) -> list[str]:
     """Labels of the numbered equations of a page, in order."""
     return re.findall(r"^ *\$\$ \(([a-z]+-\d+)\)$", path.read_text(encoding="utf-8"), re.MULTILINE)
