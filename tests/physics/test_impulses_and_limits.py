@@ -1,0 +1,96 @@
+"""Impulses with sources, locking within a tolerance, contacts between prescribed speeds, many events at once."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from support.runs import TIGHT, at_end, clutch, switches
+
+import clutchwork as cw
+
+
+def test_a_freewheel_impact_moves_no_friction_clutch() -> None:
+    """A source jumps to 10 rad/s and takes b along through a freewheel; c behind a clutch follows with its 1 N m."""
+    d = cw.Driveline("impact")
+    a, b, c = (d.shaft(name, inertia=1.0) for name in "abc")
+    d.add(cw.PrescribedSpeed("source", shaft=a, speed=cw.Step(height=10.0, start=1.0)))
+    d.add(cw.OneWayClutch("freewheel", base=a, follower=b))
+    d.add(clutch("c1", b, c, kinetic=1.0))
+    run = d.simulate(1.5, **TIGHT)
+    assert at_end(run, "b.speed") == pytest.approx(10.0, rel=1e-12)
+    assert at_end(run, "c.speed") == pytest.approx(0.5, rel=1e-9)
+    # 1e-8: asked for
+    assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
+
+
+def test_a_freewheel_impact_at_the_start_is_paid_by_the_source() -> None:
+    """1 kg m2 is brought to 10 rad/s: 100 J from the source, half of it heat."""
+    d = cw.Driveline("start")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.PrescribedSpeed("source", shaft=a, speed=10.0))
+    d.add(cw.OneWayClutch("freewheel", base=a, follower=b))
+    run = d.simulate(0.5, **TIGHT)
+    assert run.energy.sources["source"] == pytest.approx(100.0, rel=1e-12)
+    assert run.energy.heat["freewheel"] == pytest.approx(50.0, rel=1e-12)
+    assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
+
+
+def test_locking_within_a_tolerance_is_an_impulse() -> None:
+    """10 N m stop 1 kg m2 from 10 rad/s: locked at a slip of 2 rad/s, the 2 J left are named."""
+    d = cw.Driveline("tolerance")
+    a = d.shaft("a", inertia=1.0, speed=10.0)
+    law = cw.Coulomb(static=10.0, kinetic=10.0)
+    d.add(cw.Brake("b", shaft=a, friction=law, gain=1.0, normal_force=1.0, tolerance=2.0))
+    run = d.simulate(1.5, **TIGHT)
+    assert [(e.element, e.after) for e in run.events] == [("b", "locked")]
+    assert run.events[0].time == pytest.approx(0.8, abs=1e-9)
+    assert run.energy.impulses == pytest.approx(2.0, rel=1e-9)
+    assert run.energy.heat["b"] == pytest.approx(50.0, rel=1e-9)
+
+
+def test_a_contact_too_weak_to_lock_goes_on_the_way_it_moves() -> None:
+    """-5 N m drive against a brake of 1 N m: 6 rad/s2 down to zero, then 4 rad/s2 the other way."""
+    d = cw.Driveline("weak")
+    a = d.shaft("a", inertia=1.0, speed=10.0)
+    d.add(cw.Torque("drive", shaft=a, torque=-5.0))
+    law = cw.Coulomb(static=1.2, kinetic=1.0)
+    d.add(cw.Brake("b", shaft=a, friction=law, gain=1.0, normal_force=1.0, tolerance=2.0))
+    run = d.simulate(3.0, **TIGHT)
+    assert [s[1:] for s in switches(run)] == [("b", "forward", "backward")]
+    assert switches(run)[0][0] == pytest.approx(10.0 / 6.0, abs=1e-9)
+    assert at_end(run, "a.speed") == pytest.approx(-4.0 * (3.0 - 10.0 / 6.0), rel=1e-9)
+
+
+def test_contact_between_prescribed_speeds_that_part_smoothly() -> None:
+    """Both turn at 100 rad/s, one begins to fall behind with no slope: held, then slipping with its capacity."""
+    d = cw.Driveline("rigid")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.PrescribedSpeed("pa", shaft=a, speed=100.0))
+    sine = cw.Sine(offset=97.0, amplitude=3.0, frequency=0.2, phase=math.pi / 2)
+    d.add(cw.PrescribedSpeed("pb", shaft=b, speed=sine))
+    d.add(clutch("c", a, b, kinetic=10.0))
+    run = d.simulate(2.0, dt=0.25, **TIGHT)
+    assert run.status == "done"
+    assert list(run["c.state"][1:]) == ["backward"] * 8
+    assert run["c.torque"][1:] == pytest.approx([10.0] * 8, rel=1e-12)
+    assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
+
+
+def test_many_independent_contacts_within_a_microsecond_are_no_zeno_sequence() -> None:
+    d = cw.Driveline("many")
+    for i in range(60):
+        d.add(clutch(f"b{i}", d.housing, d.shaft(f"s{i}", inertia=1.0 + 1e-8 * i, speed=10.0), kinetic=10.0))
+    run = d.simulate(1.5, rtol=1e-9, atol=1e-11)
+    assert run.status == "done"
+    assert len(run.events) == 60
+
+
+def test_an_instant_asked_for_twice_gives_both_limits_at_the_end_too() -> None:
+    d = cw.Driveline("limits")
+    a = d.shaft("a", inertia=1.0)
+    d.add(cw.Torque("t", shaft=a, torque=cw.Step(height=1.0, start=2.0)))
+    run = d.simulate(2.0, times=[0.0, 1.0, 1.0, 2.0, 2.0])
+    assert np.array_equal(run.time, [0.0, 1.0, 1.0, 2.0, 2.0])
+    assert list(run["a.acceleration"]) == [0.0, 0.0, 0.0, 0.0, 1.0]
