@@ -99,6 +99,19 @@ def visitor(schema: Any, role: Any) -> Iterator[str]:
     yield "}"
 
 
+def curves(schema: Any, role: Any) -> Iterator[str]:
+    """A function that tells where the curves stand among the parameters of a kind."""
+    yield f"template <class F> void visit_{role.value}_curves(int kind, F&& f) {{"
+    for number, kind in enumerate(schema.kinds(role)):
+        offset = 0
+        for _, spec in schema.specs(schema.REGISTRY[role][kind], "param", "curve"):
+            if spec.what == "curve":
+                yield f"  if (kind == {number}) f({offset});"
+            offset += 2 if spec.what == "curve" else 1
+    yield "  (void)kind, (void)f;"
+    yield "}"
+
+
 def system(layout: Any) -> Iterator[str]:
     """The System struct and the function that binds it to bytes."""
     types_ = {"f8": "double", "i4": "std::int32_t"}
@@ -164,7 +177,7 @@ def main() -> int:
     for role in schema.COMPILED_ROLES:
         for kind in schema.kinds(role):
             lines += asserts(schema, role, kind)
-        lines += visitor(schema, role)
+        lines += [*visitor(schema, role), *curves(schema, role)]
     lines += [*system(layout), *rows(layout), "}"]
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text("\n".join(lines) + "\n")

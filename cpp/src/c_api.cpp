@@ -17,6 +17,29 @@ namespace {
 
 constexpr std::int64_t head = (std::int64_t(sizeof(cw_run)) + 63) / 64 * 64;
 
+/// Numbers in the pool that a kind reads as its parameters.
+template <class E>
+constexpr std::int64_t param_count = std::int64_t(sizeof(typename E::template Params<double>) / sizeof(double));
+
+/// Whether the curve that stands at params[at] lies among the points.
+bool curve_fits(const System& s, std::int64_t at) {
+  const double first = s.params[at], count = s.params[at + 1];
+  return first >= 0 && count >= 1 && first + count <= double(s.n_points);
+}
+
+/// Whether the segments of a signal stand in order and repeat no faster than a run could follow.
+bool signal_fits(const System& s, std::int64_t i) {
+  const std::int64_t first = s.input_first[i], count = s.input_count[i];
+  if (count < 0 || first < 0 || first + count > s.segments) return false;
+  for (std::int64_t k = first; k + 1 < first + count; ++k) {
+    if (!(s.segment_time[k] <= s.segment_time[k + 1])) return false;
+  }
+  const double period = s.input_period[i];
+  if (count == 0 || period <= 0) return true;
+  const double start = s.segment_time[first], end = s.segment_time[first + count - 1];
+  return end - start <= period && start > -1e8 * period && abs(end) < 1e12 * period;
+}
+
 /// Offsets and numbers inside the system that the core follows without looking.
 bool in_range(const System& s) {
   auto within = [](const std::int32_t* x, std::int64_t n, std::int64_t low, std::int64_t high) {
@@ -32,19 +55,34 @@ bool in_range(const System& s) {
       within(s.contact_law_param, s.contacts, 0, s.n_params) && within(s.element_state, s.elements, 0, s.states) &&
       within(s.contact_state, s.contacts, 0, s.states) && within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) &&
       within(s.input_refs, s.n_input_refs, 0, s.inputs - 1);
-  for (std::int64_t i = 0; good && i < s.inputs; ++i) {
-    good = s.input_count[i] >= 0 && s.input_first[i] >= 0 && s.input_first[i] + s.input_count[i] <= s.segments;
-  }
+  for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
+  std::int64_t states = 0;
   for (std::int64_t i = 0; good && i < s.elements; ++i) {
-    const int inputs = visit_torque(s.element_kind[i], [](auto tag) { return decltype(tag)::type::inputs; });
-    const int states = visit_torque(s.element_kind[i], [](auto tag) { return decltype(tag)::type::states; });
-    good = s.element_input[i] >= 0 && s.element_input[i] + inputs <= s.n_input_refs &&
-           s.element_state[i] + states <= s.states;
+    visit_torque(s.element_kind[i], [&](auto tag) {
+      using E = typename decltype(tag)::type;
+      good = s.element_param[i] + param_count<E> <= s.n_params && s.element_input[i] >= 0 &&
+             s.element_input[i] + E::inputs <= s.n_input_refs && s.element_state[i] + E::states <= s.states;
+      states += E::states;
+    });
+    visit_torque_curves(s.element_kind[i], [&](int at) { good = good && curve_fits(s, s.element_param[i] + at); });
   }
   for (std::int64_t i = 0; good && i < s.contacts; ++i) {
-    const int inputs = visit_contact(s.contact_kind[i], [](auto tag) { return decltype(tag)::type::inputs; });
-    good = s.contact_input[i] >= 0 && s.contact_input[i] + inputs <= s.n_input_refs;
+    visit_contact(s.contact_kind[i], [&](auto tag) {
+      using E = typename decltype(tag)::type;
+      good = s.contact_param[i] + param_count<E> <= s.n_params && s.contact_input[i] >= 0 &&
+             s.contact_input[i] + E::inputs <= s.n_input_refs;
+    });
+    visit_contact_curves(s.contact_kind[i], [&](int at) { good = good && curve_fits(s, s.contact_param[i] + at); });
+    visit_law(s.contact_law[i], [&](auto tag) {
+      using L = typename decltype(tag)::type;
+      good =
+          good && s.contact_law_param[i] + param_count<L> <= s.n_params && s.contact_state[i] + L::states <= s.states;
+      states += L::states;
+    });
+    visit_law_curves(s.contact_law[i], [&](int at) { good = good && curve_fits(s, s.contact_law_param[i] + at); });
   }
+  // states are nobody's twice
+  good = good && states <= s.states;
   return good;
 }
 
@@ -125,6 +163,11 @@ int cw_set_param(cw_run* run, std::int64_t offset, double value) {
 int cw_advance(cw_run* run, double t_end, double* times, double* rows, std::int64_t n, int steps,
                std::int64_t* filled) {
   Sink sink{times, rows, n, 0, steps != 0};
+  // a step fills up to three rows
+  if (steps != 0 && n < 3) {
+    if (filled != nullptr) *filled = 0;
+    return int(Status::rows_full);
+  }
   const Status status = advance(run->ws, t_end, sink);
   if (filled != nullptr) *filled = sink.at;
   return int(status);

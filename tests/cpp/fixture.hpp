@@ -124,8 +124,8 @@ class Model {
       if (!items.empty()) out.insert(out.end(), from, from + items.size() * sizeof(items[0]));
       out.resize((out.size() + 7) / 8 * 8);
     };
-    const char magic[9] = "CLUTCHWK";
-    out.insert(out.end(), magic, magic + 8);
+    const std::vector<char> magic{'C', 'L', 'U', 'T', 'C', 'H', 'W', 'K'};
+    add(magic);
     auto count = [](const auto& items) { return std::int64_t(items.size()); };
     add(std::vector<std::int64_t>{schema_hash, n, nv, np, count(elements_), count(contacts_), count(state_),
                                   count(input_first_), count(segment_time_), count(params_), count(points_) / 3,

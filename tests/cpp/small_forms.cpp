@@ -6,5 +6,6 @@ namespace clutchwork {
 CLUTCHWORK_SMALL(, 0, 0)
 CLUTCHWORK_SMALL(, 1, 0)
 CLUTCHWORK_SMALL(, 2, 0)
+CLUTCHWORK_SMALL(, 2, 1)
 CLUTCHWORK_SMALL(, 3, 1)
 }  // namespace clutchwork

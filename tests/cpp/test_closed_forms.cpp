@@ -1,5 +1,5 @@
 #include "check.hpp"
-#include "fixture.hpp"
+#include "models.hpp"
 
 using namespace fixture;
 
@@ -54,17 +54,8 @@ void break_away() {
 
 /// What goes in by work is what the inertias hold, over springs, dampers, curves, knots and events.
 void energy() {
-  Model m;
-  const int a = m.shaft(0.2, 5), b = m.shaft(0.5), c = m.shaft(1.5);
-  const int push = m.signal({{0, {20}}, {0.7, {-30, 10}}, {1.4, {5, 0, 0, 0, 40, 9, 0.2, 0.1}}});
-  const int pressure = m.signal({{0, {0, 60}}, {1.0, {60}}, {1.5, {3}}});
-  m.element<elements::Torque>(housing, a, {}, {push});
-  m.element<elements::SpringDamper>(a, b, {900, 0.8, 0}, {});
-  m.element<elements::QuadraticTorque>(housing, c, {-4, 20, 0});
-  Numbers law{0.5};
-  for (double x : m.curve({0, 5, 40}, {0.4, 0.3, 0.2})) law.push_back(x);
-  m.contact<elements::Clutch, laws::CoefficientTable>(b, c, {1}, {pressure}, law);
-  Run r(m);
+  const int a = 0, b = 1, c = 2;
+  Run r(three_shafts());
   CHECK(cw_set_option(r.run, "rtol", 1e-10) == 1 && cw_set_option(r.run, "atol", 1e-11) == 1);
   CHECK(r.advance(2.5) == 0);
   CHECK(!r.events().empty());

@@ -1,0 +1,44 @@
+#pragma once
+#include "fixture.hpp"
+
+/// Drivelines that several tests run.
+namespace fixture {
+
+/// Three shafts with spring, load, table of friction, knots, an oscillating torque: locks and slips. Small form.
+inline Model three_shafts() {
+  Model m;
+  const int a = m.shaft(0.2, 5), b = m.shaft(0.5), c = m.shaft(1.5);
+  const int push = m.signal({{0, {20}}, {0.7, {-30, 10}}, {1.4, {5, 0, 0, 0, 40, 9, 0.2, 0.1}}});
+  const int pressure = m.signal({{0, {0, 60}}, {1.0, {60}}, {1.5, {3}}});
+  m.element<elements::Torque>(housing, a, {}, {push});
+  m.element<elements::SpringDamper>(a, b, {900, 0.8, 0});
+  m.element<elements::QuadraticTorque>(housing, c, {-4, 20, 0});
+  Numbers law{0.5};
+  for (double x : m.curve({0, 5, 40}, {0.4, 0.3, 0.2})) law.push_back(x);
+  m.contact<elements::Clutch, laws::CoefficientTable>(b, c, {1}, {pressure}, law);
+  return m;
+}
+
+/// Twelve shafts in a row with springs, clutches, a freewheel, a bearing and a periodic pressure. Sparse form.
+inline Model chain() {
+  Model m;
+  const int pulse = m.signal({{0, {30}}, {0.15, {30, -150}}, {0.35, {0, 200}}}, 0, 0.5);
+  const int push = m.signal({{0, {60}}, {1.2, {-40}}}), load = m.constant(15), still = m.constant(25);
+  for (int i = 0; i < 12; ++i) m.shaft(0.1 + 0.02 * i, i < 6 ? 20 : 0);
+  m.element<elements::Torque>(housing, 0, {}, {push});
+  m.element<elements::ResistingTorque>(housing, 11, {1}, {load});
+  for (int i = 0; i + 1 < 12; ++i) {
+    if (i == 3)
+      m.contact<elements::OneWayClutch, laws::Coulomb>(i, i + 1, {1}, {still}, {0.4, 0.3});
+    else if (i == 5)
+      m.contact<elements::Clutch, laws::Coulomb>(i, i + 1, {1}, {pulse}, {1.1, 1});
+    else if (i == 8)
+      m.contact<elements::Clutch, laws::Exponential>(i, i + 1, {1}, {still}, {0.8, 0.7, 0.5, 3});
+    else
+      m.element<elements::SpringDamper>(i, i + 1, {2000, 1.5, 0});
+  }
+  m.contact<elements::BearingFriction, laws::Coulomb>(housing, 7, {2}, {}, {1, 0.9});
+  return m;
+}
+
+}  // namespace fixture
