@@ -107,7 +107,11 @@ STATUS = (
     ("too_many_steps", "the budget of steps is spent", "raise max_steps or shorten the run"),
     ("too_many_events", "the budget of events is spent", "raise max_events or shorten the run"),
     ("zeno", "more than 50 events within a microsecond", "give the named contact some inertia or damping"),
-    ("no_mode", "no set of sticking contacts fits", "look for inertias that differ by more than twelve orders of magnitude"),
+    (
+        "no_mode",
+        "no set of sticking contacts fits",
+        "look for inertias that differ by more than twelve orders of magnitude",
+    ),
     ("bad_system", "the system bytes do not fit this core", "assemble the driveline again with this version"),
 )
 

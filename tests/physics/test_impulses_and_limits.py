@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from support.runs import TIGHT, at_end, clutch, switches
 
 import clutchwork as cw
+from support.runs import TIGHT, at_end, clutch, switches
 
 
 def test_a_freewheel_impact_moves_no_friction_clutch() -> None:
