@@ -1,22 +1,9 @@
 #pragma once
-#include <clutchwork/component.hpp>
+#include <clutchwork/elements/clutch.hpp>
 
 namespace clutchwork::elements {
 
-/// Friction brake: load = gain * pressure (or normal force), against the housing.
-struct Brake {
-  template <class T>
-  struct Params {
-    T gain;  ///< [m3]
-  };
-  static constexpr int states = 0;
-  static constexpr int inputs = 1;
-  static constexpr bool one_way = false;
-
-  template <class T, class S>
-  static S load(const Params<T>& p, const At<S>& at) {
-    return p.gain * at.input[0];
-  }
-};
+/// Friction brake: a clutch whose base is the housing.
+struct Brake : Clutch {};
 
 }  // namespace clutchwork::elements
