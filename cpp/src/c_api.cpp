@@ -54,14 +54,15 @@ bool in_range(const System& s) {
       within(s.element_param, s.elements, 0, s.n_params) && within(s.contact_param, s.contacts, 0, s.n_params) &&
       within(s.contact_law_param, s.contacts, 0, s.n_params) && within(s.element_state, s.elements, 0, s.states) &&
       within(s.contact_state, s.contacts, 0, s.states) && within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) &&
-      within(s.input_refs, s.n_input_refs, 0, s.inputs - 1);
+      within(s.element_input, s.elements, 0, s.n_input_refs) &&
+      within(s.contact_input, s.contacts, 0, s.n_input_refs) && within(s.input_refs, s.n_input_refs, 0, s.inputs - 1);
   for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
   std::int64_t states = 0;
   for (std::int64_t i = 0; good && i < s.elements; ++i) {
     visit_torque(s.element_kind[i], [&](auto tag) {
       using E = typename decltype(tag)::type;
-      good = s.element_param[i] + param_count<E> <= s.n_params && s.element_input[i] >= 0 &&
-             s.element_input[i] + E::inputs <= s.n_input_refs && s.element_state[i] + E::states <= s.states;
+      good = s.element_param[i] + param_count<E> <= s.n_params && s.element_input[i] + E::inputs <= s.n_input_refs &&
+             s.element_state[i] + E::states <= s.states;
       states += E::states;
     });
     visit_torque_curves(s.element_kind[i], [&](int at) { good = good && curve_fits(s, s.element_param[i] + at); });
@@ -69,8 +70,7 @@ bool in_range(const System& s) {
   for (std::int64_t i = 0; good && i < s.contacts; ++i) {
     visit_contact(s.contact_kind[i], [&](auto tag) {
       using E = typename decltype(tag)::type;
-      good = s.contact_param[i] + param_count<E> <= s.n_params && s.contact_input[i] >= 0 &&
-             s.contact_input[i] + E::inputs <= s.n_input_refs;
+      good = s.contact_param[i] + param_count<E> <= s.n_params && s.contact_input[i] + E::inputs <= s.n_input_refs;
     });
     visit_contact_curves(s.contact_kind[i], [&](int at) { good = good && curve_fits(s, s.contact_param[i] + at); });
     visit_law(s.contact_law[i], [&](auto tag) {

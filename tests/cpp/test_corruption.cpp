@@ -98,7 +98,7 @@ void little_room() {
 int main() {
   untaken_events();
   little_room();
-  corrupt(three_shafts(), 3, 4000);
+  corrupt(three_shafts(), 3, 6000);
   corrupt(chain(), 4, 1500);
   CHECK(refused > 500 && ran > 500);
   std::printf("%d refused, %d ran\n", refused, ran);
