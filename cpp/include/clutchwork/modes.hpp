@@ -222,7 +222,7 @@ int turned_back(const Workspace<T>& ws, const int* list, int n, const T* x, cons
 template <class T>
 bool settle_contacts(Workspace<T>& ws, int located) {
   const System& sys = ws.sys;
-  const int nc = int(sys.contacts), nv = int(sys.speeds);
+  const int nc = int(sys.contacts);
   const double tolerance = slip_tolerance(ws);
   int* candidate = ws.iscratch;
   int* list = ws.iscratch + nc;
