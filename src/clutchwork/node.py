@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from clutchwork.schema import State
 
 
 class Domain(Enum):
@@ -41,7 +43,18 @@ class Component:
 
 @dataclass(frozen=True)
 class Law:
-    """A friction law; it has no name of its own."""
+    """A friction law; it has no name of its own.
+
+    A law that sticks is set-valued: it locks exactly. One that does not is compliant: its torque is a function of
+    slip and of its own states, and it never locks.
+    """
+
+    sticks: ClassVar[bool] = True
+    states: ClassVar[tuple[State, ...]] = ()
+
+    def own_states(self) -> tuple[State, ...]:
+        """The states in use, the first ones of `states`."""
+        return self.states
 
     def sliding(self) -> float | None:
         """Kinetic coefficient at vanishing slip; None: the compiled core is asked."""

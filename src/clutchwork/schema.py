@@ -60,6 +60,7 @@ class Spec:
     flag: bool = False  # true or false in Python, 1 or 0 in the core
     whole: bool = False  # a whole number
     rising: str = ""  # of a curve: "strictly", or "weakly" where equal x mean a jump
+    choices: tuple[str, ...] = ()  # a text in Python, its place among these in the core
 
     @property
     def bound(self) -> str:
@@ -107,6 +108,11 @@ def param(
 def flag(doc: str, *, default: bool = MISSING) -> Any:  # type: ignore[assignment]
     """True or false in Python, a scalar 1 or 0 of the C++ `Params`."""
     return _field(Spec("param", "1", doc, flag=True), default)
+
+
+def choice(doc: str, *, choices: tuple[str, ...], default: str = MISSING) -> Any:  # type: ignore[assignment]
+    """One of several words in Python, a scalar of the C++ `Params`: the place of the word among them, from 0."""
+    return _field(Spec("param", "1", doc, choices=choices), default)
 
 
 def curve(
@@ -180,9 +186,18 @@ C = TypeVar("C", bound=type)
 
 
 @dataclass_transform(
+    kw_only_default=True, frozen_default=True, field_specifiers=(port, param, flag, choice, curve, signal, law, option)
+)
+def family(cls: C) -> C:
+    """Freeze fields that several declarations share, as a base that is itself none."""
+    frozen: Any = dataclass(frozen=True)(cls)
+    return frozen  # type: ignore[no-any-return]
+
+
+@dataclass_transform(
     kw_only_default=True,
     frozen_default=True,
-    field_specifiers=(port, param, flag, curve, signal, law, option, text, function),
+    field_specifiers=(port, param, flag, choice, curve, signal, law, option, text, function),
 )
 def component(role: Role, *, states: tuple[State, ...] = ()) -> Callable[[C], C]:
     """Freeze a declaration as a dataclass and register it under its kind, the stem of its module."""
@@ -226,9 +241,15 @@ def schema_text() -> str:
     for role in COMPILED_ROLES:
         for kind in kinds(role):
             cls: Any = REGISTRY[role][kind]
-            names = ",".join(f"{f.name}:{s.what}[{s.unit}]" for f, s in specs(cls, "param", "curve", "signal"))
-            lines.append(f"{role.value} {kind} {names} {len(cls.states)}")
+            names = ",".join(_field_text(f.name, s) for f, s in specs(cls, "param", "curve", "signal"))
+            sort = "" if role is not Role.LAW else " sticks" if cls.sticks else " compliant"
+            lines.append(f"{role.value} {kind} {names} {len(cls.states)}{sort}")
     return "\n".join(lines)
+
+
+def _field_text(name: str, spec: Spec) -> str:
+    choices = f"{{{'|'.join(spec.choices)}}}" if spec.choices else ""
+    return f"{name}:{spec.what}[{spec.unit}]{choices}"
 
 
 def schema_hash(extra: str = "") -> int:

@@ -1,0 +1,25 @@
+"""Dahl's friction with elastic deflection before sliding."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from clutchwork.node import Law
+from clutchwork.schema import Role, State, component, param
+
+
+@component(Role.LAW, states=(State("elastic", "1", "elastic coefficient"),))
+class Dahl(Law):
+    """Elastic deflection that turns into sliding: `d elastic/dt = stiffness slip abs(1 - x)^exponent sign(1 - x)`.
+
+    With `x = elastic sign(slip)/kinetic`; the coefficient is `elastic`. Use it for hysteresis that does not depend on
+    the rate, such as in rolling bearings. It has no static coefficient, and it drifts under a load that swings.
+
+    Source: P. R. Dahl 1976, doi:10.2514/3.61511.
+    """
+
+    sticks: ClassVar[bool] = False
+
+    kinetic: float = param("1", "coefficient while it slides", above=0.0)
+    stiffness: float = param("1/rad", "coefficient per deflection at rest", above=0.0, units=("1/m",))
+    exponent: float = param("1", "shape of the hysteresis, 1 in most uses", default=1.0, above=0.0)

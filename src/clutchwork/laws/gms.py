@@ -1,0 +1,41 @@
+"""Generalised Maxwell-slip friction."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from clutchwork.node import Points
+from clutchwork.schema import Role, State, component, curve, param
+from clutchwork.stribeck import StribeckCurve
+
+FEWEST, LARGEST = 4, 10
+
+
+@component(
+    Role.LAW,
+    states=tuple(State(f"element_{i}", "1", f"coefficient of element {i}") for i in range(1, LARGEST + 1)),
+)
+class GMS(StribeckCurve):
+    """Elastic elements in parallel, each of which sticks or slides on its own share of the Stribeck curve.
+
+    An element that sticks has the stiffness `share static/deflection` and breaks away at `share s(slip)`; while it
+    slides its coefficient is drawn to there at the rate `attraction`. The coefficient is the sum, plus
+    `viscous slip`. Use it where both count: hysteresis with non-local memory before sliding, and frictional lag in
+    sliding. It does not drift.
+
+    Source: F. Al-Bender, V. Lampaert, J. Swevers 2005, doi:10.1109/TAC.2005.858676.
+    """
+
+    sticks: ClassVar[bool] = False
+
+    elements: Points = curve(
+        "rad",
+        "1",
+        "4 to 10 elements: deflection at break-away, share of the coefficient; shares sum to 1",
+        units_x=("m",),
+    )
+    attraction: float = param("1/s", "rate at which a sliding element nears the curve", default=100.0, above=0.0)
+
+    def own_states(self) -> tuple[State, ...]:
+        """One state for each element."""
+        return self.states[: len(self.elements)]

@@ -1,0 +1,23 @@
+"""Stribeck friction with a band of slip in which it sticks."""
+
+from __future__ import annotations
+
+from clutchwork.schema import Role, component, param
+from clutchwork.stribeck import StribeckCurve
+
+
+@component(Role.LAW)
+class Karnopp(StribeckCurve):
+    """As `Stribeck` outside a band of slip; inside it counts as stuck and locks.
+
+    Use it to compare with simulations that were made with this classical law. `Stribeck` has no band to choose and
+    loses no momentum.
+
+    Source: D. Karnopp 1985, doi:10.1115/1.3140698.
+    """
+
+    band: float = param("rad/s", "abs(slip) below which it sticks", above=0.0, units=("m/s",))
+
+    def sliding(self) -> float:
+        """Kinetic coefficient at vanishing slip."""
+        return self.static

@@ -1,0 +1,19 @@
+"""Stribeck friction without a stick phase, which no solver gets past."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from clutchwork.schema import Role, component
+from clutchwork.stribeck import StribeckCurve
+
+
+@component(Role.LAW)
+class NaiveSign(StribeckCurve):
+    """Coefficient `sign(slip) s(slip) + viscous slip`, zero at zero slip.
+
+    For demonstration alone: where the contact should lock, the torque jumps between both signs from step to step, and
+    the run ends with the status "chatter". Use `Stribeck`, which sticks exactly.
+    """
+
+    sticks: ClassVar[bool] = False
