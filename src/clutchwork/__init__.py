@@ -23,6 +23,7 @@ from clutchwork import signals as signals
 from clutchwork.driveline import Driveline as Driveline
 from clutchwork.errors import ClutchworkError as ClutchworkError
 from clutchwork.errors import ModelError as ModelError
+from clutchwork.errors import ModelWarning as ModelWarning
 from clutchwork.errors import Problem as Problem
 from clutchwork.errors import near
 from clutchwork.layout import layout_text
@@ -55,7 +56,18 @@ if TYPE_CHECKING:
     from clutchwork.failure import StoppedEarly as StoppedEarly
     from clutchwork.laws.coefficient_table import CoefficientTable as CoefficientTable
     from clutchwork.laws.coulomb import Coulomb as Coulomb
+    from clutchwork.laws.dahl import Dahl as Dahl
+    from clutchwork.laws.elastoplastic import ElastoPlastic as ElastoPlastic
     from clutchwork.laws.exponential import Exponential as Exponential
+    from clutchwork.laws.gms import GMS as GMS
+    from clutchwork.laws.karnopp import Karnopp as Karnopp
+    from clutchwork.laws.leuven import Leuven as Leuven
+    from clutchwork.laws.lugre import LuGre as LuGre
+    from clutchwork.laws.mykhalevych import Mykhalevych as Mykhalevych
+    from clutchwork.laws.naive_sign import NaiveSign as NaiveSign
+    from clutchwork.laws.regularised_stribeck import RegularisedStribeck as RegularisedStribeck
+    from clutchwork.laws.stribeck import Stribeck as Stribeck
+    from clutchwork.laws.tanh import Tanh as Tanh
     from clutchwork.options import Options as Options
     from clutchwork.signals.column import Column as Column
     from clutchwork.signals.constant import Constant as Constant
@@ -84,7 +96,7 @@ _LAZY = {
 _DECLARED = {cls.__name__: cls for kinds in REGISTRY.values() for cls in kinds.values()}
 globals().update(_DECLARED)
 
-_FIXED = ("ClutchworkError", "Domain", "Driveline", "Law", "ModelError", "Node", "Problem", "Signal")
+_FIXED = ("ClutchworkError", "Domain", "Driveline", "Law", "ModelError", "ModelWarning", "Node", "Problem", "Signal")
 __all__ = sorted([*_FIXED, *_LAZY, *_DECLARED])
 
 

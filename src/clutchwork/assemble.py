@@ -12,6 +12,7 @@ from clutchwork.errors import ModelError
 from clutchwork.inputs import Wires
 from clutchwork.kinematics import apart, kinematics
 from clutchwork.layout import FIELDS
+from clutchwork.model_checks import model_advice
 from clutchwork.pools import Pools
 from clutchwork.rational import Row, plus
 from clutchwork.schema import Role, kinds
@@ -47,8 +48,10 @@ def assemble(
     arrays = _inertia(model, made, columns)
     arrays |= _rates(model, made, columns, Role.TORQUE, "element")
     arrays |= _rates(model, made, columns, Role.CONTACT, "contact")
-    arrays |= _elements(model, pools, wires)
-    arrays |= _contacts(model, pools, wires)
+    states = list[float]()
+    arrays |= _elements(model, pools, wires, states)
+    arrays |= _contacts(model, pools, wires, states)
+    arrays |= {"initial_state": states}
     arrays |= {"prescribed_input": wires.prescribe(motions)}
     arrays |= wires.arrays()
     arrays |= {"params": pools.params, "points": pools.points, "initial_speed": [float(speed) for speed in speeds]}
@@ -64,6 +67,7 @@ def assemble(
         independent=tuple(model.nodes[n].name for n in made.independent),
         parameters=pools.places,
         notes=tuple(made.notes),
+        warnings=tuple(str(advice) for advice in model_advice(components)),
         model=source or {},
     )
 
@@ -131,8 +135,8 @@ def _rates(model: Model, made: Kinematics, columns: Columns, role: Role, prefix:
     }
 
 
-def _elements(model: Model, pools: Pools, wires: Wires) -> dict[str, Any]:
-    params, offsets, refs, states = list[int](), list[int](), list[int](), list[float]()
+def _elements(model: Model, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
+    params, offsets, refs = list[int](), list[int](), list[int]()
     for element in model.role(Role.TORQUE):
         params.append(pools.add(element, element.name))
         offsets.append(len(states))
@@ -142,22 +146,30 @@ def _elements(model: Model, pools: Pools, wires: Wires) -> dict[str, Any]:
         "element_param": params,
         "element_state": offsets,
         "element_input": refs,
-        "initial_state": states,
     }
 
 
-def _contacts(model: Model, pools: Pools, wires: Wires) -> dict[str, Any]:
+def _contacts(model: Model, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
     contacts = model.role(Role.CONTACT)
-    laws = kinds(Role.LAW)
+    laws, offsets = kinds(Role.LAW), list[int]()
+    for contact in contacts:
+        # bristles start without deflection
+        offsets.append(len(states))
+        states += [0.0] * len(contact.friction.own_states())
     return {
         "contact_param": [pools.add(contact, contact.name) for contact in contacts],
         "contact_input": [wires.connect(contact) for contact in contacts],
         "contact_law": [laws.index(contact.friction.kind) for contact in contacts],
         "contact_law_param": [pools.add(contact.friction, f"{contact.name}.friction") for contact in contacts],
-        "contact_state": [0] * len(contacts),
-        "contact_tolerance": [float(contact.tolerance) for contact in contacts],
+        "contact_state": offsets,
+        "contact_tolerance": [_tolerance(contact) for contact in contacts],
         "contact_initial": [int(contact.locked) for contact in contacts],
     }
+
+
+def _tolerance(contact: Any) -> float:
+    """Slip below which a contact may lock; the band of a Karnopp law widens it."""
+    return max(float(contact.tolerance), float(getattr(contact.friction, "band", 0.0)))
 
 
 def _gears(model: Model) -> Iterable[Gearing]:

@@ -48,7 +48,28 @@ def label(component: Component) -> str:
 
 def component_problems(component: Component) -> Iterator[Problem]:
     """All mistakes of one element, its friction law and its signals."""
-    yield from object_problems(component, At(label(component), ""))
+    at = At(label(component), "")
+    yield from object_problems(component, at)
+    law = getattr(component, "friction", None)
+    if isinstance(law, Law) and not law.sticks and not component.one_way and getattr(component, "locked", False):
+        remedy = "leave it out, or take a law that sticks: " + ", ".join(_sticking())
+        yield at.inner("locked").problem("cannot hold with a law that never locks", value="True", remedy=remedy)
+
+
+def component_advice(component: Component) -> Iterator[Problem]:
+    """What the friction law of an element allows and is rarely wanted; nothing where the law has mistakes."""
+    law, place = getattr(component, "friction", None), At(label(component), "friction")
+    if not isinstance(law, Law) or any(object_problems(law, place)):
+        return
+    units = {item.name: spec.unit for item, spec in specs(type(law))}
+    for name, message, remedy in law.advice():
+        value = f"{getattr(law, name):g} {units[name]}"
+        yield place.inner(name).problem(message, value=value.removesuffix(" 1"), remedy=remedy)
+
+
+def _sticking() -> list[str]:
+    known: Any = REGISTRY[Role.LAW]
+    return [kind for kind in known if known[kind].sticks]
 
 
 def object_problems(thing: Any, at: At) -> Iterator[Problem]:
@@ -75,6 +96,8 @@ def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Pro
 
 
 def _wanted(spec: Spec, unit: str) -> str:
+    if spec.choices:
+        return f"one of {', '.join(spec.choices)}"
     return {
         "port": "a shaft",
         "law": f"a friction law ({', '.join(REGISTRY[Role.LAW])})",
@@ -113,7 +136,11 @@ def _meaning(spec: Spec) -> str:
 
 
 def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
-    if not spec.flag:
+    if spec.choices:
+        if value not in spec.choices:
+            message = "is not known" + near(value, spec.choices)
+            yield at.problem(message, value=repr(value), remedy=f"known are {', '.join(spec.choices)}")
+    elif not spec.flag:
         yield from number_problems(value, spec, at)
     elif not isinstance(value, bool) and value not in (0, 1):
         yield at.problem("must be true or false", value=repr(value), remedy=spec.doc)
@@ -181,7 +208,7 @@ def _law(value: Any, _: Spec, at: At) -> Iterator[Problem]:
         yield at.problem("must be a friction law", value=repr(value), remedy=remedy)
         return
     found = list(object_problems(value, at))
-    yield from found or _peak(value, at)
+    yield from found or (_peak(value, at) if value.sticks else ())
 
 
 def _peak(law: Any, at: At) -> Iterator[Problem]:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.errors import ModelError
+from clutchwork.errors import ModelError, ModelWarning
 from clutchwork.options import METHODS, Options, end_time
 from clutchwork.progress import Bar
 
@@ -91,7 +91,7 @@ def _run(asked: argparse.Namespace) -> int:
     from clutchwork.ratios import phases
 
     driveline = Driveline.load(asked.model)
-    system = driveline.assemble()
+    system = _assembled(driveline)
     shafts = _shafts(system, asked.ratio)
     run = _simulated(driveline, system, asked)
     found = phases(run, shafts) if shafts and len(run) else []
@@ -104,6 +104,16 @@ def _run(asked: argparse.Namespace) -> int:
     if not run.finished:
         print(f"clutchwork: {run.message}", file=sys.stderr)
     return DONE if run.finished else STOPPED
+
+
+def _assembled(driveline: Driveline) -> System:
+    """The system of a model; what it is warned of is told on standard error."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        system = driveline.assemble()
+    for text in system.warnings:
+        print(f"warning: {text}", file=sys.stderr)
+    return system
 
 
 def _simulated(driveline: Driveline, system: System, asked: argparse.Namespace) -> Trajectory:
@@ -145,7 +155,7 @@ def _check(asked: argparse.Namespace) -> int:
     from clutchwork import report
     from clutchwork.driveline import Driveline
 
-    system = Driveline.load(asked.model).assemble()
+    system = _assembled(Driveline.load(asked.model))
     shafts = _shafts(system, asked.ratio)
     if asked.json:
         _print_json(report.model_data(system, shafts))

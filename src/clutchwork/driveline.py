@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from clutchwork.errors import ModelError, Problem
+from clutchwork.errors import ModelError, Problem, warn
 from clutchwork.node import HOUSING, Component, Domain, Node
 
 if TYPE_CHECKING:
@@ -75,16 +75,22 @@ class Driveline:
         return element
 
     def check(self) -> list[Problem]:
-        """All mistakes of the model, an empty list when there is none."""
-        from clutchwork.model_checks import model_problems
+        """All mistakes of the model, an empty list when there is none.
 
-        return model_problems(self._nodes, self._elements)
+        What is allowed and rarely wanted, such as a friction law that can give energy away, is a `ModelWarning`.
+        """
+        from clutchwork.model_checks import model_advice, model_problems
+
+        problems = model_problems(self._nodes, self._elements)
+        for advice in model_advice(self._elements):
+            warn(advice)
+        return problems
 
     def assemble(self, independent: Sequence[str] = ()) -> System:
         """Reduce the driveline to its independent speeds.
 
         Parameters: independent, names of the shafts whose speeds shall be the independent ones; by default those
-        with the most inertia. ModelError lists all mistakes.
+        with the most inertia. ModelError lists all mistakes, warnings are those of `check`.
         """
         from clutchwork.assemble import assemble
 

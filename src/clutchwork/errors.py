@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import warnings
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
@@ -40,6 +42,22 @@ class ModelError(ClutchworkError, ValueError):
         count = f"{len(self.problems)} problems" if len(self.problems) > 1 else "1 problem"
         head = f"{source}: {count}" if source else f"{count} in the model"
         super().__init__("\n".join([head, *(f"  {problem}" for problem in self.problems)]))
+
+
+class ModelWarning(UserWarning):
+    """A model that runs but has a property that is rarely wanted; `problem` says where, what and what to do."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        super().__init__(str(problem))
+
+
+def warn(advice: Problem) -> None:
+    """Warn at the line outside this package that asked."""
+    frame, level = inspect.currentframe(), 1
+    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(ModelWarning(advice), stacklevel=level - 1)
 
 
 class FileError(ClutchworkError, ValueError):

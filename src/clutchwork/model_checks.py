@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from clutchwork.checks import At, component_problems, connection_problems, label, number_problems
+from clutchwork.checks import At, component_advice, component_problems, connection_problems, label, number_problems
 from clutchwork.errors import Problem
 from clutchwork.kinematics import kinematics
 from clutchwork.node import HOUSING, Component, Domain, Node
@@ -31,6 +31,11 @@ def model_problems(
         problems += found
         (broken if found else sound).append(element)
     return problems + structure_problems(nodes, sound, [*incomplete, *_touched(broken)])
+
+
+def model_advice(elements: Sequence[Component]) -> list[Problem]:
+    """What the friction laws of a model allow and is rarely wanted: the warnings about it."""
+    return [advice for element in elements for advice in component_advice(element)]
 
 
 def _touched(elements: Sequence[Component]) -> list[str]:

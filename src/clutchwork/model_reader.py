@@ -137,7 +137,7 @@ class Reader:
             return self._converted(lambda: curve_in_si(value, spec, at.unit, at.factor), at)
         if spec.what == "function":
             return self._report(at, "cannot stand in a model file", remedy="give it in Python")
-        if spec.what == "text" or spec.flag:
+        if spec.what == "text" or spec.flag or spec.choices:
             return value
         return self._number(value, spec, at)
 

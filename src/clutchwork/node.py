@@ -38,6 +38,8 @@ HOUSING = Node("housing", fixed=True)
 class Component:
     """An element with a name that is its path in results and errors."""
 
+    one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
+
     name: str
 
 
@@ -55,6 +57,10 @@ class Law:
     def own_states(self) -> tuple[State, ...]:
         """The states in use, the first ones of `states`."""
         return self.states
+
+    def advice(self) -> list[tuple[str, str, str]]:
+        """Properties that are allowed and rarely wanted, as (quantity, what is so, remedy); each becomes a warning."""
+        return []
 
     def sliding(self) -> float | None:
         """Kinetic coefficient at vanishing slip; None: the compiled core is asked."""

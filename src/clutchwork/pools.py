@@ -29,7 +29,7 @@ class Pools:
             value = getattr(component, item.name)
             if spec.what == "param":
                 self.places[f"{path}.{item.name}"] = len(self.params)
-                self.params.append(float(value))
+                self.params.append(float(spec.choices.index(value) if spec.choices else value))
             else:
                 self.params += [float(len(self.points)), float(len(value))]
                 self.points += _with_slopes([(float(x), float(y)) for x, y in value])
@@ -43,7 +43,7 @@ def _with_slopes(points: list[tuple[float, float]]) -> list[tuple[float, float, 
 
 
 def coefficients(law: Law, slip: float) -> tuple[float, float]:
-    """Kinetic and static coefficient of a friction law at a slip [rad/s], by the compiled core."""
+    """Kinetic and static coefficient of a friction law that sticks at a slip [rad/s], by the compiled core."""
     from importlib import import_module
 
     pools = Pools()

@@ -74,6 +74,7 @@ def run_data(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
     return {
         "status": run.status,
         "message": run.message,
+        "warnings": list(run.system.warnings),
         "time_s": float(run.time[-1]) if len(run) else 0.0,
         "events": [_finite(asdict(event)) for event in run.events],
         "ratio_of": list(shafts) if shafts else None,
@@ -97,6 +98,7 @@ def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]
     """The same as plain data for JSON."""
     found = gears(system, shafts) if shafts else ()
     return {
+        "warnings": list(system.warnings),
         "sizes": sizes(system),
         "ratio_of": list(shafts) if shafts else None,
         "gears": [{"closed": list(closed), "ratio": value} for closed, value in found],

@@ -61,6 +61,7 @@ class Spec:
     whole: bool = False  # a whole number
     rising: str = ""  # of a curve: "strictly", or "weakly" where equal x mean a jump
     choices: tuple[str, ...] = ()  # a text in Python, its place among these in the core
+    example: Any = None  # of a law: a value that fits the examples of its other fields
 
     @property
     def bound(self) -> str:
@@ -98,11 +99,13 @@ def param(
     at_most: float | None = None,
     units: tuple[str, ...] = (),
     whole: bool = False,
+    example: float | None = None,
     kw_only: bool = True,
 ) -> Any:
     """A constant number in SI units: one scalar of the C++ `Params`, in order of declaration."""
     bounds = (above, at_least, below, at_most)
-    return _field(Spec("param", unit, doc, default is None, *bounds, units=units, whole=whole), default, kw_only)
+    spec = Spec("param", unit, doc, default is None, *bounds, units=units, whole=whole, example=example)
+    return _field(spec, default, kw_only)
 
 
 def flag(doc: str, *, default: bool = MISSING) -> Any:  # type: ignore[assignment]
@@ -123,12 +126,12 @@ def curve(
     units: tuple[str, ...] = (),
     units_x: tuple[str, ...] = (),
     rising: str = "strictly",
+    example: tuple[tuple[float, float], ...] | None = None,
     kw_only: bool = True,
 ) -> Any:
     """A piecewise linear function as (x, y) points with x increasing: a `Curve` of the C++ `Params`."""
-    return _field(
-        Spec("curve", unit_y, doc, unit_x=unit_x, units=units, units_x=units_x, rising=rising), MISSING, kw_only
-    )
+    spec = Spec("curve", unit_y, doc, unit_x=unit_x, units=units, units_x=units_x, rising=rising, example=example)
+    return _field(spec, MISSING, kw_only)
 
 
 def signal(

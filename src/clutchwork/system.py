@@ -64,6 +64,7 @@ class System:
     independent: tuple[str, ...] = ()  # names of the nodes with independent speeds
     parameters: Mapping[str, int] = field(default_factory=dict)  # "c1.gain" -> place in params
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()  # what the driveline was warned of when it was assembled
     model: Mapping[str, Any] = field(default_factory=dict)  # the driveline as in a model file
 
     def __getattr__(self, name: str) -> Array:

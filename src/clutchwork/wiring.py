@@ -70,10 +70,12 @@ def wiring(system: System) -> Wiring:
     """The connections of a System."""
     places = {id(node): index for index, node in enumerate(system.nodes)}
     gears = [GearRow(row.gear.name, dict(row.ports), _domains(row.gear)) for row in system.gears]
+    branches = [_branch(component, places) for component in (*system.elements, *system.contacts)]
+    branches = _with_states(branches)
     return Wiring(
         nodes=system.nodes,
-        elements=_with_states([_branch(component, places) for component in system.elements]),
-        contacts=tuple(_branch(component, places) for component in system.contacts),
+        elements=tuple(branches[: len(system.elements)]),
+        contacts=tuple(branches[len(system.elements) :]),
         motions=tuple(_branch(component, places) for component in system.motions),
         gears=tuple(gears),
         inputs=tuple((item.name, item.unit) for item in system.inputs),
@@ -103,15 +105,16 @@ def _branch(component: Component, places: Mapping[int, int]) -> Branch:
     return Branch(component.name, component, direction, known.domain)
 
 
-def _with_states(branches: list[Branch]) -> tuple[Branch, ...]:
-    """The same with the names and places of the states that they own."""
-    made, first = [], 0
+def _with_states(branches: list[Branch]) -> list[Branch]:
+    """The same with the names and places of the states that they, or their friction laws, own."""
+    made, first = list[Branch](), 0
     for branch in branches:
-        own = tuple(branch.component.states)
+        law = getattr(branch.component, "friction", None)
+        own = tuple(branch.component.states if law is None else law.own_states())
         states = tuple((state.name, state.unit, first + k) for k, state in enumerate(own))
         made.append(replace(branch, states=states))
         first += len(own)
-    return tuple(made)
+    return made
 
 
 def _domains(gear: Component) -> dict[str, Domain]:

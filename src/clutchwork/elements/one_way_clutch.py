@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from clutchwork.laws.coulomb import Coulomb
 from clutchwork.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Component, Law, Node, SignalLike
 from clutchwork.schema import Role, component, law, option, param, port, signal
@@ -14,6 +16,8 @@ class OneWayClutch(Component):
     Use it for sprags, roller clutches and ratchets. While locked it transmits any torque that would make the
     slip negative. The friction clutch in parallel has the capacity `gain * pressure * coefficient`, none by default.
     """
+
+    one_way: ClassVar[bool] = True
 
     base: Node = port("side that the slip is counted from")
     follower: Node = port("side that may run ahead: slip = follower - base is never negative")

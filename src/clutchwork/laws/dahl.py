@@ -20,6 +20,6 @@ class Dahl(Law):
 
     sticks: ClassVar[bool] = False
 
-    kinetic: float = param("1", "coefficient while it slides", above=0.0)
-    stiffness: float = param("1/rad", "coefficient per deflection at rest", above=0.0, units=("1/m",))
+    kinetic: float = param("1", "coefficient while it slides", above=0.0, example=0.1)
+    stiffness: float = param("1/rad", "coefficient per deflection at rest", above=0.0, units=("1/m",), example=1e3)
     exponent: float = param("1", "shape of the hysteresis, 1 in most uses", default=1.0, above=0.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from clutchwork.schema import Role, State, component, param
-from clutchwork.stribeck import StribeckCurve
+from clutchwork.stribeck import ROUND_OFF, Found, StribeckCurve, kinetic_problems, passivity_advice
 
 
 @component(Role.LAW, states=(State("elastic", "1", "elastic coefficient, stiffness times deflection"),))
@@ -21,9 +21,11 @@ class ElastoPlastic(StribeckCurve):
 
     sticks: ClassVar[bool] = False
 
-    stiffness: float = param("1/rad", "coefficient per deflection", above=0.0, units=("1/m",))
-    damping: float = param("s/rad", "coefficient per rate of the deflection", at_least=0.0, units=("s/m",))
-    elastic: float = param("rad", "deflection up to which nothing slides", above=0.0, units=("m",))
+    stiffness: float = param("1/rad", "coefficient per deflection", above=0.0, units=("1/m",), example=1e3)
+    damping: float = param(
+        "s/rad", "coefficient per rate of the deflection", at_least=0.0, units=("s/m",), example=1e-3
+    )
+    elastic: float = param("rad", "deflection up to which nothing slides", above=0.0, units=("m",), example=7e-5)
     plastic: float = param(
         "rad",
         "deflection from which all slides; 0: the steady one, s(slip)/stiffness",
@@ -31,3 +33,23 @@ class ElastoPlastic(StribeckCurve):
         at_least=0.0,
         units=("m",),
     )
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        found = super().problems() + kinetic_problems(self.kinetic)
+        return found or self._deflection_problems()
+
+    def _deflection_problems(self) -> Found:
+        """Deflections that do not rise from elastic over plastic to the smallest steady one."""
+        steady = self.kinetic / self.stiffness
+        if self.elastic >= (self.plastic or steady):
+            upper = f"plastic = {self.plastic:g}" if self.plastic else f"kinetic/stiffness = {steady:g}"
+            return [("elastic", f"is {self.elastic:g}, not below {upper}", "lower it; 0.7 kinetic/stiffness is common")]
+        if self.plastic > steady * (1 + ROUND_OFF):
+            fault = f"is {self.plastic:g}, above the steady deflection kinetic/stiffness = {steady:g}"
+            return [("plastic", fault, "lower it, or leave it out")]
+        return []
+
+    def advice(self) -> Found:
+        """Properties that are rarely wanted, as (quantity, what is so, remedy)."""
+        return passivity_advice(self, self.damping)

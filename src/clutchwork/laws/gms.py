@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from clutchwork.node import Points
 from clutchwork.schema import Role, State, component, curve, param
-from clutchwork.stribeck import StribeckCurve
+from clutchwork.stribeck import Found, StribeckCurve, element_problems, kinetic_problems
 
 FEWEST, LARGEST = 4, 10
 
@@ -33,9 +33,19 @@ class GMS(StribeckCurve):
         "1",
         "4 to 10 elements: deflection at break-away, share of the coefficient; shares sum to 1",
         units_x=("m",),
+        example=((2e-5, 0.1), (5e-5, 0.2), (1e-4, 0.3), (2e-4, 0.4)),
     )
     attraction: float = param("1/s", "rate at which a sliding element nears the curve", default=100.0, above=0.0)
 
     def own_states(self) -> tuple[State, ...]:
         """One state for each element."""
         return self.states[: len(self.elements)]
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        found = super().problems() + kinetic_problems(self.kinetic)
+        found = found or element_problems(self.elements, FEWEST, LARGEST)
+        total = sum(share for _, share in self.elements)
+        if not found and abs(total - 1.0) > 1e-9:
+            found.append(("elements", f"has shares that sum to {total:.10g}, must be 1", "divide each by the sum"))
+        return found

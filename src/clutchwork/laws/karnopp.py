@@ -16,7 +16,7 @@ class Karnopp(StribeckCurve):
     Source: D. Karnopp 1985, doi:10.1115/1.3140698.
     """
 
-    band: float = param("rad/s", "abs(slip) below which it sticks", above=0.0, units=("m/s",))
+    band: float = param("rad/s", "abs(slip) below which it sticks", above=0.0, units=("m/s",), example=0.01)
 
     def sliding(self) -> float:
         """Kinetic coefficient at vanishing slip."""

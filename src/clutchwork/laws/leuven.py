@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from clutchwork.node import Points
 from clutchwork.schema import Role, State, component, curve, param
-from clutchwork.stribeck import StribeckCurve
+from clutchwork.stribeck import Found, StribeckCurve, element_problems, kinetic_problems
 
 LARGEST = 10
 
@@ -24,13 +24,17 @@ class Leuven(StribeckCurve):
     take `GMS`.
 
     Source: J. Swevers, F. Al-Bender, C. Ganseman, T. Prajogo 2000, doi:10.1109/9.847103, in the Maxwell-slip form of
-    V. Lampaert, J. Swevers, F. Al-Bender 2002, doi:10.1109/TAC.2002.1000282.
+    V. Lampaert, J. Swevers, F. Al-Bender 2002, doi:10.1109/9.995050.
     """
 
     sticks: ClassVar[bool] = False
 
     elements: Points = curve(
-        "rad", "1", "up to 10 elements: deflection at break-away, share of the static coefficient", units_x=("m",)
+        "rad",
+        "1",
+        "1 to 10 elements: deflection at break-away, share of the static coefficient; shares sum to 1 or more",
+        units_x=("m",),
+        example=((2e-5, 0.1), (5e-5, 0.2), (1e-4, 0.3), (2e-4, 0.4)),
     )
     order: float = param("1", "how sharply deflection turns into sliding", default=1.0, above=0.0)
     damping: float = param("s/rad", "coefficient per rate of the deflection", default=0.0, at_least=0.0, units=("s/m",))
@@ -38,3 +42,13 @@ class Leuven(StribeckCurve):
     def own_states(self) -> tuple[State, ...]:
         """One state for each element."""
         return self.states[: len(self.elements)]
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        found = super().problems() + kinetic_problems(self.kinetic)
+        found = found or element_problems(self.elements, 1, LARGEST)
+        total = sum(share for _, share in self.elements)
+        if not found and total < 1.0 - 1e-9:
+            fault = f"has shares that sum to {total:g}, must be >= 1, or it never slides"
+            found.append(("elements", fault, "raise the shares"))
+        return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from clutchwork.schema import Role, State, component, param
-from clutchwork.stribeck import StribeckCurve
+from clutchwork.stribeck import Found, StribeckCurve, kinetic_problems, passivity_advice
 
 
 @component(Role.LAW, states=(State("elastic", "1", "elastic coefficient, stiffness times deflection"),))
@@ -21,5 +21,15 @@ class LuGre(StribeckCurve):
 
     sticks: ClassVar[bool] = False
 
-    stiffness: float = param("1/rad", "coefficient per deflection", above=0.0, units=("1/m",))
-    damping: float = param("s/rad", "coefficient per rate of the deflection", at_least=0.0, units=("s/m",))
+    stiffness: float = param("1/rad", "coefficient per deflection", above=0.0, units=("1/m",), example=1e3)
+    damping: float = param(
+        "s/rad", "coefficient per rate of the deflection", at_least=0.0, units=("s/m",), example=1e-3
+    )
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        return super().problems() + kinetic_problems(self.kinetic)
+
+    def advice(self) -> Found:
+        """Properties that are rarely wanted, as (quantity, what is so, remedy)."""
+        return passivity_advice(self, self.damping)

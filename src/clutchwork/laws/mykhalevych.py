@@ -6,6 +6,10 @@ from typing import ClassVar
 
 from clutchwork.node import Law
 from clutchwork.schema import Role, State, choice, component, flag, param
+from clutchwork.stribeck import Found, static_problems
+
+# least inner friction over 1 - kinetic/static: largest (1 - exp(-x^2))/x, and that over the slope of tanh at 1
+AT_REST, AT_THE_ANGLE = 0.638, 1.52
 
 
 @component(Role.LAW, states=(State("wind_up", "1", "wind-up over the elastic angle"),))
@@ -22,11 +26,13 @@ class Mykhalevych(Law):
 
     sticks: ClassVar[bool] = False
 
-    static: float = param("1", "coefficient at rest, at least the kinetic one", above=0.0)
-    kinetic: float = param("1", "coefficient at high slip", at_least=0.0)
-    elastic: float = param("rad", "wind-up over which the contact is elastic", above=0.0, units=("m",))
-    speed: float = param("rad/s", "slip that divides static from kinetic", above=0.0, units=("m/s",))
-    viscous: float = param("1", "inner friction, against the slip over `speed`", at_least=0.0)
+    static: float = param("1", "coefficient at rest, at least the kinetic one", above=0.0, example=0.15)
+    kinetic: float = param("1", "coefficient at high slip", at_least=0.0, example=0.1)
+    elastic: float = param(
+        "rad", "angle over which the contact is elastic, the unit of the wind-up", above=0.0, units=("m",), example=1e-4
+    )
+    speed: float = param("rad/s", "slip that divides static from kinetic", above=0.0, units=("m/s",), example=2.0)
+    viscous: float = param("1", "inner friction, against the slip over `speed`", at_least=0.0, example=1.0)
     reset: str = choice(
         "how the wind-up is limited: within plus and minus `range`; clipped to 1 when the slip passes through zero; set"
         " to 1 whenever it does, as printed, which ratchets",
@@ -35,3 +41,22 @@ class Mykhalevych(Law):
     )
     range: float = param("1", 'largest wind-up over `elastic`, of reset "saturate"', default=3.0, above=0.0)
     passive: bool = flag("multiply tanh by the Stribeck curve instead, which never feeds energy in", default=False)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        found = static_problems(self.static, self.kinetic)
+        if self.reset != "saturate" and self.range != 3.0:
+            fault = f"is {self.range:g} with reset {self.reset!r}, which has none"
+            found.append(("range", fault, 'leave it out, or give reset "saturate"'))
+        return found
+
+    def advice(self) -> Found:
+        """Properties that are rarely wanted, as (quantity, what is so, remedy)."""
+        fall = 1.0 - self.kinetic / self.static
+        if self.passive or self.viscous >= AT_THE_ANGLE * fall:
+            return []
+        message = (
+            "is too small to be dissipative: it must be >= 1.52 (1 - kinetic/static)"
+            f" = {AT_THE_ANGLE * fall:g} around the elastic angle, and >= {AT_REST * fall:g} at rest"
+        )
+        return [("viscous", message, "raise it, or give passive = true")]

@@ -20,4 +20,6 @@ class RegularisedStribeck(StribeckCurve):
 
     sticks: ClassVar[bool] = False
 
-    width: float = param("rad/s", "slip at which 76 % of the coefficient are reached", above=0.0, units=("m/s",))
+    width: float = param(
+        "rad/s", "slip at which 76 % of the coefficient are reached", above=0.0, units=("m/s",), example=0.05
+    )

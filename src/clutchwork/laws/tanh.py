@@ -19,5 +19,5 @@ class Tanh(Law):
 
     sticks: ClassVar[bool] = False
 
-    kinetic: float = param("1", "coefficient at high slip", above=0.0)
-    speed: float = param("rad/s", "slip at which 96 % of it are reached", above=0.0, units=("m/s",))
+    kinetic: float = param("1", "coefficient at high slip", above=0.0, example=0.1)
+    speed: float = param("rad/s", "slip at which 96 % of it are reached", above=0.0, units=("m/s",), example=0.1)
