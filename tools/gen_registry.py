@@ -69,6 +69,9 @@ def asserts(schema: Any, role: Any, kind: str) -> Iterator[str]:
     folder = FOLDER[role.value]
     name, source = f"{folder}::{cls.__name__}", f"src/clutchwork/{folder}/{kind}.py"
     yield f'static_assert({concept}<{name}>, "{kind}.hpp: {cls.__name__} lacks a function of {concept}");'
+    if role.value == "law":
+        sort = "StickingLaw" if cls.sticks else "CompliantLaw"
+        yield f'static_assert({sort}<{name}>, "{kind}.hpp: {source} says otherwise whether the law sticks");'
     yield f'static_assert({name}::states == {len(cls.states)}, "{kind}.hpp: states differ from {source}");'
     offset = 0
     for item, spec in schema.specs(cls, "param", "curve"):
@@ -172,6 +175,8 @@ def main() -> int:
     lines.append("#include <clutchwork/component.hpp>")
     for role in schema.COMPILED_ROLES:
         lines += [f"#include <clutchwork/{FOLDER[role.value]}/{kind}.hpp>" for kind in schema.kinds(role)]
+    # the parameters of a law may start with those of the Stribeck curve that it shares
+    lines.append('#pragma GCC diagnostic ignored "-Winvalid-offsetof"')
     lines.append("namespace clutchwork {")
     lines.append(f"inline constexpr std::int64_t schema_hash = {schema.schema_hash(layout.layout_text())}ll;")
     for role in schema.COMPILED_ROLES:

@@ -75,11 +75,13 @@ bool in_range(const System& s) {
     visit_contact_curves(s.contact_kind[i], [&](int at) { good = good && curve_fits(s, s.contact_param[i] + at); });
     visit_law(s.contact_law[i], [&](auto tag) {
       using L = typename decltype(tag)::type;
-      good =
-          good && s.contact_law_param[i] + param_count<L> <= s.n_params && s.contact_state[i] + L::states <= s.states;
-      states += L::states;
+      good = good && s.contact_law_param[i] + param_count<L> <= s.n_params;
     });
     visit_law_curves(s.contact_law[i], [&](int at) { good = good && curve_fits(s, s.contact_law_param[i] + at); });
+    if (!good) return false;
+    const int own = states_of(s.contact_kind[i], s.contact_law[i], s.params + s.contact_law_param[i]);
+    good = s.contact_state[i] + own <= s.states;
+    states += own;
   }
   // states are nobody's twice
   good = good && states <= s.states;
@@ -249,7 +251,13 @@ int cw_law(int number, const double* params, const double* points, std::int64_t 
       const int edges = n_points > 0 ? L::edges(p) : 0;
       while (piece < edges && L::edge(p, points, piece) <= slip) ++piece;
     }
-    *kinetic = L::slide(p, At<double>{slip, nullptr, nullptr, piece, points});
+    const At<double> at{slip, nullptr, nullptr, piece, points};
+    if constexpr (StickingLaw<L>) *kinetic = L::slide(p, at);
+    if constexpr (CompliantLaw<L>) {
+      // with states the coefficient depends on what went before
+      *kinetic = __builtin_nan("");
+      if constexpr (L::states == 0) *kinetic = L::coefficient(p, at);
+    }
     *hold = L::hold(p);
   });
   return 1;

@@ -41,6 +41,8 @@ bool start(Workspace<T>& ws) {
   for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];
   input_slopes_at(ws, ws.time);
   for (int c = 0; c < sys.contacts; ++c) {
+    ws.compliant[c] = is_compliant_law(sys.contact_law[c]);
+    ws.heading[c] = forward;
     ws.forced[c] = ws.held[c] = ws.loaded[c] = 0;
     const double slip = value(rate_of(ws, int(sys.elements) + c));
     ws.mode[c] = abs(slip) <= slip_tolerance(ws) ? open : slip > 0 ? forward : backward;
@@ -65,7 +67,8 @@ Status take_outside(Workspace<T>& ws) {
     ws.mode_before[c] = ws.mode[c];
     ws.torque_before[c] = ws.mode[c] == locked ? ws.torque[ws.sys.elements + c] : T(0);
     if (k >= 0 && k < ws.n_branches)
-      ws.torque_before[c] = contact_torque(ws, ws.branch[k], rate_of(ws, ws.branch[k].direction));
+      ws.torque_before[c] +=
+          contact_torque(ws, ws.branch[k], rate_of(ws, ws.branch[k].direction), ws.state, ws.scratch);
     ws.slip_slope[c] = T(0);
   }
   for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];

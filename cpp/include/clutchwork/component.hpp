@@ -64,11 +64,38 @@ concept ContactElement = requires(const typename E::template Params<double>& p, 
   { E::inputs } -> std::convertible_to<int>;
 };
 
-/// Friction coefficient: kinetic over slip (slip >= 0, continued smoothly below), static at rest.
+/// Law that sticks exactly: kinetic coefficient over slip (slip >= 0, continued smoothly below), static at rest.
 template <class L>
-concept FrictionLaw = requires(const typename L::template Params<double>& p, const At<double>& at) {
+concept StickingLaw = requires(const typename L::template Params<double>& p, const At<double>& at) {
   { L::slide(p, at) } -> std::same_as<double>;
   { L::hold(p) } -> std::same_as<double>;
+};
+
+/// Law that never sticks: coefficient over signed slip and own states, which are coefficients themselves.
+template <class L>
+concept CompliantLaw = requires(const typename L::template Params<double>& p, const At<double>& at) {
+  { L::coefficient(p, at) } -> std::same_as<double>;
+  { L::hold(p) } -> std::same_as<double>;
+};
+
+template <class L>
+concept FrictionLaw = StickingLaw<L> != CompliantLaw<L>;
+
+/// Compliant law that changes between smooth pieces by its own states. `margin` is positive inside `at.piece` and tells
+/// who is closest to leaving; `cross` gives the next piece and may move states (who = turned: the slip changed sign,
+/// watched where `turns`).
+template <class L>
+concept SwitchingLaw = requires(const typename L::template Params<double>& p, const At<double>& at, double* state, int& who) {
+  { L::margin(p, at, who) } -> std::same_as<double>;
+  { L::cross(p, at, 0, state) } -> std::same_as<int>;
+  { L::turns(p, 0) } -> std::same_as<bool>;
+};
+inline constexpr int turned = -1;
+
+/// Law whose number of states depends on its parameters; `states` is the most.
+template <class L>
+concept SizedLaw = requires(const typename L::template Params<double>& p) {
+  { L::count(p) } -> std::same_as<int>;
 };
 
 /// A component whose function of the rate has kinks.

@@ -9,8 +9,10 @@ template <class T>
 T torque_after(const Workspace<T>& ws, int c) {
   const int d = int(ws.sys.elements) + c;
   if (!ws.loaded[c]) return T(0);
-  if (ws.mode[c] == locked) return ws.torque[d];
-  return contact_torque(ws, make_branch(ws, d, ws.mode[c], false), rate_of(ws, d));
+  const T held = ws.mode[c] == locked ? ws.torque[d] : T(0);
+  if (ws.mode[c] == locked && !ws.compliant[c]) return held;
+  const Branch<T> b = make_branch(ws, d, ws.mode[c], false);
+  return held + contact_torque(ws, b, rate_of(ws, d), ws.state, ws.scratch);
 }
 
 /// Slip acceleration of every contact right after the decision, into `out`.

@@ -7,9 +7,10 @@ namespace clutchwork {
 
 /// The first thing that happens inside a step.
 struct Hit {
-  enum What : int { nothing, line, multiplier, load } what = nothing;
-  int index = -1;  ///< guard, locked contact, or contact
+  enum What : int { nothing, line, multiplier, load, law } what = nothing;
+  int index = -1;  ///< guard, locked contact, contact, or branch
   double s = 1;    ///< where in the step, 0 to 1
+  int who = -1;    ///< what of a law leaves its piece
 };
 
 /// First interval in which a quartic in Bernstein form turns from not negative to negative. b[0] counts as not
@@ -194,6 +195,35 @@ double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
   return first_crossing(f, f(0), f(1), limit);
 }
 
+/// Where the laws of compliant contacts leave their pieces.
+template <class Form, class Integrator>
+void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  const int nz = form.nz();
+  for (int i = 0; i < ws.n_switching; ++i) {
+    const int k = ws.switching[i];
+    const Branch<T>& b = ws.branch[k];
+    int who = turned;
+    const auto start = law_margin(ws, b, ws.here.rate[k], ws.here.slope[k], step.y0() + nz, step.f0() + nz, who);
+    const auto end = law_margin(ws, b, ws.there.rate[k], ws.there.slope[k], step.y1() + nz, step.f1() + nz, who);
+    const double change = abs(value(end.v - start.v));
+    const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
+    if (smaller(value(start.v), value(end.v)) > larger(change, drift)) continue;
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    auto f = [&](double s) {
+      interpolate(form, step, s, step.point());
+      inputs_at(ws, step.t + s * step.h);
+      const T rate = form.rate(k, step.point()) + offset_rate(ws, k);
+      return value(law_margin(ws, b, rate, T(0), step.point() + nz, step.f0() + nz, who).v);
+    };
+    const double s = first_crossing(f, value(start.v), value(end.v), hit.s);
+    if (s < 0 || (hit.what != Hit::nothing && s >= hit.s)) continue;
+    f(s);
+    hit = {Hit::law, k, s, who};
+  }
+}
+
 /// First guard that turns negative inside the step.
 template <class Form, class Integrator>
 CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
@@ -217,8 +247,10 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
     const double c0 = g0 + g.sign * h * value(e0.slope[k]) / 3, c1 = g1 - g.sign * h * value(e1.slope[k]) / 3;
     if (g1 >= 0 && c0 >= 0 && c1 >= 0) continue;
     const double s = line_crossing<Form, Integrator>(form, step, g, g0, g1, noise, hit.s);
-    if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) hit = {Hit::line, i, s};
+    if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) hit = {Hit::line, i, s, -1};
   }
+
+  if (ws.n_switching > 0) find_law_hit<Form, Integrator>(form, step, hit);
 
   // torques of locked contacts: skipped while the margin exceeds what can change in the step
   int* watched = ws.iscratch;
@@ -229,7 +261,7 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
       const double s = rigid_departure(form, step, a, hit.s);
       if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) {
         if (!step.dense) Integrator::prepare_dense(form, step);
-        hit = {Hit::multiplier, a, s};
+        hit = {Hit::multiplier, a, s, -1};
       }
       continue;
     }
@@ -248,7 +280,7 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
     const double s = first_crossing(f, m0, m1, hit.s);
     if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) {
       f(s);
-      hit = {Hit::multiplier, who, s};
+      hit = {Hit::multiplier, who, s, -1};
     }
   }
 
@@ -264,7 +296,7 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
     const double s = first_crossing(f, l0, abs(l1) <= 1e-12 * abs(l0) ? 0.0 : l1, hit.s);
     if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) {
       if (!step.dense) Integrator::prepare_dense(form, step);
-      hit = {Hit::load, c, s};
+      hit = {Hit::load, c, s, -1};
     }
   }
   return hit;

@@ -36,6 +36,7 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign, bool held) {
   b.sign = sign;
   b.held = held;
   b.piece = ws.piece[d];
+  b.law_params = nullptr;
   if (d < sys.elements) {
     b.kind = sys.element_kind[d];
     b.law = -1;
@@ -52,8 +53,10 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign, bool held) {
     b.state = sys.contact_state[c];
     b.input = ws.u + sys.contact_input[c];
     b.input_slope = ws.du + sys.contact_input[c];
+    b.compliant = ws.compliant[c] != 0;
+    if (b.compliant) b.sign = forward, b.held = false;
   }
-  b.states = states_of<T>(b.kind, b.law);
+  b.states = states_of(b.kind, b.law, b.law_params);
   return b;
 }
 
@@ -66,8 +69,20 @@ T load_of(const Workspace<T>& ws, int c) {
 
 /// Static torque of a contact now [N m].
 template <class T>
-T capacity_of(const Workspace<T>& ws, int c) {
+T static_torque(const Workspace<T>& ws, int c) {
   return larger(load_of(ws, c), T(0)) * law_hold(ws.sys.contact_law[c], ws.params + ws.sys.contact_law_param[c]);
+}
+
+/// What a contact can hold now while it sticks [N m]: nothing where its law never does.
+template <class T>
+T capacity_of(const Workspace<T>& ws, int c) {
+  return ws.compliant[c] ? T(0) : static_torque(ws, c);
+}
+
+/// Whether a contact may stick: its law can, or it is a freewheel.
+template <class T>
+bool may_stick(const Workspace<T>& ws, int c) {
+  return !ws.compliant[c] || contact_one_way(ws, c);
 }
 
 /// Time derivative of the load of a contact.
@@ -95,6 +110,7 @@ bool is_loaded(const Workspace<T>& ws, int c) {
 /// Static torque that a contact can use in a decision: one that rises from zero counts as it is a nanosecond later.
 template <class T>
 T usable_capacity(const Workspace<T>& ws, int c) {
+  if (ws.compliant[c]) return T(0);
   if (value(load_of(ws, c)) > 0) return capacity_of(ws, c);
   const T rising = larger(load_slope(ws, c), T(0)) * T(1e-9);
   return rising * law_hold(ws.sys.contact_law[c], ws.params + ws.sys.contact_law_param[c]);
@@ -130,7 +146,7 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   for (int d = 0; d < ws.n_directions; ++d) {
     const int c = d - int(sys.elements);
     int sign = 0;
-    if (c >= 0) {
+    if (c >= 0 && !ws.compliant[c]) {
       if (!ws.loaded[c] || candidate[c]) continue;
       sign = ws.mode[c];
       if (sign != forward && sign != backward) continue;
@@ -200,7 +216,7 @@ void release(Workspace<T>& ws, int c, int sign) {
   const bool moving = abs(slip) > slip_tolerance(ws);
   ws.mode[c] = !moving ? sign : slip > 0 ? forward : backward;
   if (moving) ws.forced[c] = ws.mode[c];
-  ws.piece[d] = piece_of(ws, d, moving ? abs(slip) : 0.0);
+  if (!ws.compliant[c]) ws.piece[d] = piece_of(ws, d, moving ? abs(slip) : 0.0);
 }
 
 /// A contact that was released and then, others having lost torque too, accelerates the other way (-1: none).
@@ -234,7 +250,11 @@ bool settle_contacts(Workspace<T>& ws, int located) {
   for (int c = 0; c < nc; ++c) {
     const bool still = ws.mode[c] == locked && !is_rigid(ws, c);
     const double slip = still ? 0.0 : value(rate_of(ws, int(sys.elements) + c));
-    ws.held[c] = released[c] = 0;
+    ws.held[c] = released[c] = candidate[c] = 0;
+    if (!may_stick(ws, c)) {
+      ws.mode[c] = forward;
+      continue;
+    }
     const bool arrived = c == located && ws.cause != Cause::input;
     candidate[c] = ws.loaded[c] && (still || abs(slip) <= tolerance || (arrived && !is_rigid(ws, c)));
     if (!ws.loaded[c]) {
@@ -248,7 +268,7 @@ bool settle_contacts(Workspace<T>& ws, int located) {
     } else if (!candidate[c]) {
       ws.mode[c] = slip > 0 ? forward : backward;
     }
-    if (!candidate[c] && ws.loaded[c]) {
+    if (!candidate[c] && ws.loaded[c] && !ws.compliant[c]) {
       const int d = int(sys.elements) + c;
       ws.piece[d] = piece_of(ws, d, abs(slip) > tolerance ? abs(slip) : 0.0);
     }

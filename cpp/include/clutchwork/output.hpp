@@ -54,7 +54,7 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
   }
   T* held = ws.qp_g + 3 * nc;
   multipliers(ws, ws.torque, true, held);
-  for (int a = 0; a < ws.n_locked; ++a) ws.output_torque[ne + ws.locked[a]] = held[a];
+  for (int a = 0; a < ws.n_locked; ++a) ws.output_torque[ne + ws.locked[a]] += held[a];
   expand(form, shot.y, shot.v);
   bool algebraic = false;
   for (int i = 0; i < nv; ++i) algebraic = algebraic || sys.massless[i] != 0;
@@ -174,6 +174,14 @@ void angles_at(Form& form, Step<Form>& step, double s, T* angle) {
   }
 }
 
+/// Mode of a contact as the output tells it; one that never sticks moves the way it slips.
+template <class T>
+int mode_shown(const Workspace<T>& ws, const Snapshot<T>& shot, int c) {
+  if (!ws.loaded[c]) return open;
+  if (!ws.compliant[c] || ws.mode[c] == locked) return ws.mode[c];
+  return value(shot.rate[ws.branch_of[ws.sys.elements + c]]) < 0 ? backward : forward;
+}
+
 /// One row of output at s; work is fitted over the part of the step up to s_end.
 template <class Form, class T = typename Form::Scalar>
 void fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row) {
@@ -207,8 +215,8 @@ void fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row)
     row[w] = value(ws.work[d] + (fitted ? fitted_work(ws, d, x, s_end * step.h) : T(0)));
   }
   for (int c = 0; c < sys.contacts; ++c) {
-    row[at.contact_mode + c] = ws.loaded[c] ? ws.mode[c] : int(open);
-    row[at.contact_capacity + c] = value(capacity_of(ws, c));
+    row[at.contact_mode + c] = mode_shown(ws, shot, c);
+    row[at.contact_capacity + c] = value(static_torque(ws, c));
   }
   for (int p = 0; p < np; ++p) {
     row[at.prescribed_work + p] =

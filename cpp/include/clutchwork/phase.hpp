@@ -29,7 +29,10 @@ bool explicit_suits(Workspace<T>& ws) {
     const T* row = ws.direction + b.direction * nv;
     const double mobility = value(dot(nv, row, row));
     damping += mobility * abs(value(p.by_rate));
-    for (int s = 0; s < b.states; ++s) stiffness += mobility * abs(value(out.f_state[s] * out.g_rate[s]));
+    for (int s = 0; s < b.states; ++s) {
+      stiffness += mobility * abs(value(out.f_state[s] * out.g_rate[s]));
+      damping += abs(value(out.g_state[s * b.states + s]));
+    }
   }
   const double fastest = damping + sqrt(stiffness), h = ws.last_step > 0 ? ws.last_step : 1e-3;
   return fastest * h < 1.0;
@@ -186,6 +189,38 @@ bool pass_knot(Form& form, Step<Form>& step) {
   return false;
 }
 
+/// The law of a contact goes to its next piece; it may move its states. False: it does so without end.
+template <class Form>
+bool pass_law(Form& form, Step<Form>& step, int k, int who) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  Branch<T>& b = ws.branch[k];
+  T* state = step.y0() + form.nz();
+  if (who == turned) ws.heading[b.direction - int(ws.sys.elements)] *= -1;
+  b.piece = law_cross(ws, b, rate_of(ws, b.direction), who, state);
+  ws.piece[b.direction] = b.piece;
+  for (int i = 0; i < b.states; ++i) ws.state[b.state + i] = state[b.state + i];
+  ws.detail_component = b.direction;
+  list_lines(ws);
+  return !stands_still(ws);
+}
+
+/// Whether a contact whose torque jumps with the sign of its slip reverses at every other step: it cannot come to rest.
+template <class T>
+bool chatters(Workspace<T>& ws) {
+  constexpr int window = 400, most = 100;
+  const std::int64_t steps = ws.statistics.steps + ws.statistics.rejected;
+  if (steps - ws.reversals_since > window) ws.reversals_since = steps, ws.reversals = 0;
+  for (int i = 0; i < ws.n_chattering; ++i) {
+    const int k = ws.chattering[i];
+    if (value(ws.here.rate[k]) * value(ws.there.rate[k]) >= 0) continue;
+    ws.detail_component = ws.branch[k].direction;
+    ws.detail_value = value(ws.there.rate[k]);
+    if (++ws.reversals > most) return true;
+  }
+  return false;
+}
+
 /// Move the state to where a harmless guard was hit: next piece of a table, or an open contact passing zero.
 template <class Form>
 void pass_line(Form& form, const LineGuard& guard) {
@@ -329,6 +364,10 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
       rejected = false;
       ws.last_step = h;
       if (ws.n_undirected > 0) direct_open(form, ws.here);
+      if (ws.n_chattering > 0 && chatters(ws)) {
+        export_state(form, step.y0());
+        return Status::chatter;
+      }
       continue;
     }
 
@@ -347,8 +386,13 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
     input_slopes_at(ws, ws.time);
     for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];
     const LineGuard* guard = hit.what == Hit::line ? &ws.line[hit.index] : nullptr;
-    if (guard != nullptr && guard->kind != LineGuard::slip) {
-      pass_line(form, *guard);
+    const bool law = hit.what == Hit::law || (guard != nullptr && guard->kind == LineGuard::turn);
+    if (law && !pass_law(form, step, hit.what == Hit::law ? hit.index : guard->branch, hit.who)) {
+      export_state(form, step.y0());
+      return Status::zeno;
+    }
+    if (law || (guard != nullptr && guard->kind != LineGuard::slip)) {
+      if (!law) pass_line(form, *guard);
       look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
       h = ws.last_step;
       continue;

@@ -169,6 +169,17 @@ void pack(Workspace<T>& ws, int d, int sign, bool held, int& block) {
   ws.branch[ws.n_rates++] = b;
 }
 
+/// Branches whose laws switch or jump.
+template <class T>
+void list_laws(Workspace<T>& ws) {
+  ws.n_switching = ws.n_chattering = 0;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    if (!ws.branch[k].compliant) continue;
+    if (is_switching_law(ws.branch[k].law)) ws.switching[ws.n_switching++] = k;
+    if (is_chattering_law(ws.branch[k].law)) ws.chattering[ws.n_chattering++] = k;
+  }
+}
+
 /// Active components: all elements, slipping contacts, saturated ones that are held by others.
 /// Behind them, without torque, the open contacts: only their rates are followed.
 template <class T>
@@ -181,34 +192,48 @@ void pack_branches(Workspace<T>& ws) {
   for (int c = 0; c < nc; ++c) {
     const bool held = ws.mode[c] == locked && ws.held[c] != 0;
     ws.branch_of[ne + c] = -1;
-    if (ws.loaded[c] && (ws.mode[c] != locked || held)) pack(ws, ne + c, held ? ws.held[c] : ws.mode[c], held, block);
+    // a law that never sticks works in any mode, for its states go on
+    const bool slips = ws.loaded[c] && (ws.mode[c] != locked || held);
+    if (slips || ws.compliant[c]) pack(ws, ne + c, held ? ws.held[c] : ws.mode[c], held, block);
   }
   ws.n_branches = ws.n_rates;
+  list_laws(ws);
   for (int c = 0; c < nc; ++c) {
-    if (ws.loaded[c]) continue;
+    if (ws.loaded[c] || ws.compliant[c]) continue;
     pack(ws, ne + c, ws.mode[c] == open ? 0 : ws.mode[c], false, block);
     ws.n_undirected += ws.mode[c] == open;
   }
 }
 
+/// Guards of the slip of a contact: where it may lock, and where its law notices that it turns.
+template <class T>
+void list_slip(Workspace<T>& ws, int k) {
+  const Branch<T>& b = ws.branch[k];
+  const int c = b.direction - int(ws.sys.elements);
+  const double slip = value(rate_of(ws, b.direction));
+  if (may_stick(ws, c) && ws.mode[c] != locked) {
+    const double level = ws.forced[c] == 0 ? ws.sys.contact_tolerance[c] : 0.0;
+    const bool outside = abs(slip) >= level * (1 - 1e-9);
+    ws.line[ws.n_lines++] = {LineGuard::slip, k, ws.mode[c], outside ? level * ws.mode[c] : 0.0};
+  }
+  if (!b.compliant || !law_turns(b)) return;
+  if (abs(slip) > slip_tolerance(ws)) ws.heading[c] = slip > 0 ? forward : backward;
+  ws.line[ws.n_lines++] = {LineGuard::turn, k, ws.heading[c], 0.0};
+}
+
 /// Guards that are linear in the state.
 template <class T>
 void list_lines(Workspace<T>& ws) {
-  const System& sys = ws.sys;
   ws.n_lines = 0;
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
     const bool contact = b.law >= 0;
     if (contact && b.held) continue;
-    if (contact) {
-      const int c = b.direction - int(sys.elements);
-      const double level = ws.forced[c] == 0 ? sys.contact_tolerance[c] : 0.0;
-      const double slip = abs(value(rate_of(ws, b.direction)));
-      ws.line[ws.n_lines++] = {LineGuard::slip, k, b.sign, slip > level ? level * b.sign : 0.0};
-    }
+    if (contact) list_slip(ws, k);
     const int edges = edge_count(ws, b.direction), sign = contact ? b.sign : 1;
     if (b.piece < edges) ws.line[ws.n_lines++] = {LineGuard::edge, k, -sign, sign * edge_at(ws, b.direction, b.piece)};
-    if (b.piece > 0) ws.line[ws.n_lines++] = {LineGuard::edge, k, sign, sign * edge_at(ws, b.direction, b.piece - 1)};
+    if (edges > 0 && b.piece > 0)
+      ws.line[ws.n_lines++] = {LineGuard::edge, k, sign, sign * edge_at(ws, b.direction, b.piece - 1)};
   }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) {
     // an open contact has passed zero when it is clear of it on the other side

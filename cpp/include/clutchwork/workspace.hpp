@@ -51,6 +51,7 @@ struct Branch {
   int piece;          ///< smooth piece of the element or of the law
   int sign;           ///< direction of slip of a contact
   bool held;          ///< a saturated contact that does not slip: applies its static torque
+  bool compliant;     ///< a contact whose law never sticks: smooth over signed slip
 };
 
 /// Value and partial derivatives of one branch.
@@ -61,7 +62,7 @@ struct Partial {
 
 /// Guard functions that are linear in the state: sign * (rate - level) stays positive.
 struct LineGuard {
-  enum Kind : int { slip, edge, pass } kind;
+  enum Kind : int { slip, edge, pass, turn } kind;
   int branch;
   int sign;
   double level;
@@ -89,6 +90,7 @@ struct Workspace {
   double time = 0;
   T *v = nullptr, *state = nullptr, *angle = nullptr, *work = nullptr, *prescribed_work = nullptr;
   int *mode = nullptr, *piece = nullptr, *loaded = nullptr, *forced = nullptr, *held = nullptr;
+  int *compliant = nullptr, *heading = nullptr;  ///< contacts with a law that never sticks; sign of their slip
   double last_step = 0;  ///< [s] last step that was not cut short
   bool started = false, fresh_phase = true, input_changed = false;
   double stand_time = -infinity, forced_time = -infinity;
@@ -122,6 +124,9 @@ struct Workspace {
   Edge<T> here{}, there{};
   T *torque = nullptr, *output_torque = nullptr, *slip_slope = nullptr, *torque_before = nullptr;
   int *watch = nullptr, *mode_before = nullptr, *impulse = nullptr;
+  int *switching = nullptr, *chattering = nullptr;  ///< branches with laws that switch, or that jump with the slip
+  int n_switching = 0, n_chattering = 0, reversals = 0;
+  std::int64_t reversals_since = 0;
 
   // sparse form
   int *sp_first = nullptr, *sp_col = nullptr, *m_first = nullptr, *m_col = nullptr, *sky = nullptr, *pivot_of = nullptr;
@@ -180,6 +185,7 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   a.take(ws.v, nv), a.take(ws.state, ns), a.take(ws.angle, s.nodes), a.take(ws.work, nd),
       a.take(ws.prescribed_work, np);
   a.take(ws.mode, nc), a.take(ws.piece, nd), a.take(ws.loaded, nc), a.take(ws.forced, nc), a.take(ws.held, nc);
+  a.take(ws.compliant, nc), a.take(ws.heading, nc), a.take(ws.switching, nc), a.take(ws.chattering, nc);
   a.take(ws.signal, s.inputs), a.take(ws.ref_signal, ws.n_refs), a.take(ws.varying, ws.n_refs);
   a.take(ws.u, ws.n_refs), a.take(ws.du, ws.n_refs), a.take(ws.params, s.n_params), a.take(ws.prescribed_before, np);
   a.take(ws.factor, nv * nv), a.take(ws.direction, nd * nv), a.take(ws.prescribed_momentum, np * nv);

@@ -1,0 +1,33 @@
+#pragma once
+#include <clutchwork/stribeck_curve.hpp>
+
+namespace clutchwork::laws {
+
+/// Dead band of slip in which the static coefficient acts; it locks as soon as the slip falls to the band.
+struct Karnopp {
+  template <class T>
+  struct Params : StribeckCurve<T> {
+    T band;  ///< [rad/s]
+  };
+  static constexpr int states = 0;
+
+  template <class T, class S>
+  static S slide(const Params<T>& p, const At<S>& at) {
+    if (at.piece == 0) return S(p.static_);
+    return stribeck_forward(p, at.rate) + p.viscous * at.rate;
+  }
+  template <class T>
+  static T hold(const Params<T>& p) {
+    return p.static_;
+  }
+  template <class T>
+  static int edges(const Params<T>&) {
+    return 1;
+  }
+  template <class T>
+  static double edge(const Params<T>& p, const double*, int) {
+    return value(p.band);
+  }
+};
+
+}  // namespace clutchwork::laws

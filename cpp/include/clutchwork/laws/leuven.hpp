@@ -1,0 +1,79 @@
+#pragma once
+#include <clutchwork/maxwell_slip.hpp>
+
+namespace clutchwork::laws {
+
+/// Hysteresis with non-local memory from Maxwell-slip elements; the states are the coefficients of the elements.
+struct Leuven {
+  template <class T>
+  struct Params : StribeckCurve<T> {
+    Curve<T> elements;  ///< rad -> 1
+    T order;            ///< [1]
+    T damping;          ///< [s/rad]
+  };
+  static constexpr int states = most_elements;
+  static constexpr int all = most_elements;
+  // so much the hysteresis may pass the level before the elements turn back
+  static constexpr double slack = 1e-9;
+
+  template <class T>
+  static int count(const Params<T>& p) {
+    return element_count(p.elements);
+  }
+  /// Rate of the deflection over the slip: 1 unloaded, 0 where the hysteresis reaches the level.
+  template <class T, class S>
+  static S share(const Params<T>& p, const At<S>& at) {
+    const S ratio = element_sum(at.state, count(p)) / sliding_level(p, at.rate);
+    const T side = T((value(at.rate) < 0) != (value(ratio) < 0) ? -1 : 1);
+    return S(1) - power_of_size(ratio, p.order) * side;
+  }
+  template <class T, class S>
+  static S coefficient(const Params<T>& p, const At<S>& at) {
+    return element_sum(at.state, count(p)) + p.damping * at.rate * share(p, at) + p.viscous * at.rate;
+  }
+  template <class T, class S>
+  static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
+    const S bending = at.rate * share(p, at);
+    for (int i = 0; i < count(p); ++i) {
+      const T stiffness = p.static_ * T(element_share(p.elements, at.points, i) /
+                                        element_deflection(p.elements, at.points, i));
+      rates[i] = element_slides(at.piece, i) ? S(0) : stiffness * bending;
+    }
+  }
+  template <class T>
+  static T hold(const Params<T>& p) {
+    return p.static_;
+  }
+
+  template <class T, class S>
+  static S margin(const Params<T>& p, const At<S>& at, int& who) {
+    S least = S(1);
+    for (int i = 0; i < count(p); ++i) {
+      if (element_slides(at.piece, i)) continue;
+      const S room = S(1) - abs(at.state[i]) / (p.static_ * T(element_share(p.elements, at.points, i)));
+      if (room < least) least = room, who = i;
+    }
+    for (int i = 0; i < count(p); ++i) {
+      if (!element_slides(at.piece, i)) continue;
+      // elements that slide go on while the deflection does
+      const T along = T((value(at.rate) < 0) != (value(at.state[i]) < 0) ? -1 : 1);
+      const S onward = share(p, at) * along + S(slack);
+      if (onward < least) least = onward, who = all;
+      break;
+    }
+    return least;
+  }
+  template <class T>
+  static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
+    if (who == turned || who == all) return 0;
+    const T side = T(value(state[who]) < 0 ? -1 : 1);
+    state[who] = side * p.static_ * T(element_share(p.elements, at.points, who));
+    return at.piece | 1 << who;
+  }
+  template <class T>
+  static bool turns(const Params<T>&, int piece) {
+    return piece != 0;
+  }
+};
+
+}  // namespace clutchwork::laws

@@ -1,0 +1,57 @@
+#pragma once
+#include <clutchwork/component.hpp>
+
+/// The Stribeck curve that many laws share: docs/theory/friction-laws.md.
+namespace clutchwork {
+
+enum class Shape : int { gaussian, tustin, lorentz, power };
+
+/// Parameters of a Stribeck curve; the first ones of every law that has one.
+template <class T>
+struct StribeckCurve {
+  T static_;   ///< [1]
+  T kinetic;   ///< [1]
+  T speed;     ///< [rad/s]
+  T shape;     ///< [1] number of the shape
+  T exponent;  ///< [1]
+  T viscous;   ///< [s/rad]
+};
+
+/// |x|^n, finite with its derivative at zero.
+template <class T, class S>
+CLUTCHWORK_INLINE S power_of_size(S x, T n) {
+  if (value(n) == 1) return abs(x);
+  return pow(larger(abs(x), S(1e-12)), S(n));
+}
+
+/// Share of the static excess that is left at x = slip / speed: 1 at rest, falling to 0.
+template <class T, class S>
+CLUTCHWORK_INLINE S stribeck_share(const StribeckCurve<T>& c, S x) {
+  switch (Shape(int(value(c.shape)))) {
+    case Shape::tustin: return exp(-x);
+    case Shape::lorentz: return S(1) / (S(1) + x * x);
+    case Shape::power: return exp(-power_of_size(x, c.exponent));
+    default: return exp(-x * x);
+  }
+}
+
+/// Coefficient over a slip in the direction of sliding, without the viscous part; smooth across zero.
+template <class T, class S>
+CLUTCHWORK_INLINE S stribeck_forward(const StribeckCurve<T>& c, S slip) {
+  // the floor keeps a trial point far behind the crossing finite
+  return c.kinetic + (c.static_ - c.kinetic) * stribeck_share(c, larger(slip / c.speed, S(-20)));
+}
+
+/// Coefficient over the size of the slip, without the viscous part.
+template <class T, class S>
+CLUTCHWORK_INLINE S stribeck(const StribeckCurve<T>& c, S slip) {
+  return stribeck_forward(c, abs(slip));
+}
+
+/// Size of a coefficient at which a law slides: the curve, kept above zero.
+template <class T, class S>
+CLUTCHWORK_INLINE S sliding_level(const StribeckCurve<T>& c, S slip) {
+  return larger(stribeck(c, slip), S(1e-9) * S(c.static_));
+}
+
+}  // namespace clutchwork
