@@ -1,7 +1,8 @@
 """Every signal of a System by name: its unit and how it follows from the output rows of the core.
 
 Nothing is computed before it is asked for. A torque is what its element puts on its follower (or shaft); power is
-torque times rate, the work done on the driveline; heat of a contact is minus its work.
+torque times rate, the work done on the driveline; heat of a contact is minus its work, and holds what the bristles of
+its friction law store. States of a friction law stand under the name of the contact: "c1.elastic".
 """
 
 from __future__ import annotations

@@ -3,6 +3,9 @@
     work of the sources = change of kinetic + change of elastic energy + heat + residual
 
 The work integrals come from the solver itself, so the residual measures what the integration lost or made.
+
+Heat of a contact is minus the work of its friction. Where the friction law has bristles, what they store at the end
+counts as heat too: it is small, at most coefficient times deflection times load, and it comes back on the way back.
 """
 
 from __future__ import annotations

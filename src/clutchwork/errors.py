@@ -57,7 +57,7 @@ def warn(advice: Problem) -> None:
     frame, level = inspect.currentframe(), 1
     while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
         frame, level = frame.f_back, level + 1
-    warnings.warn(ModelWarning(advice), stacklevel=level - 1)
+    warnings.warn(ModelWarning(advice), stacklevel=level)
 
 
 class FileError(ClutchworkError, ValueError):

@@ -74,14 +74,14 @@ def element_problems(elements: Points, fewest: int, most: int) -> Found:
     return []
 
 
-def passivity_advice(law: StribeckCurve, damping: float) -> Found:
-    """Bristles with so much damping that they can give energy away: docs/theory/friction-laws.md.
+def passivity_advice(law: StribeckCurve, damping: float, order: float = 1.0) -> Found:
+    """Bristles with so much damping that they can give energy away: docs/theory/friction-laws.md (17, 23).
 
     Source: N. Barabanov, R. Ortega 2000, doi:10.1109/9.847131.
     """
-    fall = law.static - law.kinetic
-    if damping * fall <= law.viscous * law.kinetic * (1 + ROUND_OFF):
+    excess = (law.static / law.kinetic) ** order - 1.0
+    if damping * excess <= law.viscous * (1 + ROUND_OFF):
         return []
-    bound = law.viscous * law.kinetic / fall
-    message = f"is too large for passivity: it must be <= viscous kinetic/(static - kinetic) = {bound:g}"
-    return [("damping", message, f"lower it, or raise viscous to {damping * fall / law.kinetic:g}")]
+    formula = "viscous/(static/kinetic - 1)" if order == 1.0 else "viscous/((static/kinetic)^order - 1)"
+    message = f"is too large for passivity: it must be <= {formula} = {law.viscous / excess:g}"
+    return [("damping", message, f"lower it, or raise viscous to {damping * excess:g}")]

@@ -149,7 +149,7 @@ def test_the_tests_that_the_validation_page_names_exist() -> None:
 
 def labels(path: Path) -> list[str]:
     """Labels of the numbered equations of a page, in order."""
-    return re.findall(r"^ *\$\$ \(([a-z]+-\d+)\)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+    return re.findall(r"^ *\$\$ \(([a-z-]+-\d+)\)$", path.read_text(encoding="utf-8"), re.MULTILINE)
 
 
 @pytest.mark.parametrize("path", [path for path in THEORY if path.stem != "index"], ids=named)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from dataclasses import MISSING, FrozenInstanceError
 from pathlib import Path
@@ -19,9 +18,9 @@ WITHOUT_UNIT = {"port", "text", "function"}
 
 
 @pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
-def test_kind_is_the_stem_of_the_file_and_the_class_in_snake_case(cls):
+def test_kind_is_the_stem_of_the_file_and_the_class_in_lower_case(cls):
     assert cls.kind == Path(sys.modules[cls.__module__].__file__).stem
-    assert cls.kind == re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
+    assert cls.kind.replace("_", "") == cls.__name__.lower()
 
 
 @pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
@@ -56,6 +55,23 @@ def test_defaults_keep_their_bounds(cls):
 
 
 @pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_choices_are_different_words_and_hold_their_default(cls):
+    for item, spec in specs(cls):
+        if spec.choices:
+            assert len(set(spec.choices)) == len(spec.choices) > 1, item.name
+            assert item.default is MISSING or item.default in spec.choices, item.name
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_states_have_names_of_their_own_and_units(cls):
+    states = getattr(cls, "states", ())
+    assert len({state.name for state in states}) == len(states)
+    for state in states:
+        assert state.doc
+        assert units.parse(state.unit).factor == 1.0
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
 def test_is_frozen(cls):
     path = () if cls.role in (Role.LAW, Role.SIGNAL) else ("x",)
     thing = cls(*path, **samples.fields(cls, samples.nodes()))
@@ -76,6 +92,9 @@ def test_numbers_of_kinds_are_their_places_in_the_alphabet():
 
 def test_hash_follows_the_declarations():
     assert "contact clutch gain:param[m3],pressure:signal[Pa] 0" in schema_text()
+    assert "law coulomb static:param[1],kinetic:param[1] 0 sticks" in schema_text()
+    assert "law dahl kinetic:param[1],stiffness:param[1/rad],exponent:param[1] 1 compliant" in schema_text()
+    assert "reset:param[1]{saturate|clip|literal}" in schema_text()
     assert schema_hash() == schema_hash("")
     assert schema_hash("another layout") != schema_hash()
     assert 0 <= schema_hash() < 2**63

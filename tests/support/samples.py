@@ -16,8 +16,18 @@ def declared(*roles: Role) -> list[Any]:
     return [cls for role in roles for cls in REGISTRY[role].values()]
 
 
-def number(name: str, spec: Spec) -> float:
-    """A number within the bounds; coefficients at rest are above all others."""
+def law(cls: Any) -> cw.Law:
+    """A friction law."""
+    made: cw.Law = cls(**fields(cls, {}))
+    return made
+
+
+def number(name: str, spec: Spec) -> Any:
+    """The example of the declaration, else a number within the bounds; coefficients at rest are above all others."""
+    if spec.example is not None:
+        return spec.example
+    if spec.choices:
+        return spec.choices[0]
     if spec.flag:
         return True
     value = 0.2 if name == "static" else 0.1
@@ -37,7 +47,7 @@ def value(name: str, spec: Spec, nodes: dict[str, cw.Node]) -> Any:
     if spec.what == "law":
         return cw.Coulomb(static=0.2, kinetic=0.1)
     if spec.what == "curve":
-        return [(0.0, 0.1), (10.0, 0.05)]
+        return list(spec.example or [(0.0, 0.1), (10.0, 0.05)])
     if spec.what == "signal":
         return cw.Step(height=2.0, start=0.5)
     if spec.what == "text":
@@ -48,12 +58,12 @@ def value(name: str, spec: Spec, nodes: dict[str, cw.Node]) -> Any:
 
 
 def fields(cls: type, nodes: dict[str, cw.Node]) -> dict[str, Any]:
-    """Values for all fields that must be given, alternatives and teeth left out."""
+    """Values for all fields that must be given or have an example, alternatives and teeth left out."""
     needed = {names[0] for names, spec in inputs(cls) if spec.otherwise is None}
     made = {
         item.name: value(item.name, spec, nodes)
         for item, spec in specs(cls)
-        if item.default is MISSING or item.name in needed or item.name == "ratio"
+        if item.default is MISSING or item.name in needed or item.name == "ratio" or spec.example is not None
     }
     if "ratio" in made:
         made["ratio"] = 2.5

@@ -13,8 +13,10 @@ class CoefficientTable(Law):
     Use it for measured linings. A first point above zero slip is continued linearly down to zero.
     """
 
-    static: float = param("1", "coefficient at rest", at_least=0.0)
-    kinetic: Points = curve("rad/s", "1", "kinetic coefficient over abs(slip)", units_x=("m/s",))
+    static: float = param("1", "coefficient at rest", at_least=0.0, example=0.13)
+    kinetic: Points = curve(
+        "rad/s", "1", "kinetic coefficient over abs(slip)", units_x=("m/s",), example=((0.0, 0.12), (20.0, 0.1))
+    )
 
     def problems(self) -> list[tuple[str, str, str]]:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""

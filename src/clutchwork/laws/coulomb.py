@@ -13,8 +13,8 @@ class Coulomb(Law):
     Use it where the change with slip does not matter or is not known.
     """
 
-    static: float = param("1", "coefficient at rest", at_least=0.0)
-    kinetic: float = param("1", "coefficient while it slips, at most the static one", at_least=0.0)
+    static: float = param("1", "coefficient at rest", at_least=0.0, example=0.12)
+    kinetic: float = param("1", "coefficient while it slips, at most the static one", at_least=0.0, example=0.1)
 
     def sliding(self) -> float:
         """Kinetic coefficient at vanishing slip."""

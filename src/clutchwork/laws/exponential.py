@@ -13,10 +13,14 @@ class Exponential(Law):
     Use it for paper linings whose coefficient settles with slip.
     """
 
-    static: float = param("1", "coefficient at rest", above=0.0)
-    slow: float = param("1", "kinetic coefficient at vanishing slip, at most the static one", at_least=0.0)
-    fast: float = param("1", "kinetic coefficient at high slip", at_least=0.0)
-    speed: float = param("rad/s", "slip over which the difference falls to 1/e", above=0.0, units=("m/s",))
+    static: float = param("1", "coefficient at rest", above=0.0, example=0.15)
+    slow: float = param(
+        "1", "kinetic coefficient at vanishing slip, at most the static one", at_least=0.0, example=0.14
+    )
+    fast: float = param("1", "kinetic coefficient at high slip", at_least=0.0, example=0.1)
+    speed: float = param(
+        "rad/s", "slip over which the difference falls to 1/e", above=0.0, units=("m/s",), example=10.0
+    )
 
     def sliding(self) -> float:
         """Kinetic coefficient at vanishing slip."""

@@ -31,7 +31,7 @@ class GMS(StribeckCurve):
     elements: Points = curve(
         "rad",
         "1",
-        "4 to 10 elements: deflection at break-away, share of the coefficient; shares sum to 1",
+        "elements, 4 to 10: deflection at break-away, share of the coefficient; shares sum to 1",
         units_x=("m",),
         example=((2e-5, 0.1), (5e-5, 0.2), (1e-4, 0.3), (2e-4, 0.4)),
     )

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from clutchwork.node import Points
 from clutchwork.schema import Role, State, component, curve, param
-from clutchwork.stribeck import Found, StribeckCurve, element_problems, kinetic_problems
+from clutchwork.stribeck import Found, StribeckCurve, element_problems, kinetic_problems, passivity_advice
 
 LARGEST = 10
 
@@ -32,7 +32,7 @@ class Leuven(StribeckCurve):
     elements: Points = curve(
         "rad",
         "1",
-        "1 to 10 elements: deflection at break-away, share of the static coefficient; shares sum to 1 or more",
+        "elements, 1 to 10: deflection at break-away, share of the static coefficient; shares sum to 1 or more",
         units_x=("m",),
         example=((2e-5, 0.1), (5e-5, 0.2), (1e-4, 0.3), (2e-4, 0.4)),
     )
@@ -52,3 +52,7 @@ class Leuven(StribeckCurve):
             fault = f"has shares that sum to {total:g}, must be >= 1, or it never slides"
             found.append(("elements", fault, "raise the shares"))
         return found
+
+    def advice(self) -> Found:
+        """Properties that are rarely wanted, as (quantity, what is so, remedy)."""
+        return passivity_advice(self, self.damping, self.order)

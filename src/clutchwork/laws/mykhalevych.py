@@ -18,8 +18,8 @@ class Mykhalevych(Law):
 
     Coefficient `static tanh(q) - sign(slip) (static - kinetic) (1 - exp(-(slip/speed)^2))` with
     `q = wind_up + viscous slip/speed`; the wind-up follows the slip within a range. Use it for elastic pre-sliding
-    without drift with few parameters. It needs enough `viscous` to be dissipative; `passive` always is, its coefficient
-    is `(kinetic + (static - kinetic) exp(-(slip/speed)^2)) tanh(q)`.
+    without drift with few parameters. It needs enough `viscous` to dissipate; `passive` does so with any: its
+    coefficient is `(kinetic + (static - kinetic) exp(-(slip/speed)^2)) tanh(q)`.
 
     Equations: docs/theory/friction-laws.md.
     """
@@ -40,7 +40,9 @@ class Mykhalevych(Law):
         default="saturate",
     )
     range: float = param("1", 'largest wind-up over `elastic`, of reset "saturate"', default=3.0, above=0.0)
-    passive: bool = flag("multiply tanh by the Stribeck curve instead, which never feeds energy in", default=False)
+    passive: bool = flag(
+        "multiply tanh by the Stribeck curve instead, which dissipates in every swing at like speeds", default=False
+    )
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
