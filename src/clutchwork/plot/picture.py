@@ -13,6 +13,7 @@ import numpy as np
 
 from clutchwork.node import Domain
 from clutchwork.plot import panels, style
+from clutchwork.plot.figure import figure_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,12 +38,10 @@ def picture(run: Trajectory, path: str | Path | None = None, *, lockup: Event | 
 
     `lockup` is the event to look at closely, by default the last one in which a contact locks.
     """
-    new_figure, rc_context = _matplotlib()
-    with rc_context(style.RC):
-        lockup = lockup or last_lockup(run)
-        chosen = _panels(run, lockup)
-        height = sum(panel.height + (9.0 if panel.whole else 14.0) for panel in chosen) + 12.0
-        figure: Figure = new_figure(figsize=(style.WIDTH, height * style.MILLIMETRE), layout="constrained")
+    lockup = lockup or last_lockup(run)
+    chosen = _panels(run, lockup)
+    height = sum(panel.height + (9.0 if panel.whole else 14.0) for panel in chosen) + 12.0
+    with figure_of(height) as figure:
         _draw(figure, run, lockup, chosen)
         if path is not None:
             Path(path).parent.mkdir(parents=True, exist_ok=True)
@@ -107,19 +106,3 @@ def _mark(axes: Axes, instants: Any) -> None:
     if len(instants) <= 30:
         for instant in instants:
             axes.axvline(instant, **style.EVENT_LINE)
-
-
-def _matplotlib() -> tuple[Any, Any]:
-    try:
-        from matplotlib import rc_context
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise ImportError('pictures need matplotlib: pip install "clutchwork[plot]"') from error
-
-    def make(**options: Any) -> Figure:
-        figure = Figure(**options)
-        FigureCanvasAgg(figure)
-        return figure
-
-    return make, rc_context

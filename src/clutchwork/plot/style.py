@@ -8,7 +8,8 @@ from typing import Any
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#7F7F7F")
 DASHES: tuple[Any, ...] = ("-", (0, (4, 2)), (0, (1, 1.5)))
 
-RC = {
+# Any, because matplotlib types the names of its settings
+RC: Any = {
     "font.family": "sans-serif",
     "font.size": 8.0,
     "axes.labelsize": 8.0,

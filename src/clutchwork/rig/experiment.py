@@ -1,0 +1,208 @@
+"""What an experiment is, and what it gives back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from clutchwork.errors import near
+from clutchwork.node import Law
+from clutchwork.options import Options
+from clutchwork.rig.bench import ACCURATE, Bench
+from clutchwork.rig.chosen import Laws, chosen
+from clutchwork.rig.presets import Preset, preset_of
+from clutchwork.rig.table import Cell, Column, Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from clutchwork.trajectory import Trajectory
+
+# cases of one law by name
+Runs = Mapping[str, "Trajectory"]
+
+NOT_REACHED = float("nan")
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One experiment; its fields are what may be changed about it. Times in s, shares of the preset's quantities."""
+
+    name: ClassVar[str]
+    title: ClassVar[str]
+    usual: ClassVar[tuple[str, ...]]  # laws that are compared when none are named
+    preset: ClassVar[str] = "first"
+    height: ClassVar[float] = 90.0  # mm, of the picture
+    whole: ClassVar[bool] = True  # only complete runs are measured
+    own_preset: ClassVar[bool] = False  # it makes no sense with presets of another domain
+
+    def run(self, bench: Bench) -> Runs:
+        """Run every case with one law."""
+        raise NotImplementedError
+
+    def columns(self, preset: Preset) -> tuple[Column, ...]:
+        """What `measure` gives, after the column with the law."""
+        raise NotImplementedError
+
+    def measure(self, trial: Trial) -> Sequence[float]:
+        """Numbers of one law; all its runs are complete."""
+        raise NotImplementedError
+
+    def draw(self, figure: Figure, result: Result) -> None:
+        """Draw the picture on an empty figure."""
+        raise NotImplementedError
+
+    def table(self, preset: Preset, trials: Mapping[str, Trial]) -> Table:
+        """One line for each law, with a note where a run stopped early."""
+        heads = self.columns(preset)
+        lines: list[list[Cell]] = []
+        for label, trial in trials.items():
+            left_out = bool(trial.note) and self.whole
+            numbers = [NOT_REACHED] * len(heads) if left_out else self.measure(trial)
+            lines.append([label, *numbers, trial.note])
+        noted = any(line[-1] for line in lines)
+        columns = (Column("law"), *heads, *([Column("note")] if noted else []))
+        return Table(columns, tuple(tuple(line if noted else line[:-1]) for line in lines))
+
+    def perform(self, laws: Laws = None, *, preset: str | Preset | None = None, options: Options = ACCURATE) -> Result:
+        """Run the experiment with some laws."""
+        of = preset_of(preset if preset is not None else type(self).preset)
+        benches = [Bench(label, law, of, options) for label, law in chosen(laws, of, self.usual).items()]
+        trials = {bench.label: Trial(bench, self.run(bench)) for bench in benches}
+        return Result(self, of, trials, self.table(of, trials))
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """One law on the bench, and what its runs gave."""
+
+    bench: Bench
+    runs: Runs
+
+    @property
+    def preset(self) -> Preset:
+        """The preset of the bench."""
+        return self.bench.preset
+
+    def __getitem__(self, case: str) -> Trajectory:
+        """The run of one case; KeyError with a near match for an unknown one."""
+        return _get(self.runs, case, "case")
+
+    @property
+    def early(self) -> list[Trajectory]:
+        """Runs that stopped before their end."""
+        return [run for run in self.runs.values() if not run.finished]
+
+    @property
+    def note(self) -> str:
+        """Why runs are incomplete, in a few words; empty when all are complete."""
+        return f"{self.early[0].status} at {self.early[0].time[-1]:.4g} s" if self.early else ""
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What an experiment gave: print it for the table, `plot` it for the picture."""
+
+    experiment: Experiment
+    preset: Preset
+    trials: Mapping[str, Trial]
+    table: Table
+
+    @property
+    def laws(self) -> dict[str, Law]:
+        """The laws by label."""
+        return {label: trial.bench.law for label, trial in self.trials.items()}
+
+    @property
+    def runs(self) -> dict[str, Runs]:
+        """The trajectories by label of the law and name of the case."""
+        return {label: trial.runs for label, trial in self.trials.items()}
+
+    @property
+    def complete(self) -> bool:
+        """Whether all runs reached their end, but for those that chatter: to show that is what they are there for."""
+        return all(run.status == "chatter" for trial in self.trials.values() for run in trial.early)
+
+    def __getitem__(self, wanted: str | tuple[str, str]) -> Trajectory:
+        """The trajectory of a law, `result["lugre"]`, or of one case of it, `result["lugre", "sliding"]`."""
+        label, case = wanted if isinstance(wanted, tuple) else (wanted, None)
+        trial = _get(self.trials, label, "law")
+        return next(iter(trial.runs.values())) if case is None else trial[case]
+
+    def plot(self, path: str | Path | None = None) -> Figure:
+        """Draw the picture and write it to `path` (png, svg or pdf) when given; needs matplotlib."""
+        from clutchwork.plot.figure import figure_of
+
+        with figure_of(self.experiment.height) as figure:
+            self.experiment.draw(figure, self)
+            if path is not None:
+                Path(path).parent.mkdir(parents=True, exist_ok=True)
+                figure.savefig(path)
+        return figure
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write picture and table into a folder; their paths."""
+        picture, table = (Path(folder, f"{self.experiment.name}.{ending}") for ending in ("png", "csv"))
+        self.plot(picture)
+        self.table.to_csv(table)
+        return [picture, table]
+
+    @property
+    def messages(self) -> dict[str, str]:
+        """What the runs that stopped early say about it, by law."""
+        return {label: trial.early[0].message for label, trial in self.trials.items() if trial.early}
+
+    def __str__(self) -> str:
+        told = "\n".join(f"{label} {message}" for label, message in self.messages.items())
+        return f"{self.experiment.title}; {self.preset.title}\n\n{self.table}" + (f"\n\n{told}" if told else "")
+
+    __repr__ = __str__
+
+
+EXPERIMENTS: dict[str, type[Experiment]] = {}
+
+E = TypeVar("E", bound=type[Experiment])
+V = TypeVar("V")
+
+
+def experiment(cls: E) -> E:
+    """Register an experiment under the stem of its module."""
+    cls.name = cls.__module__.rpartition(".")[2]
+    EXPERIMENTS[cls.name] = cls
+    return cls
+
+
+def runner(name: str) -> Callable[..., Result]:
+    """The function that performs an experiment with some of its fields changed."""
+    cls = EXPERIMENTS[name]
+
+    def perform(
+        laws: Laws = None,
+        *,
+        preset: str | Preset | None = None,
+        options: Options = ACCURATE,
+        **changes: Any,
+    ) -> Result:
+        return made(name, changes).perform(laws, preset=preset, options=options)
+
+    perform.__name__, perform.__qualname__, perform.__doc__ = name, name, cls.__doc__
+    return perform
+
+
+def made(name: str, changes: Mapping[str, Any]) -> Experiment:
+    """An experiment by name with some fields changed; ValueError with a near match for unknown names."""
+    if name not in EXPERIMENTS:
+        raise ValueError(f"no experiment {name!r}{near(name, EXPERIMENTS)}; experiments are {', '.join(EXPERIMENTS)}")
+    known = [item.name for item in fields(EXPERIMENTS[name])]
+    for field in changes:
+        if field not in known:
+            raise ValueError(f"{name} has no setting {field!r}{near(field, known)}; settings are {', '.join(known)}")
+    return EXPERIMENTS[name](**changes)
+
+
+def _get(mapping: Mapping[str, V], key: str, what: str) -> V:
+    if key not in mapping:
+        raise KeyError(f"no {what} {key!r}{near(key, mapping)}; there are {', '.join(mapping)}")
+    return mapping[key]

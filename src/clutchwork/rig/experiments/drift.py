@@ -1,0 +1,123 @@
+"""The drift test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import floor, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clutchwork.rig.bench import Bench, position
+from clutchwork.rig.experiment import Experiment, Result, Runs, Trial, experiment
+from clutchwork.rig.looks import head, legend_below, looks, small
+from clutchwork.rig.presets import Preset
+from clutchwork.rig.table import Column
+from clutchwork.signals.sine import Sine
+from clutchwork.signals.table import Table as Course
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from clutchwork.node import Signal
+
+
+@experiment
+@dataclass(frozen=True)
+class Drift(Experiment):
+    """Whether a body creeps under a load that swings below break-away.
+
+    A body is pushed over break-away once, then carries a biased sine whose peak stays below the kinetic friction,
+    then nothing. Loads are shares of the static force. Use it to see which laws hold a load and which let it creep.
+
+    Source: P. Dupont, V. Hayward, B. Armstrong, F. Altpeter 2002, doi:10.1109/TAC.2002.1000274.
+    """
+
+    title = "drift test"
+    usual = (
+        "mykhalevych", "elastoplastic", "gms", "leuven", "stribeck",
+        "lugre", "dahl", "regularised_stribeck", "tanh",
+    )  # fmt: skip
+    height = 150.0
+
+    push: float = 1.3  # share of the static force, peak of the first phase
+    mean: float | None = None  # share; None: of the preset
+    swing: float | None = None  # share; None: of the preset
+    frequency: float | None = None  # Hz; None: of the preset
+    begin: float = 5.0  # s, the sine begins
+    end: float = 20.0  # s, the load ends
+    rest: float = 2.0  # s of rest after that
+
+    def run(self, bench: Bench) -> Runs:
+        """One run with samples every 5 ms."""
+        t_end = self.end + self.rest
+        d = bench.pushed(*self.forces(bench.preset))
+        return {"drift": bench.simulate(d, t_end, dt=0.005)}
+
+    def forces(self, preset: Preset) -> tuple[Signal, ...]:
+        """The course of the load [N]: ramps and holding, the sine, and its end."""
+        unit, (mean, swing, frequency) = preset.force, self.sine(preset)
+        corners = ((0, 0), (1, 0), (2, self.push), (3, mean), (self.end, mean), (self.end, 0))
+        held = Course([(float(t), unit * share) for t, share in corners])
+        swinging = Sine(amplitude=unit * swing, frequency=frequency, start=self.begin)
+        turns = 2 * pi * ((frequency * (self.end - self.begin)) % 1.0)
+        return held, swinging, Sine(amplitude=-unit * swing, frequency=frequency, start=self.end, phase=turns)
+
+    def sine(self, preset: Preset) -> tuple[float, float, float]:
+        """Mean and amplitude [share of the static force] and frequency [Hz]."""
+        given = (self.mean, self.swing, self.frequency)
+        own = (preset.mean, preset.swing, preset.frequency)
+        mean, swing, frequency = (a if a is not None else b for a, b in zip(given, own, strict=True))
+        return mean, swing, frequency
+
+    def columns(self, preset: Preset) -> tuple[Column, ...]:
+        """What is measured."""
+        unit = preset.unit_length
+        names = ("after the push", "creep", "late creep", "after the load")
+        return tuple(Column(name, unit) for name in names)
+
+    def measure(self, trial: Trial) -> Sequence[float]:
+        """Displacement by the push, over whole periods without the first, over the last of them, and after the load."""
+        frequency = self.sine(trial.preset)[2]
+        periods = floor((self.end - self.begin) * frequency + 1e-9)
+        first, late, last = (self.begin + n / frequency for n in (1, min(11, periods), periods))
+        instants = (self.begin, first, late, last, self.end, self.end + self.rest)
+        x = np.interp(instants, trial["drift"].time, position(trial["drift"]))
+        return float(x[0]), float(x[3] - x[1]), float(x[3] - x[2]), float(x[5] - x[4])
+
+    def draw(self, figure: Figure, result: Result) -> None:
+        """Load, displacement, creep in two scales."""
+        force, whole, creep, fine = figure.subplots(4, 1, sharex=True, height_ratios=(0.6, 1, 1, 1))
+        self._load(force, result)
+        head(whole, "b", "displacement")
+        head(creep, "c", "creep since the sine began")
+        head(fine, "d", "the same, enlarged: laws that do not creep")
+        unit, length = result.preset.unit_length, result.preset.length
+        for label, look in looks(result.runs).items():
+            run = result[label]
+            x, since = position(run), run.time >= self.begin
+            whole.plot(run.time, x, **look)
+            if not np.any(since):
+                continue
+            grown = x[since] - x[since][0]
+            creep.plot(run.time[since], 1e3 * grown, **look)
+            if np.max(np.abs(grown)) < length:
+                fine.plot(run.time[since], 1e6 * grown, **look)
+        whole.set_ylabel(f"displacement, {unit}")
+        creep.set_ylabel(f"creep, {small(unit, 1e3)}")
+        fine.set_ylabel(f"creep, {small(unit, 1e6)}")
+        fine.set_xlabel("time, s")
+        fine.set_xlim(0.0, self.end + self.rest)
+        legend_below(whole)
+        figure.align_ylabels()
+
+    def _load(self, axes: Axes, result: Result) -> None:
+        time = np.linspace(0.0, self.end + self.rest, 4001)
+        mean, swing, frequency = self.sine(result.preset)
+        load = np.interp(time, (0, 1, 2, 3, self.end), (0, 0, self.push, mean, mean))
+        load += np.where(time > self.begin, swing * np.sin(2 * pi * frequency * (time - self.begin)), 0.0)
+        axes.plot(time, result.preset.force * np.where(time <= self.end, load, 0.0), color="#404040", linewidth=0.8)
+        axes.set_ylabel(f"load, {result.preset.unit_force}")
+        head(axes, "a", "load")
