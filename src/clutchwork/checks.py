@@ -50,26 +50,10 @@ def component_problems(component: Component) -> Iterator[Problem]:
     """All mistakes of one element, its friction law and its signals."""
     at = At(label(component), "")
     yield from object_problems(component, at)
-    law = getattr(component, "friction", None)
-    if isinstance(law, Law) and not law.sticks and not component.one_way and getattr(component, "locked", False):
-        remedy = "leave it out, or take a law that sticks: " + ", ".join(_sticking())
-        yield at.inner("locked").problem("cannot hold with a law that never locks", value="True", remedy=remedy)
+    if hasattr(component, "friction"):
+        from clutchwork.law_checks import locked_problems
 
-
-def component_advice(component: Component) -> Iterator[Problem]:
-    """What the friction law of an element allows and is rarely wanted; nothing where the law has mistakes."""
-    law, place = getattr(component, "friction", None), At(label(component), "friction")
-    if not isinstance(law, Law) or any(object_problems(law, place)):
-        return
-    units = {item.name: spec.unit for item, spec in specs(type(law))}
-    for name, message, remedy in law.advice():
-        value = f"{getattr(law, name):g} {units[name]}"
-        yield place.inner(name).problem(message, value=value.removesuffix(" 1"), remedy=remedy)
-
-
-def _sticking() -> list[str]:
-    known: Any = REGISTRY[Role.LAW]
-    return [kind for kind in known if known[kind].sticks]
+        yield from locked_problems(component, at)
 
 
 def object_problems(thing: Any, at: At) -> Iterator[Problem]:
@@ -207,23 +191,9 @@ def _law(value: Any, _: Spec, at: At) -> Iterator[Problem]:
         remedy = f"give one of {', '.join(REGISTRY[Role.LAW])}"
         yield at.problem("must be a friction law", value=repr(value), remedy=remedy)
         return
-    found = list(object_problems(value, at))
-    yield from found or (_peak(value, at) if value.sticks else ())
+    from clutchwork.law_checks import law_problems
 
-
-def _peak(law: Any, at: At) -> Iterator[Problem]:
-    """A kinetic coefficient above the static one has no motion that follows from it."""
-    kinetic = law.sliding()
-    if kinetic is None:
-        from clutchwork.pools import coefficients
-
-        kinetic, static = coefficients(law, 0.0)
-    else:
-        static = law.static
-    # equal values may differ by round-off
-    if kinetic > static * (1 + 1e-12):
-        message = f"is below the kinetic coefficient at vanishing slip, {kinetic:g}"
-        yield at.inner("static").problem(message, value=f"{static:g}", remedy=f"raise it to at least {kinetic:g}")
+    yield from law_problems(value, at)
 
 
 def _text(value: Any, spec: Spec, at: At) -> Iterator[Problem]:

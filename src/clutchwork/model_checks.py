@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from clutchwork.checks import At, component_advice, component_problems, connection_problems, label, number_problems
+from clutchwork.checks import At, component_problems, connection_problems, label, number_problems
 from clutchwork.errors import Problem
 from clutchwork.kinematics import kinematics
+from clutchwork.law_checks import component_advice
 from clutchwork.node import HOUSING, Component, Domain, Node
 from clutchwork.schema import Spec
 from clutchwork.start import start

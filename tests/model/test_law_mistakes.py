@@ -44,8 +44,8 @@ MISTAKES = {
         "friction.exponent is 0.5 with shape 'gaussian', which has none; leave it out, or give shape \"power\"",
     ),
     "unknown shape": (
-        cw.Stribeck(**CURVE, shape="gausian"),
-        "friction.shape = 'gausian': is not known; did you mean 'gaussian'?; known are gaussian, tustin",
+        cw.Stribeck(**CURVE, shape="gauss"),
+        "friction.shape = 'gauss': is not known; did you mean 'gaussian'?; known are gaussian, tustin",
     ),
     "number for a word": (cw.Stribeck(**CURVE, shape=1), "friction.shape = 1: is not known; known are gaussian"),
     "no kinetic coefficient to divide by": (
