@@ -21,8 +21,8 @@ template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void evaluate(Form& form, double t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
   inputs_at(ws, t);
-  const int nz = form.nz();
-  for (int i = 0; i < nz; ++i) d[i] = T(0);
+  const int nz = form.nz(), n = form.n();
+  for (int i = 0; i < n; ++i) d[i] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
     const T rate = form.rate(k, y) + offset_rate(ws, k);
     form.push(k, branch_torque(ws, ws.branch[k], rate, y + nz, d + nz), d);
@@ -34,8 +34,8 @@ template <class Form, class T = typename Form::Scalar>
 void observe(Form& form, double t, const T* y, T* d, T* rate, T* torque) {
   Workspace<T>& ws = form.ws;
   inputs_at(ws, t);
-  const int nz = form.nz();
-  for (int i = 0; i < nz; ++i) d[i] = T(0);
+  const int nz = form.nz(), n = form.n();
+  for (int i = 0; i < n; ++i) d[i] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
     rate[k] = form.rate(k, y) + offset_rate(ws, k);
     torque[k] = branch_torque(ws, ws.branch[k], rate[k], y + nz, d + nz);

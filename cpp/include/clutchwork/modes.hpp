@@ -146,8 +146,9 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   for (int d = 0; d < ws.n_directions; ++d) {
     const int c = d - int(sys.elements);
     int sign = 0;
+    if (c >= 0 && !ws.loaded[c]) continue;
     if (c >= 0 && !ws.compliant[c]) {
-      if (!ws.loaded[c] || candidate[c]) continue;
+      if (candidate[c]) continue;
       sign = ws.mode[c];
       if (sign != forward && sign != backward) continue;
     }

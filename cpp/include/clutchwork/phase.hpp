@@ -38,11 +38,24 @@ bool explicit_suits(Workspace<T>& ws) {
   return fastest * h < 1.0;
 }
 
+/// Contacts without load forget: the bristles of their laws are straight when they close again.
+template <class T>
+void relax_open(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  for (int c = 0; c < sys.contacts; ++c) {
+    if (!ws.compliant[c] || ws.loaded[c]) continue;
+    const int n = states_of(sys.contact_kind[c], sys.contact_law[c], ws.params + sys.contact_law_param[c]);
+    for (int i = 0; i < n; ++i) ws.state[sys.contact_state[c] + i] = T(0);
+    ws.piece[sys.elements + c] = 0;
+  }
+}
+
 /// Reduced motion of the present modes; the state goes to ws.y. False: the inertias differ too much to tell them apart.
 template <class T>
 bool enter_mode(Workspace<T>& ws) {
   const System& sys = ws.sys;
   T* basis = ws.envelope;
+  relax_open(ws);
   list_locked(ws);
   pack_branches(ws);
   // many speeds: the rank from sparse elimination, the dense basis only where it is used

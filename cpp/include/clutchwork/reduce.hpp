@@ -192,9 +192,9 @@ void pack_branches(Workspace<T>& ws) {
   for (int c = 0; c < nc; ++c) {
     const bool held = ws.mode[c] == locked && ws.held[c] != 0;
     ws.branch_of[ne + c] = -1;
-    // a law that never sticks works in any mode, for its states go on
-    const bool slips = ws.loaded[c] && (ws.mode[c] != locked || held);
-    if (slips || ws.compliant[c]) pack(ws, ne + c, held ? ws.held[c] : ws.mode[c], held, block);
+    // a law that never sticks works beside a freewheel that is locked
+    const bool slips = ws.loaded[c] && (ws.mode[c] != locked || held || ws.compliant[c]);
+    if (slips) pack(ws, ne + c, held ? ws.held[c] : ws.mode[c], held, block);
   }
   ws.n_branches = ws.n_rates;
   list_laws(ws);

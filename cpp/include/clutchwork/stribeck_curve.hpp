@@ -24,14 +24,20 @@ CLUTCHWORK_INLINE S power_of_size(S x, T n) {
   return pow(larger(abs(x), S(1e-12)), S(n));
 }
 
+/// exp(-x), zero where nothing of it is left: underflow is slow.
+template <class S>
+CLUTCHWORK_INLINE S fading(S x) {
+  return value(x) > 200 ? S(0) : exp(-x);
+}
+
 /// Share of the static excess that is left at x = slip / speed: 1 at rest, falling to 0.
 template <class T, class S>
 CLUTCHWORK_INLINE S stribeck_share(const StribeckCurve<T>& c, S x) {
   switch (Shape(int(value(c.shape)))) {
-    case Shape::tustin: return exp(-x);
+    case Shape::tustin: return fading(x);
     case Shape::lorentz: return S(1) / (S(1) + x * x);
-    case Shape::power: return exp(-power_of_size(x, c.exponent));
-    default: return exp(-x * x);
+    case Shape::power: return fading(power_of_size(x, c.exponent));
+    default: return fading(x * x);
   }
 }
 

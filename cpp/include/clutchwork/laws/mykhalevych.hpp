@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/component.hpp>
+#include <clutchwork/stribeck_curve.hpp>
 
 namespace clutchwork::laws {
 
@@ -22,10 +22,10 @@ struct Mykhalevych {
 
   template <class T, class S>
   static S coefficient(const Params<T>& p, const At<S>& at) {
-    const S x = at.rate / p.speed, wound = tanh(at.state[0] + p.viscous * x), fading = exp(-x * x);
-    if (value(p.passive) != 0) return (p.kinetic + (p.static_ - p.kinetic) * fading) * wound;
+    const S x = at.rate / p.speed, wound = tanh(at.state[0] + p.viscous * x), left = fading(x * x);
+    if (value(p.passive) != 0) return (p.kinetic + (p.static_ - p.kinetic) * left) * wound;
     const T along = T(value(at.rate) < 0 ? -1 : 1);
-    return p.static_ * wound - along * (p.static_ - p.kinetic) * (S(1) - fading);
+    return p.static_ * wound - along * (p.static_ - p.kinetic) * (S(1) - left);
   }
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
