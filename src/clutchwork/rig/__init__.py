@@ -18,6 +18,7 @@ from clutchwork.rig.experiment import EXPERIMENTS as EXPERIMENTS
 from clutchwork.rig.experiment import Experiment as Experiment
 from clutchwork.rig.experiment import Result as Result
 from clutchwork.rig.experiment import runner
+from clutchwork.rig.looks import title as title
 from clutchwork.rig.presets import PRESETS as PRESETS
 from clutchwork.rig.presets import Preset as Preset
 from clutchwork.rig.table import Table as Table

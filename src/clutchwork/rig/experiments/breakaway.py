@@ -34,12 +34,13 @@ class Breakaway(Experiment):
 
     title = "break-away over the rate of the load"
     usual = ("stribeck", "mykhalevych", "elastoplastic", "gms", "lugre", "dahl")
+    preset = "second"
     height = 85.0
 
-    slowest: float = 0.1  # static force per s
-    fastest: float = 1000.0  # static force per s
+    slowest: float = 0.01  # static force per s
+    fastest: float = 100.0  # static force per s
     points: int = 9
-    reach: float = 20.0  # how far the body may move, over the elastic deflection
+    reach: float = 10.0  # how far the body may move, over the elastic deflection
 
     @property
     def rates(self) -> list[float]:

@@ -27,7 +27,7 @@ CASES = ("elastic", "sliding")
 class Hysteresis(Experiment):
     """Loops of friction over displacement and over speed, before sliding and with it.
 
-    A body is moved back and forth along a sine: once so little that the contact only deforms, once so far that it slides.
+    A body is moved back and forth in a sine: once so little that the contact only deforms, once so far that it slides.
     The area of a loop over displacement is the energy that one cycle turns into heat.
     """
 

@@ -40,7 +40,7 @@ class Memory(Experiment):
     outer: float = 1.5  # where the large loop turns, over the elastic deflection
     upper: float = 0.6  # where the minor loop begins and ends
     lower: float = -0.4  # where it turns
-    leg: float = 20.0  # s from one turn to the next, slow so that viscous parts do not count
+    leg: float = 2.0  # s from one turn to the next
     samples: int = 200  # per leg
 
     def run(self, bench: Bench) -> Runs:

@@ -65,7 +65,7 @@ class Stall(Experiment):
         """The driveline with the clutch of a bench; ValueError for a preset that is not one of shafts."""
         if bench.preset.domain is not Domain.ROTATION:
             raise ValueError(f'a clutch joins shafts, preset {bench.preset.name!r} is for masses: take preset "clutch"')
-        d = Driveline(f"launch, {bench.label}")
+        d = Driveline("launch")
         engine = d.shaft("engine", inertia=self.engine, speed=self.speed)
         gearbox = d.shaft("gearbox", inertia=self.gearbox)
         vehicle = d.shaft("vehicle", inertia=self.vehicle)
@@ -73,7 +73,7 @@ class Stall(Experiment):
         d.add(Torque("combustion", shaft=engine, torque=combustion))
         d.add(
             Clutch(
-                "friction",
+                "clutch",
                 base=engine,
                 follower=gearbox,
                 friction=bench.law,
@@ -94,10 +94,10 @@ class Stall(Experiment):
     def measure(self, trial: Trial) -> Sequence[float]:
         """Steps, time that was reached, when the slip fell below 0.1 % of its start, heat and torque at the end."""
         run = trial["launch"]
-        gone = np.flatnonzero(np.abs(run["friction.slip"]) < 1e-3 * self.speed)
+        gone = np.flatnonzero(np.abs(run["clutch.slip"]) < 1e-3 * self.speed)
         lost = float(run.time[gone[0]]) if len(gone) else NOT_REACHED
-        last = run["friction.torque"][-1]
-        return float(run.statistics["steps"]), float(run.time[-1]), lost, float(run["friction.heat"][-1]), float(last)
+        last = run["clutch.torque"][-1]
+        return float(run.statistics["steps"]), float(run.time[-1]), lost, float(run["clutch.heat"][-1]), float(last)
 
     def draw(self, figure: Figure, result: Result) -> None:
         """Torque over the number of the step and over time, one row for each law."""
@@ -105,7 +105,7 @@ class Stall(Experiment):
         panels = figure.subplots(len(labels), 2, sharey=True, squeeze=False, width_ratios=(1, 1))
         for row, label in enumerate(labels):
             run = result[label]
-            torque, look = run["friction.torque"], {**every[label], "linewidth": 0.8, "linestyle": "-"}
+            torque, look = run["clutch.torque"], {**every[label], "linewidth": 0.8, "linestyle": "-"}
             for axes, x in zip(panels[row], (np.arange(len(run)), run.time), strict=True):
                 axes.plot(x, torque, **look, marker=".", markersize=2.0)
                 axes.axhline(0.0, color="#B0B0B0", linewidth=0.5, zorder=1)
