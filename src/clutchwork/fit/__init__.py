@@ -1,0 +1,47 @@
+"""Parameters of a friction law from measured slip and torque, with what the samples do not determine.
+
+    import clutchwork as cw
+    from clutchwork.fit import fit_csv
+
+    start = cw.Stribeck(static=0.12, kinetic=0.1, speed=1.0)
+    result = fit_csv("measured.csv", start, slip="slip", torque="torque", load="load")
+    print(result)
+
+Needs SciPy: pip install "clutchwork[fit]".
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.errors import near
+
+if TYPE_CHECKING:
+    from clutchwork.fit.failure import FitError as FitError
+    from clutchwork.fit.failure import UndeterminedError as UndeterminedError
+    from clutchwork.fit.law import fit_csv as fit_csv
+    from clutchwork.fit.law import fit_law as fit_law
+    from clutchwork.fit.result import FitResult as FitResult
+    from clutchwork.fit.result import Parameter as Parameter
+
+# names that are loaded when they are first used, with their module: the command line imports this package to ask less
+_LAZY = {
+    "FitError": "failure",
+    "FitResult": "result",
+    "Parameter": "result",
+    "UndeterminedError": "failure",
+    "fit_csv": "law",
+    "fit_law": "law",
+}
+__all__ = ["FitError", "FitResult", "Parameter", "UndeterminedError", "fit_csv", "fit_law"]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LAZY:
+        return getattr(import_module(f"clutchwork.fit.{_LAZY[name]}"), name)
+    raise AttributeError(f"clutchwork.fit has no {name!r}{near(name, __all__)}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

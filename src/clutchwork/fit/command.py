@@ -1,0 +1,190 @@
+"""`clutchwork fit`: arguments, and what is told and written."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from clutchwork.fit.result import FitResult
+    from clutchwork.fit.unknown import Bounds
+    from clutchwork.node import Law
+
+DETERMINED, OPEN = 0, 1
+_POINTS = re.compile(r"[^:/]+:[^:/]+(/[^:/]+:[^:/]+)*")
+
+
+def add_command(subparsers: Any) -> None:
+    """Add `fit` to the commands of the command line."""
+    fit = subparsers.add_parser(
+        "fit",
+        help="parameters of a friction law from measured slip and torque",
+        epilog="Exit code 1: the samples do not determine all free parameters; what they say is told and written.",
+    )
+    fit.set_defaults(command=fit_command)
+    fit.add_argument("file", type=Path, help="CSV file; a unit in brackets behind the name of a column is converted")
+    fit.add_argument("--law", required=True, metavar="KIND", help="friction law, such as stribeck")
+    fit.add_argument("--slip", required=True, metavar="COL", help="column of the slip [rad/s or m/s]")
+    fit.add_argument("--torque", required=True, metavar="COL", help="column of the friction torque [N m or N]")
+    fit.add_argument(
+        "--load", default="1", metavar="COL", help="column or value of the torque per coefficient, default 1"
+    )
+    fit.add_argument("--time", default="time", metavar="COL", help="column of the time [s], default time")
+    fit.add_argument(
+        "--start", required=True, metavar="NAME=VALUE,...", help="start values, points of a curve as x:y/x:y"
+    )
+    fit.add_argument(
+        "--free", metavar="NAME,...", help="what is searched for; default: all that does not start at zero"
+    )
+    fit.add_argument("--bounds", metavar="NAME=LOW:HIGH,...", help="narrower bounds; a side may be empty")
+    fit.add_argument("--rest", type=float, metavar="SLIP", help="abs(slip) below which a sample counts as at rest")
+    fit.add_argument("--confidence", type=float, default=0.95, help="of the intervals, default 0.95")
+    fit.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "fit"), help="default: out/fit")
+    fit.add_argument("--json", action="store_true", help="tell the results as JSON on standard output")
+
+
+def fit_command(asked: argparse.Namespace) -> int:
+    """Fit, tell, write; the exit code."""
+    from clutchwork.fit.law import fit_csv
+
+    result = fit_csv(
+        asked.file,
+        law_from_text(asked.law, asked.start),
+        slip=asked.slip,
+        torque=asked.torque,
+        time=asked.time,
+        load=_number_or_name(asked.load),
+        free=None if asked.free is None else [name.strip() for name in asked.free.split(",") if name.strip()],
+        bounds=_bounds(asked.bounds),
+        rest=asked.rest,
+        confidence=asked.confidence,
+    )
+    data = result.data() | {"friction": law_data(result.law)}
+    files = list(_write(result, data, asked.out))
+    if asked.json:
+        text = json.dumps(_finite(data | {"files": [str(path) for path in files]}), indent=2, allow_nan=False)
+    else:
+        text = "\n".join([str(result), "", _model_line(result.law), "", *(f"wrote {path}" for path in files)])
+    sys.stdout.write(text + "\n")
+    return DETERMINED if result.determined else OPEN
+
+
+def law_from_text(kind: str, text: str) -> Law:
+    """A law from its kind and `name=value,...`, read as in a model file: units, near matches and bounds included."""
+    from clutchwork.driveline import Driveline
+    from clutchwork.errors import ModelWarning
+
+    values = {name: _value(value) for name, value in _pairs("--start", text)}
+    shaft = {"name": "shaft", "inertia": 1.0}
+    element = {"name": "--start", "type": "bearing_friction", "shaft": "shaft", "torque": 1.0}
+    data = {"name": "--law and --start", "shaft": [shaft], "element": [element | {"friction": {"type": kind} | values}]}
+    with warnings.catch_warnings():
+        # the fitted values count, not those at the start
+        warnings.simplefilter("ignore", ModelWarning)
+        bearing: Any = Driveline.from_dict(data).elements[0]
+    law: Law = bearing.friction
+    return law
+
+
+def law_data(law: Law) -> dict[str, Any]:
+    """A law as in a model file."""
+    from clutchwork.elements.bearing_friction import BearingFriction
+    from clutchwork.model_writer import Writer
+    from clutchwork.node import Node
+
+    bearing = BearingFriction("bearing", shaft=Node("shaft"), friction=law, torque=1.0)
+    data: dict[str, Any] = Writer(None, embed=True).element(bearing)["friction"]
+    return data
+
+
+def _model_line(law: Law) -> str:
+    """The line of a model file."""
+    from clutchwork.model_writer import toml
+
+    line = toml({"element": {"friction": _rounded(law_data(law))}}).splitlines()[-1]
+    return f"for a model file (all digits are in fit.json):\n{line}"
+
+
+def _rounded(value: Any) -> Any:
+    """The same with numbers of six digits."""
+    if isinstance(value, dict):
+        return {key: _rounded(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [_rounded(entry) for entry in value]
+    return float(f"{value:.6g}") if isinstance(value, float) else value
+
+
+def _pairs(option: str, text: str) -> Iterator[tuple[str, str]]:
+    for part in text.split(","):
+        name, sign, value = (word.strip() for word in part.partition("="))
+        if not (name and sign and value):
+            raise ValueError(f"{option}: {part.strip()!r} is no name=value; write them with commas between")
+        yield name, value
+
+
+def _value(text: str) -> Any:
+    """A number, points, true or false, or a word, which may be a number with a unit."""
+    if _POINTS.fullmatch(text):
+        return [[_number("--start", number) for number in pair.split(":")] for pair in text.split("/")]
+    if text in ("true", "false"):
+        return text == "true"
+    return _number_or_name(text)
+
+
+def _number_or_name(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _number(option: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{option}: {text!r} is no number") from None
+
+
+def _bounds(text: str | None) -> Bounds | None:
+    if text is None:
+        return None
+    made = {}
+    for name, value in _pairs("--bounds", text):
+        low, colon, high = value.partition(":")
+        if not colon:
+            raise ValueError(f"--bounds: {value!r} of {name} is no low:high; leave a side empty where there is none")
+        made[name] = (_number("--bounds", low) if low else None, _number("--bounds", high) if high else None)
+    return made
+
+
+def _write(result: FitResult, data: dict[str, Any], folder: Path) -> Iterator[Path]:
+    """Results, samples and, last, the picture, which needs a package more."""
+    import numpy as np
+
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "fit.json"
+    path.write_text(json.dumps(_finite(data), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    yield path
+    path, samples = folder / "samples.csv", result.samples
+    force, speed = ("N", "m/s") if samples.translation else ("N m", "rad/s")
+    head = f"time [s],slip [{speed}],load [{force}],measured [{force}],fitted [{force}],equation"
+    table = np.column_stack([samples.time, samples.slip, samples.load, samples.torque, result.fitted, result.equations])
+    np.savetxt(path, table, delimiter=",", header=head, comments="", fmt="%.10g")
+    yield path
+    result.plot(folder / "fit.png")
+    yield folder / "fit.png"
+
+
+def _finite(value: Any) -> Any:
+    """The same with None in place of what JSON cannot say."""
+    if isinstance(value, dict):
+        return {key: _finite(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(entry) for entry in value]
+    return None if isinstance(value, float) and not abs(value) < float("inf") else value

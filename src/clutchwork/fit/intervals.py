@@ -1,0 +1,111 @@
+"""How well the samples determine the parameters: covariance, intervals, and what stays open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import exp, log, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.fit import reasons
+from clutchwork.fit.failure import scipy
+from clutchwork.fit.information import information
+
+if TYPE_CHECKING:
+    from clutchwork.fit.search import Search
+    from clutchwork.fit.unknown import Unknown
+
+Array = NDArray[np.float64]
+
+FEWEST_NEIGHBOURS = 10
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What the samples say of all parameters, in the order of the unknowns."""
+
+    deviation: float  # of the residuals [N m], widened where neighbours are alike
+    covariance: Array  # of the codes of all parameters
+    limits: list[tuple[float, float]]  # ends of the intervals
+    reasons: list[str]  # why a parameter is not determined; "" where it is
+    directions: list[str]  # relative changes that the samples cannot tell from no change
+    alike: float  # correlation of neighbouring residuals
+
+
+def estimate(search: Search, u: Array, confidence: float) -> Estimate:
+    """Intervals of all parameters at a confidence, and what is not determined."""
+    residuals, equations = search.residuals(u), search.model.equations
+    # at rest a sample says something only where it breaks its bound
+    counts = equations | (residuals != 0.0)
+    known = information(search.jacobian(u)[counts], search.measured.size, search.model.exact)
+    freedom = max(int(np.sum(counts)) - int(np.sum(~known.lost)), 1)
+    alike = _alike(residuals[equations])
+    variance = float(np.sum(residuals**2)) / freedom * (1.0 + alike) / (1.0 - alike)
+    spread = _spread(search, u)
+    covariance = variance * (spread @ known.inverse @ spread.T)
+    t = float(scipy("stats").t.ppf(0.5 + 0.5 * confidence, freedom))
+    items, ends = search.unknowns.items, search.unknowns.ends(u)
+    codes, halves = search.unknowns.codes(u).tolist(), (t * np.sqrt(np.diag(covariance))).tolist()
+    rows = list(zip(items, codes, halves, ends, strict=True))
+    limits = [_interval(*row) for row in rows]
+    for place in np.flatnonzero(known.silent):
+        limits[search.unknowns.searched[place]] = _reach(search, u, int(place), t**2 * variance)
+    why = [
+        cause or reasons.at_end(item, item.decoded(code), end) or reasons.wide(item, code, half, confidence)
+        for cause, (item, code, half, end) in zip(reasons.causes(known, spread, items), rows, strict=True)
+    ]
+    directions = reasons.directions(known, spread, items, why)
+    return Estimate(sqrt(variance), covariance, limits, why, directions, alike)
+
+
+def _alike(residuals: Array) -> float:
+    """Correlation of neighbouring residuals, 0 where it may be chance; neighbours that are alike count less."""
+    if len(residuals) < FEWEST_NEIGHBOURS or not np.any(residuals):
+        return 0.0
+    found = float(residuals[1:] @ residuals[:-1] / (residuals @ residuals))
+    return min(found, 0.99) if found > 2.0 / sqrt(len(residuals)) else 0.0
+
+
+def _spread(search: Search, u: Array) -> Array:
+    """Derivatives of the codes of all parameters by those that are searched for."""
+    unknowns, step = search.unknowns, 1e-6
+    columns = []
+    for place in range(len(u)):
+        move = np.zeros(len(u))
+        move[place] = step * max(1.0, abs(u[place]))
+        columns.append((unknowns.codes(u + move) - unknowns.codes(u - move)) / (2.0 * move[place]))
+    return np.array(columns).T
+
+
+def _interval(item: Unknown, code: float, half: float, ends: tuple[float, float]) -> tuple[float, float]:
+    """Interval of the value, within its bounds."""
+    lower, upper = ends
+    if not item.is_log:
+        return max(code - half, lower), min(code + half, upper)
+    if half > log(1e9):
+        return lower, upper
+    return max(exp(code - half), lower), min(exp(code + half), upper)
+
+
+def _reach(search: Search, u: Array, place: int, most: float) -> tuple[float, float]:
+    """How far a parameter without effect can go until bounds at rest break, or samples notice it after all."""
+    base, row = float(np.sum(search.residuals(u) ** 2)), search.unknowns.searched[place]
+
+    def moved(code: float) -> Array:
+        return np.where(np.arange(len(u)) == place, code, u)
+
+    def noticed(code: float) -> bool:
+        return float(np.sum(search.residuals(moved(code)) ** 2)) - base > most
+
+    made = list(search.unknowns.ends(u)[row])
+    for side, end in enumerate((search.unknowns.lower[place], search.unknowns.upper[place])):
+        far = end if np.isfinite(end) else u[place] + 1e3 * search.scales[place] * (2 * side - 1)
+        if noticed(far):
+            near = u[place]
+            for _ in range(40):
+                middle = 0.5 * (near + far)
+                near, far = (near, middle) if noticed(middle) else (middle, far)
+            made[side] = search.unknowns.values(moved(near))[row]
+    return made[0], made[1]

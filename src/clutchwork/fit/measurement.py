@@ -1,0 +1,96 @@
+"""Measured slip, torque and load, checked before anything is fitted to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.fit.failure import FitError
+
+Array = NDArray[np.float64]
+
+FEWEST = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """Samples in order of time; the torque has the sign of the slip while it slides."""
+
+    time: Array  # s, from 0
+    slip: Array  # rad/s or m/s
+    torque: Array  # N m or N
+    load: Array  # N m or N, torque per unit of coefficient
+    translation: bool  # m/s and N in place of rad/s and N m
+    turned: bool  # whether the torque was given as it acts on the follower, against the slip
+
+    @property
+    def size(self) -> float:
+        """Root mean square of the torque [N m]."""
+        return float(np.sqrt(np.mean(self.torque**2)))
+
+
+def measurement(time: Any, slip: Any, torque: Any, load: Any, *, translation: bool = False) -> Measurement:
+    """Check samples and bring them into one form; FitError says what is wrong and where.
+
+    Parameters: time [s], rising; slip [rad/s or m/s]; torque [N m or N], positive with the slip or against it; load
+    [N m or N], one number or one for each sample.
+    """
+    rows = {"time": _row("time", time), "slip": _row("slip", slip), "torque": _row("torque", torque)}
+    count = len(rows["time"])
+    rows["load"] = np.full(count, _number(load)) if np.ndim(load) == 0 else _row("load", load)
+    for name, row in rows.items():
+        if len(row) != count:
+            raise FitError(name, f"has {len(row)} values, time has {count}", "give one value for each instant")
+        _finite(name, row)
+    _sensible(rows)
+    # friction dissipates: the sign of the work tells on whom the torque was measured
+    turned = float(rows["torque"] @ rows["slip"]) < 0.0
+    torque = -rows["torque"] if turned else rows["torque"]
+    return Measurement(rows["time"] - rows["time"][0], rows["slip"], torque, rows["load"], translation, turned)
+
+
+def _row(name: str, values: Any) -> Array:
+    try:
+        row = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise FitError(name, "holds something that is no number", "give a row of numbers") from None
+    if row.ndim != 1:
+        raise FitError(name, f"has {row.ndim} dimensions", "give a row of numbers")
+    return row
+
+
+def _number(value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise FitError("load", f"is {value!r}", "give a number in [N m], or one for each instant") from None
+
+
+def _finite(name: str, row: Array) -> None:
+    bad = np.flatnonzero(~np.isfinite(row))
+    if len(bad):
+        raise FitError(name, f"is {row[bad[0]]} at sample {bad[0]}", "leave out samples that were not measured")
+
+
+def _sensible(rows: dict[str, Array]) -> None:
+    """Refuse what cannot be a measurement of friction."""
+    time, slip, torque, load = rows.values()
+    if len(time) < FEWEST:
+        raise FitError("time", f"has {len(time)} values", f"give at least {FEWEST} samples")
+    back = np.flatnonzero(np.diff(time) <= 0.0)
+    if len(back):
+        at = back[0] + 1
+        raise FitError("time", f"does not rise at sample {at} ({time[at]:g} s)", "sort the samples by time")
+    if np.any(load < 0.0):
+        at = int(np.argmin(load))
+        raise FitError("load", f"is {load[at]:g} N m at sample {at}", "give the load as a size, >= 0")
+    if not np.any(load):
+        raise FitError("load", "is always zero", "give the load that presses the contact together")
+    if not np.any(slip):
+        remedy = "at rest friction is only bounded, not known: record samples that slide"
+        raise FitError("slip", "is always zero", remedy)
+    if not np.any(torque):
+        raise FitError("torque", "is always zero", "check the column and the sensor")

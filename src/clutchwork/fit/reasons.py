@@ -1,0 +1,87 @@
+"""Why a parameter is not determined, in words."""
+
+from __future__ import annotations
+
+from math import exp, log
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.fit.information import FLOOR, Information
+
+if TYPE_CHECKING:
+    from clutchwork.fit.unknown import Unknown
+
+Array = NDArray[np.float64]
+Items = tuple["Unknown", ...]
+
+# part of a parameter in a direction that counts as involved
+INVOLVED = 0.05
+# an interval wider than this says nothing: a factor either way, or a share of the value
+WIDE_FACTOR, WIDE_SHARE = 2.0, 0.5
+
+
+def causes(known: Information, spread: Array, items: Items) -> list[str]:
+    """Reasons in the structure of the derivatives, whatever the noise; "" where there is none.
+
+    Parameters: spread, derivatives of the codes of all parameters by those that are searched for.
+    """
+    made = [""] * len(items)
+    for direction in known.directions[known.lost]:
+        part = np.abs(_relative(spread @ (direction / known.size), items))
+        involved = part > INVOLVED * float(np.max(part))
+        names = [item.name for item, is_in in zip(items, involved, strict=True) if is_in]
+        for place in np.flatnonzero(involved) if len(names) > 1 else ():
+            made[place] = f"the samples tell only a combination of {', '.join(names)}"
+    for place in np.flatnonzero(known.silent):
+        for row in np.flatnonzero(np.abs(spread[:, place]) > 0.5):
+            made[row] = "no sample depends on it"
+    return made
+
+
+def at_end(item: Unknown, value: float, ends: tuple[float, float]) -> str:
+    """Whether a parameter went as far as it could."""
+    reach = 1e-6 * max(abs(item.start), abs(value))
+    if item.over and value - ends[0] <= reach:
+        return "it rests on its bound, the kinetic coefficient"
+    if any(abs(value - end) <= reach for end in ends):
+        return f"it rests on its bound {item.bound}"
+    return f"it ran away to {value:.3g}" if any(abs(value - end) <= reach for end in (item.lower, item.upper)) else ""
+
+
+def wide(item: Unknown, code: float, half: float, confidence: float) -> str:
+    """Whether an interval of the code, plus and minus half, is too wide to say anything."""
+    share = f"{100 * confidence:g} % interval"
+    if item.is_log:
+        factor = exp(min(half, log(1e9)))
+        shown = "many orders of magnitude" if factor > 1e6 else f"a factor {factor:.3g}"
+        return f"its {share} reaches {shown} either way" if factor > WIDE_FACTOR else ""
+    if half <= WIDE_SHARE * abs(code):
+        return ""
+    if abs(code) < half:
+        return f"it cannot be told from zero, its {share} is +- {half:.3g}"
+    return f"its {share} is +- {100 * half / abs(code):.3g} %"
+
+
+def directions(known: Information, spread: Array, items: Items, reasons: list[str]) -> list[str]:
+    """For every open parameter what changes with it along the direction in which its uncertainty is largest."""
+    # share of each direction in the uncertainty of each parameter
+    shares = np.abs(spread @ (known.directions / known.size).T) / np.maximum(known.singular, FLOOR)
+    made = []
+    for place, reason in enumerate(reasons):
+        change = spread @ (known.directions[int(np.argmax(shares[place]))] / known.size)
+        made.append(_direction(_relative(change, items), place, items) if reason else "")
+    return made
+
+
+def _relative(change: Array, items: Items) -> Array:
+    """Changes of codes as shares of the values."""
+    return np.asarray(change / np.array([item.scale for item in items]))
+
+
+def _direction(change: Array, place: int, items: Items) -> str:
+    """By how much the others change when this one grows by 1 %; empty where it is alone."""
+    shares = change / (change[place] or 1.0)
+    shown = [f"{i.name} {c:+.2g} %" for i, c in zip(items, shares.tolist(), strict=True) if abs(c) > INVOLVED]
+    return ", ".join(shown) if len(shown) > 1 else ""

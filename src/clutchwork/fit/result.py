@@ -1,0 +1,153 @@
+"""What a fit found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.fit.failure import UndeterminedError
+from clutchwork.fit.measurement import Measurement
+from clutchwork.text import columns
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from clutchwork.node import Law
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One fitted parameter."""
+
+    name: str  # "speed", or "kinetic[2]" for the second point of a curve
+    unit: str
+    value: float
+    lower: float  # ends of its interval
+    upper: float
+    start: float
+    reason: str = ""  # why the samples do not determine it
+    direction: str = ""  # relative changes that the samples hardly tell from no change
+    experiment: str = ""  # what would determine it
+
+    @property
+    def determined(self) -> bool:
+        """Whether the samples determine it."""
+        return not self.reason
+
+    def __str__(self) -> str:
+        open_ends = [self.reason, self.direction and f"hardly seen: {self.direction}", self.experiment]
+        return f"{self.name} is not determined: " + "; ".join(part for part in open_ends if part)
+
+
+@dataclass(frozen=True, eq=False)
+class FitResult:
+    """A fitted law, its parameters with their intervals, and how well it describes the samples.
+
+    A parameter that the samples do not determine keeps a value, but no meaning: look at `determined`, `undetermined`
+    and `message`, or call `raise_for_status`. Its value has then been chosen by the start value.
+    """
+
+    law: Law
+    parameters: tuple[Parameter, ...]
+    correlation: Array = field(repr=False)  # of the parameters, those that must be above zero by their logarithm
+    confidence: float  # of the intervals
+    rms: float  # N m, of the residuals over the samples that give an equation
+    r2: float  # share of the variation of the torque that the law describes
+    alike: float  # correlation of neighbouring residuals, 0 where it may be chance
+    converged: bool
+    faults: tuple[str, ...]  # rules of the law that the fitted values break
+    advice: tuple[str, ...]  # what the fitted values allow and is rarely wanted
+    rest: float  # slip below which a sample counts as at rest
+    samples: Measurement = field(repr=False)
+    fitted: Array = field(repr=False)  # torque of the fitted law at the samples [N m]
+    equations: NDArray[np.bool_] = field(repr=False)  # samples that give an equation; the others only a bound
+
+    @property
+    def residuals(self) -> Array:
+        """Fitted minus measured torque [N m]."""
+        return self.fitted - self.samples.torque
+
+    @property
+    def undetermined(self) -> tuple[Parameter, ...]:
+        """Parameters that the samples do not determine."""
+        return tuple(parameter for parameter in self.parameters if not parameter.determined)
+
+    @property
+    def determined(self) -> bool:
+        """Whether the search ended, the law is valid and the samples determine every parameter."""
+        return self.converged and not self.faults and not self.undetermined
+
+    @property
+    def message(self) -> str:
+        """What stands in the way of using the values, one line each; empty when nothing does."""
+        lines = (
+            [] if self.converged else ["the search did not end: start nearer to the solution or free fewer parameters"]
+        )
+        lines += [f"the fitted values break a rule: {fault}" for fault in self.faults]
+        return "\n".join(lines + [str(parameter) for parameter in self.undetermined])
+
+    @property
+    def notes(self) -> str:
+        """What to know about the values, one line each."""
+        lines = list(self.advice)
+        if self.samples.turned:
+            lines.append("the torque was given against the slip, as it acts on the follower; its sign was turned")
+        if self.alike:
+            lines.append(
+                f"neighbouring residuals are alike (correlation {self.alike:.2f}): the law misses something or the"
+                " samples were filtered; the intervals are widened for it"
+            )
+        return "\n".join(lines)
+
+    def __getitem__(self, name: str) -> Parameter:
+        from clutchwork.errors import near
+
+        for parameter in self.parameters:
+            if parameter.name == name:
+                return parameter
+        raise KeyError(f"no fitted parameter {name!r}{near(name, [p.name for p in self.parameters])}")
+
+    def raise_for_status(self) -> FitResult:
+        """Return itself when everything is determined, else raise UndeterminedError."""
+        if not self.determined:
+            raise UndeterminedError(self)
+        return self
+
+    def plot(self, path: str | Path | None = None) -> Figure:
+        """Measured and fitted torque over time and slip, residuals; written to `path` when given. Needs matplotlib."""
+        from clutchwork.fit.picture import picture
+
+        return picture(self, path)
+
+    def data(self) -> dict[str, Any]:
+        """All of it but the samples, for JSON."""
+        return {
+            "law": type(self.law).kind,  # type: ignore[attr-defined]
+            "determined": self.determined,
+            "message": self.message,
+            "notes": self.notes,
+            "samples": len(self.fitted),
+            "equations": int(np.sum(self.equations)),
+            "rms_Nm": self.rms,
+            "r2": self.r2,
+            "confidence": self.confidence,
+            "parameters": [{**vars(p), "determined": p.determined} for p in self.parameters],
+            "correlation": self.correlation.tolist(),
+        }
+
+    def __str__(self) -> str:
+        unit = "N" if self.samples.translation else "N m"
+        count = f"{len(self.fitted)} samples, {int(np.sum(self.equations))} of them equations"
+        head = f"{type(self.law).__name__}: {count}, rms {self.rms:.3g} {unit}, r2 {self.r2:.6g}"
+        lines = [["parameter", "value", f"{100 * self.confidence:g} % from", "to", "unit", "start", ""]]
+        for p in self.parameters:
+            numbers = [f"{number:.5g}" for number in (p.value, p.lower, p.upper)]
+            lines.append([p.name, *numbers, p.unit, f"{p.start:.5g}", "" if p.determined else "not determined"])
+        parts = [head, columns(lines, right=(1, 2, 3, 5)), self.message, self.notes]
+        return "\n\n".join(part for part in parts if part)

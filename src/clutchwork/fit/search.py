@@ -1,0 +1,100 @@
+"""Bounded least squares over the free parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.fit.failure import scipy
+
+if TYPE_CHECKING:
+    from clutchwork.fit.model import Model
+    from clutchwork.fit.unknowns import Unknowns
+
+Array = NDArray[np.float64]
+
+# relative steps of difference quotients: of a formula, and of a run that has an error of its own
+STEP_EXACT, STEP_RUN = 1e-5, 1e-3
+MOST_ITERATIONS = 200
+# weight of staying at the start value, which alone decides what the samples leave open
+STAY = 1e-6
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Where the search ended."""
+
+    u: Array  # codes
+    converged: bool
+    message: str  # of the solver
+
+
+class Search:
+    """Residuals of all samples over the codes of the free parameters, and their derivatives."""
+
+    def __init__(self, model: Model, unknowns: Unknowns) -> None:
+        self.model, self.unknowns = model, unknowns
+        self.measured = model.measured
+        self.step = STEP_EXACT if model.exact else STEP_RUN
+        self.logs = [unknowns.items[place].is_log for place in unknowns.searched]
+
+    def residuals(self, u: Array) -> Array:
+        """Fitted minus measured torque of every sample [N m]."""
+        return self.model.torque(self.unknowns.law_at(u)) - self.measured.torque
+
+    @cached_property
+    def scales(self) -> Array:
+        """What a change of each code by one step is measured in: 1 for logarithms, a typical size for numbers."""
+        start = self.unknowns.start
+        made = np.where(self.logs, 1.0, np.abs(start))
+        for place in np.flatnonzero(made == 0.0):
+            made[place] = self._typical(int(place))
+        return made
+
+    def _typical(self, place: int) -> float:
+        """Size of a number that starts at zero: so much changes the torque by about its own size."""
+        base, size = self.residuals(self.unknowns.start), self.measured.size
+        for exponent in range(-12, 7):
+            u = self.unknowns.start.copy()
+            u[place] += 10.0**exponent
+            change = float(np.sqrt(np.mean((self.residuals(u) - base) ** 2)))
+            if change > 1e-4 * size:
+                return float(10.0**exponent * size / change)
+        return 1.0
+
+    def jacobian(self, u: Array) -> Array:
+        """Derivatives of the residuals by the codes, shape (samples, codes), by central differences."""
+        return derivatives(self.residuals, u, self)
+
+    def tied(self, u: Array) -> Array:
+        """Residuals, and small ones more for leaving the start values."""
+        stay = STAY * float(np.sqrt(np.sum(self.measured.torque**2))) * (u - self.unknowns.start) / self.scales
+        return np.concatenate([self.residuals(u), stay])
+
+    def solve(self) -> Solution:
+        """The best codes within their bounds, from the start values."""
+        lower, upper = self.unknowns.lower, self.unknowns.upper
+        found = scipy("optimize").least_squares(
+            self.tied, self.unknowns.start, jac=lambda u: derivatives(self.tied, u, self), bounds=(lower, upper),
+            method="trf", x_scale="jac", xtol=1e-10, ftol=1e-12, gtol=1e-12, max_nfev=MOST_ITERATIONS,
+        )  # fmt: skip
+        u = np.clip(found.x, lower, upper)
+        return Solution(u, found.status > 0, str(found.message))
+
+
+def derivatives(function: Callable[[Array], Array], u: Array, search: Search) -> Array:
+    """Difference quotients by every code: central inside the bounds, one-sided at them."""
+    lower, upper = search.unknowns.lower, search.unknowns.upper
+    columns = []
+    for place, scale in enumerate(search.scales):
+        step = search.step * max(float(scale), 0.0 if search.logs[place] else abs(float(u[place])))
+        above, below = u.copy(), u.copy()
+        above[place] = min(u[place] + step, upper[place])
+        below[place] = max(u[place] - step, lower[place])
+        columns.append((function(above) - function(below)) / (above[place] - below[place]))
+    return np.array(columns).T

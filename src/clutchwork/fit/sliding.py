@@ -1,0 +1,113 @@
+"""What laws without states say of measured samples; those that stick give only bounds at rest."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.fit.failure import FitError
+from clutchwork.pools import Pools
+from clutchwork.schema import Role, kinds
+
+if TYPE_CHECKING:
+    from clutchwork.fit.measurement import Measurement
+    from clutchwork.node import Law
+
+Array = NDArray[np.float64]
+
+# share of the largest slip below which a sample counts as at rest, when none is given
+REST = 1e-3
+
+
+def coefficients(law: Law, slips: Array) -> tuple[Array, float]:
+    """Kinetic coefficients of a law without states at slips [rad/s], and the static one, by the compiled core.
+
+    Slips of a law that sticks are >= 0.
+    """
+    core: Any = import_module("clutchwork._core")
+    pools = Pools()
+    pools.add(law, "law")
+    number = kinds(Role.LAW).index(type(law).kind)  # type: ignore[attr-defined]
+    params = np.array(pools.params, dtype=float)
+    # the core asks for kinks only where there are points at all
+    points = np.array(pools.points or [(0.0, 0.0, 0.0)], dtype=float)
+    kinetic = np.array([core.law(number, params, points, slip)[0] for slip in slips.tolist()])
+    return kinetic, float(core.law(number, params, points, 0.0)[1])
+
+
+class Sliding:
+    """Residuals of a law that sticks.
+
+    A sample that slides gives an equation. One at rest gives a bound, `abs(torque) <= static load`, and a residual
+    only where it breaks it. The last sample before a break-away gives an equation again: there the bound is reached.
+    """
+
+    exact = True
+
+    def __init__(self, measured: Measurement, law: Law, rest: float | None) -> None:
+        self.measured = measured
+        # a law with a band of slip in which it sticks says no more there
+        self.rest = max(at_rest(measured, rest), float(getattr(law, "band", 0.0)))
+        self.slides = np.abs(measured.slip) > self.rest
+        if not np.any(self.slides):
+            largest = float(np.max(np.abs(measured.slip)))
+            fault = f"never exceeds {self.rest:g} rad/s, below which a sample counts as at rest"
+            raise FitError("slip", fault, f"lower `rest`; the largest slip is {largest:g} rad/s")
+        self.breaks = break_aways(measured, self.slides)
+
+    @property
+    def equations(self) -> NDArray[np.bool_]:
+        """Samples that give an equation."""
+        return np.asarray(self.slides | self.breaks)
+
+    def torque(self, law: Law) -> Array:
+        """Fitted torque of every sample [N m]; at rest the measured one, as far as the law can hold it."""
+        measured = self.measured
+        kinetic, static = coefficients(law, np.abs(measured.slip[self.slides]))
+        capacity = static * measured.load
+        made = np.clip(measured.torque, -capacity, capacity)
+        made[self.breaks] = np.sign(measured.torque[self.breaks]) * capacity[self.breaks]
+        made[self.slides] = np.sign(measured.slip[self.slides]) * kinetic * measured.load[self.slides]
+        return made
+
+
+class Smooth:
+    """Residuals of a law that neither sticks nor has states: its torque follows from the slip, at rest too."""
+
+    exact = True
+
+    def __init__(self, measured: Measurement, rest: float | None) -> None:
+        self.measured, self.rest = measured, at_rest(measured, rest)
+
+    @property
+    def equations(self) -> NDArray[np.bool_]:
+        """Samples that give an equation: all."""
+        return np.ones(len(self.measured.time), dtype=bool)
+
+    def torque(self, law: Law) -> Array:
+        """Torque of every sample [N m]."""
+        return coefficients(law, self.measured.slip)[0] * self.measured.load
+
+
+def at_rest(measured: Measurement, rest: float | None) -> float:
+    """Slip below which a sample counts as at rest."""
+    return REST * float(np.max(np.abs(measured.slip))) if rest is None else float(rest)
+
+
+def break_aways(measured: Measurement, slides: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The last samples at rest before it slides off under the torque.
+
+    Their coefficient is at least the one just after, else the peak fell between two samples and is not known.
+    """
+    found = np.zeros(len(slides), dtype=bool)
+    last = np.flatnonzero(~slides[:-1] & slides[1:])
+    loaded = (measured.load[last] > 0.0) & (measured.load[last + 1] > 0.0)
+    last = last[loaded]
+    along = np.sign(measured.slip[last + 1])
+    before = along * measured.torque[last] / measured.load[last]
+    after = along * measured.torque[last + 1] / measured.load[last + 1]
+    found[last[(before > 0.0) & (before >= after)]] = True
+    return found

@@ -1,0 +1,105 @@
+"""One free parameter of a friction law as a number that is searched for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import exp, inf, log, nextafter
+from typing import TYPE_CHECKING, TypeAlias
+
+from clutchwork.fit.adjustable import STATIC, kinetic
+from clutchwork.fit.failure import FitError
+
+if TYPE_CHECKING:
+    from clutchwork.node import Law
+    from clutchwork.schema import Spec
+
+Pair: TypeAlias = "tuple[float | None, float | None]"
+Bounds: TypeAlias = "Mapping[str, Pair]"
+
+# how far the search goes from a start value that must be above zero, as a factor
+REACH = 1e6
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A number of the law, or the ordinate of one point of a curve."""
+
+    name: str  # "speed", or "kinetic[2]" for the second point of a curve
+    unit: str
+    start: float
+    bound: str  # in words
+    lower: float  # ends of the search
+    upper: float
+    lowest: float  # ends of what the law or the user allows
+    highest: float
+    field: str
+    point: int | None = None  # place in the curve
+    over: bool = False  # the static coefficient: its excess over the kinetic one is searched for
+
+    @property
+    def is_log(self) -> bool:
+        """Whether its logarithm is searched for, because it must be above zero."""
+        return self.lower > 0.0 and not self.over
+
+    @property
+    def scale(self) -> float:
+        """What a change of its code is compared with: 1 for a logarithm, else the start value."""
+        return 1.0 if self.is_log else abs(self.start) or 1.0
+
+    def coded(self, value: float) -> float:
+        """Value -> what is searched for."""
+        return log(value) if self.is_log else value
+
+    def decoded(self, code: float) -> float:
+        """What is searched for -> value, within its bounds."""
+        value = exp(code) if self.is_log else code
+        return min(max(value, self.lower), self.upper)
+
+
+def unknowns_of(law: Law, name: str, spec: Spec, unit: str, bounds: Bounds) -> list[Unknown]:
+    """A parameter, or the ordinates of all points of a curve."""
+    value = getattr(law, name)
+    given = bounds.get(name, (None, None))
+    if spec.what == "curve":
+        named = [(f"{name}[{i + 1}]", i, float(y)) for i, (_, y) in enumerate(value)]
+        return [_made(word, spec, unit, y, name, i, bounds.get(word, given)) for word, i, y in named]
+    return [_made(name, spec, unit, float(value), name, None, given)]
+
+
+def _made(name: str, spec: Spec, unit: str, start: float, field: str, point: int | None, given: Pair) -> Unknown:
+    lowest, highest = _limits(spec, start, point, given)
+    lower, upper = lowest, highest
+    if lower > 0.0 and start > 0.0:
+        lower, upper = max(lower, start / REACH), min(upper, start * REACH)
+    if not lower <= start <= upper or lower >= upper:
+        fault = f"of {name} are {lowest:g} to {highest:g}, its start value is {start:g}"
+        raise FitError("bounds", fault, "start within the bounds")
+    is_given = any(side is not None for side in given)
+    words = f"{lowest:g} to {highest:g}" if is_given else spec.bound or (">= 0" if lower == 0.0 else "> 0")
+    # static and kinetic coefficients move together, unless bounds hold the static one
+    over = name == STATIC and not is_given
+    return Unknown(name, unit, start, words, lower, upper, lowest, highest, field, point, over)
+
+
+def _limits(spec: Spec, start: float, point: int | None, given: Pair) -> tuple[float, float]:
+    """Bounds of the declaration, narrowed by given ones."""
+    lowest = [-inf if spec.at_least is None else spec.at_least]
+    lowest.append(-inf if spec.above is None else nextafter(spec.above, inf))
+    # an ordinate is a coefficient or a share: it keeps its sign
+    if point is not None:
+        lowest.append(nextafter(0.0, inf) if start > 0.0 else 0.0)
+    highest = [inf if spec.at_most is None else spec.at_most]
+    highest.append(inf if spec.below is None else nextafter(spec.below, -inf))
+    lower = max(*lowest, -inf if given[0] is None else float(given[0]))
+    return lower, min(*highest, inf if given[1] is None else float(given[1]))
+
+
+def below_static(law: Law, item: Unknown, free: list[str]) -> Unknown:
+    """The same, or for a kinetic coefficient below a static one that is not free: with that as its upper end."""
+    static = getattr(law, STATIC, None)
+    if item.point is not None or item.field == STATIC or STATIC in free or not static:
+        return item
+    if kinetic(replace(law, **{item.field: 0.9 * static})) != 0.9 * static:
+        return item
+    return replace(item, upper=min(item.upper, static), highest=min(item.highest, static))

@@ -1,0 +1,144 @@
+"""The free parameters of a friction law together, as the row of numbers that is searched for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import groupby
+from math import inf, log
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.errors import near
+from clutchwork.fit.adjustable import adjustable, default_free, fixed, kinetic, sum_is_held
+from clutchwork.fit.failure import FitError
+from clutchwork.fit.unknown import REACH, Bounds, Unknown, below_static, unknowns_of
+
+if TYPE_CHECKING:
+    from clutchwork.node import Law
+
+Array = NDArray[np.float64]
+
+
+class Unknowns:
+    """All free parameters of a law; codes are logarithms or plain numbers.
+
+    Some parameters are tied to others:
+
+    - the static coefficient is searched for as its excess over the kinetic one, so that it is never below it;
+    - ordinates whose sum the law holds, such as shares, are searched for as ratios to the last one: one code less.
+    """
+
+    def __init__(self, law: Law, free: Sequence[str] | None, bounds: Bounds | None, *, translation: bool) -> None:
+        self.law = law
+        names = default_free(law) if free is None else [free] if isinstance(free, str) else list(free)
+        found = [item for name in names for item in _unknowns(law, name, bounds or {}, translation)]
+        _check(names, found, bounds or {})
+        self.items = tuple(below_static(law, item, names) for item in found)
+        # (first item, number of items, sum) of the curves whose sum is held
+        self.held = [block for block in _curves(self.items) if sum_is_held(law, self.items[block[0]].field)]
+        closing = {first + count - 1 for first, count, _ in self.held}
+        self.searched = [place for place in range(len(self.items)) if place not in closing]
+
+    @property
+    def start(self) -> Array:
+        """Codes of the start values."""
+        floor = kinetic(self.law)
+        made = np.array([max(item.start - floor, 0.0) if item.over else item.coded(item.start) for item in self.items])
+        for first, count, _ in self.held:
+            made[first : first + count] -= made[first + count - 1]
+        return np.asarray(made[self.searched])
+
+    @property
+    def lower(self) -> Array:
+        """Lowest codes."""
+        return self._limits([0.0 if item.over else item.coded(item.lower) for item in self.items], -log(REACH))
+
+    @property
+    def upper(self) -> Array:
+        """Highest codes."""
+        return self._limits([inf if item.over else item.coded(item.upper) for item in self.items], log(REACH))
+
+    def _limits(self, codes: list[float], of_ratios: float) -> Array:
+        made = np.array(codes)
+        for first, count, _ in self.held:
+            made[first : first + count] = of_ratios
+        return np.asarray(made[self.searched])
+
+    def codes(self, u: Array) -> Array:
+        """Codes of all free parameters from those that are searched for."""
+        made = np.zeros(len(self.items))
+        made[self.searched] = u
+        for first, count, total in self.held:
+            part = slice(first, first + count)
+            made[part] += log(total) - np.log(np.sum(np.exp(made[part])))
+        for place, item in enumerate(self.items):
+            made[place] += kinetic(self._law(made)) if item.over else 0.0
+        return made
+
+    def values(self, u: Array) -> list[float]:
+        """Values of all free parameters."""
+        return [item.decoded(code) for item, code in zip(self.items, self.codes(u).tolist(), strict=True)]
+
+    def ends(self, u: Array) -> list[tuple[float, float]]:
+        """Lowest and highest value of every free parameter, where the others have these codes."""
+        floor = kinetic(self.law_at(u))
+        # the smallest number above a bound stands for it
+        lowest = [round(item.lowest, 300) for item in self.items]
+        return [
+            (max(low, floor) if item.over else low, item.highest) for low, item in zip(lowest, self.items, strict=True)
+        ]
+
+    def law_at(self, u: Array) -> Law:
+        """The law with these codes."""
+        return self._law(self.codes(u))
+
+    def _law(self, codes: Array) -> Law:
+        changes: dict[str, Any] = {}
+        for item, code in zip(self.items, codes.tolist(), strict=True):
+            value = item.decoded(code)
+            if item.point is None:
+                changes[item.field] = value
+            else:
+                points = changes.setdefault(
+                    item.field, [(float(x), float(y)) for x, y in getattr(self.law, item.field)]
+                )
+                points[item.point] = (points[item.point][0], value)
+        return replace(self.law, **changes)
+
+
+def _unknowns(law: Law, name: str, bounds: Bounds, translation: bool) -> list[Unknown]:
+    known = adjustable(type(law))
+    if name not in known:
+        remedy = f"parameters are {', '.join(known)}{near(name, known)}"
+        raise FitError("free", f"names {name!r}, which {type(law).__name__} has not", remedy)
+    fault = fixed(law, name)
+    if fault:
+        raise FitError("free", f"names {name!r}, which this law does not let vary: {fault}", "leave it out")
+    spec = known[name]
+    unit = spec.units[0] if translation and spec.units else spec.unit
+    return unknowns_of(law, name, spec, unit, bounds)
+
+
+def _check(names: list[str], found: list[Unknown], bounds: Bounds) -> None:
+    if not names:
+        raise FitError("free", "names no parameter", "name at least one to be fitted")
+    if len(set(names)) < len(names):
+        raise FitError("free", "names a parameter twice", "name each once")
+    known = [*names, *(item.name for item in found)]
+    for name in bounds:
+        if name not in known:
+            raise FitError("bounds", f"name {name!r}, which is not free", f"free it too{near(name, known)}")
+
+
+def _curves(items: tuple[Unknown, ...]) -> list[tuple[int, int, float]]:
+    """First item, number of items and sum of the ordinates of every curve."""
+    made, first = [], 0
+    for _, group in groupby(items, key=lambda item: item.field):
+        block = list(group)
+        if block[0].point is not None and len(block) > 1:
+            made.append((first, len(block), sum(item.start for item in block)))
+        first += len(block)
+    return made
