@@ -108,7 +108,7 @@ STATUS = (
     ("too_many_events", "the budget of events is spent", "raise max_events or shorten the run"),
     (
         "chatter",
-        "the torque jumps with the sign of the slip at every other step, the contact cannot come to rest",
+        "the torque jumps with the sign of the slip again and again, the contact cannot come to rest",
         "give it a law that sticks, as coulomb or stribeck, or one with states, as lugre",
     ),
     ("zeno", "more than 50 events within a microsecond", "give the named contact some inertia or damping"),

@@ -218,10 +218,10 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   return !stands_still(ws);
 }
 
-/// Whether a contact whose torque jumps with the sign of its slip reverses at every other step: it cannot come to rest.
+/// Whether a contact whose torque jumps with the sign of its slip reverses again and again within a few steps: it cannot come to rest.
 template <class T>
 bool chatters(Workspace<T>& ws) {
-  constexpr int window = 400, most = 100;
+  constexpr int window = 800, most = 40;
   const std::int64_t steps = ws.statistics.steps + ws.statistics.rejected;
   if (steps - ws.reversals_since > window) ws.reversals_since = steps, ws.reversals = 0;
   for (int i = 0; i < ws.n_chattering; ++i) {

@@ -12,9 +12,8 @@ struct Leuven {
     T damping;          ///< [s/rad]
   };
   static constexpr int states = most_elements;
-  static constexpr int all = most_elements;
-  // so much the hysteresis may pass the level before the elements turn back
-  static constexpr double slack = 1e-9;
+  // an element has left its limit when it is so far inside; the Stribeck level may push it back and forth
+  static constexpr double slack = 1e-7;
 
   template <class T>
   static int count(const Params<T>& p) {
@@ -37,7 +36,9 @@ struct Leuven {
     for (int i = 0; i < count(p); ++i) {
       const T stiffness = p.static_ * T(element_share(p.elements, at.points, i) /
                                         element_deflection(p.elements, at.points, i));
-      rates[i] = element_slides(at.piece, i) ? S(0) : stiffness * bending;
+      // one that slides stays at its limit, or leaves it inward
+      const bool inward = (value(bending) < 0) != (value(at.state[i]) < 0);
+      rates[i] = element_slides(at.piece, i) && !inward ? S(0) : stiffness * bending;
     }
   }
   template <class T>
@@ -45,27 +46,24 @@ struct Leuven {
     return p.static_;
   }
 
+  /// How far an element is from the coefficient at which it slides, over that coefficient.
+  template <class T, class S>
+  static S room(const Params<T>& p, const At<S>& at, int i) {
+    return S(1) - abs(at.state[i]) / (p.static_ * T(element_share(p.elements, at.points, i)));
+  }
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
     S least = S(1);
     for (int i = 0; i < count(p); ++i) {
-      if (element_slides(at.piece, i)) continue;
-      const S room = S(1) - abs(at.state[i]) / (p.static_ * T(element_share(p.elements, at.points, i)));
-      if (room < least) least = room, who = i;
-    }
-    for (int i = 0; i < count(p); ++i) {
-      if (!element_slides(at.piece, i)) continue;
-      // elements that slide go on while the deflection does
-      const T along = T((value(at.rate) < 0) != (value(at.state[i]) < 0) ? -1 : 1);
-      const S onward = share(p, at) * along + S(slack);
-      if (onward < least) least = onward, who = all;
-      break;
+      const S left = element_slides(at.piece, i) ? S(slack) - room(p, at, i) : room(p, at, i);
+      if (left < least) least = left, who = i;
     }
     return least;
   }
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
-    if (who == turned || who == all) return 0;
+    if (who == turned) return 0;
+    if (element_slides(at.piece, who)) return at.piece & ~(1 << who);
     const T side = T(value(state[who]) < 0 ? -1 : 1);
     state[who] = side * p.static_ * T(element_share(p.elements, at.points, who));
     return at.piece | 1 << who;
