@@ -7,11 +7,13 @@ import tomllib
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "tools"))
+sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures")]
 
+import experiments  # noqa: E402
 import gen_docs  # noqa: E402
 
 gen_docs.write(HERE / "reference")
+experiments.write(HERE / "reference" / "rig")
 
 _project = tomllib.loads((HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 project = _project["name"]

@@ -31,7 +31,7 @@ def test_a_misspelt_name_is_answered_with_a_near_one() -> None:
     with pytest.raises(ValueError, match=r"no friction law 'mykhalewych'; did you mean 'mykhalevych'\?"):
         rig.drift("mykhalewych")
     with pytest.raises(ValueError, match="did you mean 'second'"):
-        rig.drift("lugre", preset="secnd")
+        rig.drift("lugre", preset="secondd")
     with pytest.raises(TypeError, match="is no friction law"):
         rig.drift([3.0])
     with pytest.raises(ValueError, match="no friction law is given"):

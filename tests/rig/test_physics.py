@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import runpy
+from dataclasses import replace
 from math import atan, pi, sqrt
 from pathlib import Path
 
@@ -15,10 +16,41 @@ from clutchwork.rig.bench import friction, position
 from clutchwork.rig.experiments.judder import Judder
 from clutchwork.rig.experiments.stall import Stall
 
-SECOND = rig.PRESETS["second"]
+# creep [m] that an independent code found, drift test of the spec
+FIRST_SET = {"tanh": 3.5e-3, "regularised_stribeck": 4.6e-3, "lugre": 8.0e-4, "dahl": 1.5e-3}
+SECOND_SET = {0.1: {"lugre": 412e-6, "tanh": 5602e-6}, 0.3: {"lugre": 1678e-6, "elastoplastic": 84e-6, "tanh": 7644e-6}}
+STILL = ("elastoplastic", "mykhalevych", "stribeck", "coulomb")
 
 
-@pytest.mark.parametrize("law", ["stribeck", "lugre", "elastoplastic", "gms", "coefficient_table"])
+def test_creep_of_the_first_set() -> None:
+    table = rig.drift([*FIRST_SET, *STILL, "gms", "leuven"]).table
+    for law, creep in FIRST_SET.items():
+        assert table.value(law, "creep") == pytest.approx(creep, rel=0.05)
+    for law in STILL:
+        assert abs(table.value(law, "creep")) < 1e-8
+    # Maxwell-slip laws move in the first periods, then no more
+    for law in ("gms", "leuven"):
+        assert abs(table.value(law, "creep")) < 1e-6
+        assert abs(table.value(law, "late creep")) < 1e-8
+
+
+def test_forms_of_mykhalevych_in_the_drift_test() -> None:
+    law = rig.PRESETS["first"].law("mykhalevych")
+    forms = {reset: replace(law, reset=reset) for reset in ("saturate", "clip", "literal")}
+    table = rig.drift(forms | {"passive": replace(law, passive=True)}).table
+    for form in ("saturate", "clip", "passive"):
+        assert abs(table.value(form, "creep")) < 1e-8
+    assert table.value("literal", "creep") == pytest.approx(-1.7e-2, rel=0.05)
+
+
+@pytest.mark.parametrize("swing", SECOND_SET)
+def test_creep_of_the_second_set(swing: float) -> None:
+    table = rig.drift(list(SECOND_SET[swing]), preset="second", swing=swing).table
+    for law, creep in SECOND_SET[swing].items():
+        assert table.value(law, "creep") == pytest.approx(creep, rel=0.05)
+
+
+@pytest.mark.parametrize("law", ["stribeck", "lugre", "elastoplastic", "gms", "leuven", "coefficient_table"])
 def test_steady_friction_is_the_stribeck_curve(law: str) -> None:
     table = rig.steady(law).table
     # the table is linear between points a quarter of the Stribeck speed apart; states settle over 100 deflections

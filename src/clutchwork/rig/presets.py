@@ -10,6 +10,11 @@ from clutchwork.errors import near
 from clutchwork.node import Domain, Law
 from clutchwork.schema import REGISTRY, Role
 
+# deflection over static/stiffness and share; the weak ones bring a body to rest that swings on its contact
+ELEMENTS = (
+    (0.02, 0.03), (0.05, 0.05), (0.1, 0.07), (0.2, 0.1), (0.4, 0.15), (0.8, 0.2), (1.3, 0.15), (2.0, 0.15), (3.0, 0.1),
+)  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Preset:
@@ -32,12 +37,13 @@ class Preset:
     elastic: float = 1e-4  # m, wind-up of the Mykhalevych law
     inner: float = 1.0  # 1, inner friction of the Mykhalevych law
     width: float = 1e-3  # m/s, within which regularised laws smooth the sign
-    # 1, deflection over static/stiffness and share of the elements of Leuven and GMS
-    elements: tuple[tuple[float, float], ...] = ((0.4, 0.25), (0.8, 0.25), (1.3, 0.2), (2.0, 0.15), (3.0, 0.15))
+    elements: tuple[tuple[float, float], ...] = ELEMENTS  # of Leuven and GMS
+    order: float = 50.0  # 1, of the Leuven law: large, so that it does not creep
     attraction: float = 100.0  # 1/s
     mean: float = 0.3  # share of the static force, middle of the swinging load of the drift test
     swing: float = 0.2  # share of the static force, its amplitude
     frequency: float = 2.0  # Hz, its frequency
+    end: float = 20.0  # s, when it ends
 
     @property
     def force(self) -> float:
@@ -87,7 +93,7 @@ class Preset:
             "dahl": {"kinetic": self.kinetic, "stiffness": self.stiffness},
             "lugre": bristle,
             "elastoplastic": {**bristle, "elastic": 0.7 * self.kinetic / self.stiffness},
-            "leuven": {**curve, "elements": stack},
+            "leuven": {**curve, "elements": stack, "order": self.order},
             "gms": {**curve, "elements": stack, "attraction": self.attraction},
             "mykhalevych": {
                 "static": self.static,
@@ -131,6 +137,7 @@ SECOND = Preset(
     mean=0.5,
     swing=0.1,
     frequency=1.0,
+    end=21.0,
 )
 CLUTCH = Preset(
     "clutch",

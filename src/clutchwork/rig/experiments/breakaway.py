@@ -10,7 +10,7 @@ import numpy as np
 
 from clutchwork.rig.bench import Bench, friction, position
 from clutchwork.rig.experiment import NOT_REACHED, Experiment, Result, Runs, Trial, experiment
-from clutchwork.rig.looks import head, legend_below, looks
+from clutchwork.rig.looks import head, legend_below, looks, small
 from clutchwork.rig.presets import Preset
 from clutchwork.rig.table import Column, Table
 from clutchwork.signals.table import Table as Course
@@ -75,17 +75,17 @@ class Breakaway(Experiment):
         """Break-away force over the rate, and friction over displacement at the slowest rate."""
         over_rate, course = figure.subplots(1, 2)
         rates, unit = [float(cell) for cell in result.table["rate"]], result.preset.unit_force
-        slowest, length = f"{self.rates[0]:.4g}", result.preset.length
+        slowest, reach = f"{self.rates[0]:.4g}", self.reach * result.preset.length
         for label, look in looks(result.runs).items():
             over_rate.plot(rates, [float(cell) for cell in result.table[label]], marker=".", markersize=4.0, **look)
             run = result[label, slowest]
-            course.plot(position(run) / length, friction(run), **look)
+            near_by = position(run) < reach
+            course.plot(1e6 * position(run)[near_by], friction(run)[near_by], **look)
         head(over_rate, "a", "break-away force")
         over_rate.set_xscale("log")
         over_rate.set_xlabel(f"rate of the load, {unit}/s")
         over_rate.set_ylabel(f"force, {unit}")
         head(course, "b", f"friction at {rates[0]:g} {unit}/s")
-        course.set_xlim(-0.5, self.reach)
-        course.set_xlabel(f"displacement / {length:g} {result.preset.unit_length}")
+        course.set_xlabel(f"displacement, {small(result.preset.unit_length, 1e6)}")
         course.set_ylabel(f"friction, {unit}")
         legend_below(over_rate)

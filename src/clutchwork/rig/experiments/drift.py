@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import floor, pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from clutchwork.node import Signal
+
+
+class Swinging(NamedTuple):
+    """A load that swings."""
+
+    mean: float  # share of the static force
+    swing: float  # share of the static force, amplitude
+    frequency: float  # Hz
+    end: float  # s
 
 
 @experiment
@@ -47,30 +56,28 @@ class Drift(Experiment):
     swing: float | None = None  # share; None: of the preset
     frequency: float | None = None  # Hz; None: of the preset
     begin: float = 5.0  # s, the sine begins
-    end: float = 20.0  # s, the load ends
+    end: float | None = None  # s, the load ends; None: of the preset
     rest: float = 2.0  # s of rest after that
 
     def run(self, bench: Bench) -> Runs:
         """One run with samples every 5 ms."""
-        t_end = self.end + self.rest
         d = bench.pushed(*self.forces(bench.preset))
-        return {"drift": bench.simulate(d, t_end, dt=0.005)}
+        return {"drift": bench.simulate(d, self.sine(bench.preset).end + self.rest, dt=0.005)}
+
+    def sine(self, preset: Preset) -> Swinging:
+        """The swinging load: what is given, the rest from the preset."""
+        given = (self.mean, self.swing, self.frequency, self.end)
+        own = (preset.mean, preset.swing, preset.frequency, preset.end)
+        return Swinging(*(b if a is None else a for a, b in zip(given, own, strict=True)))
 
     def forces(self, preset: Preset) -> tuple[Signal, ...]:
         """The course of the load [N]: ramps and holding, the sine, and its end."""
-        unit, (mean, swing, frequency) = preset.force, self.sine(preset)
-        corners = ((0, 0), (1, 0), (2, self.push), (3, mean), (self.end, mean), (self.end, 0))
+        unit, (mean, swing, frequency, end) = preset.force, self.sine(preset)
+        corners = ((0, 0), (1, 0), (2, self.push), (3, mean), (end, mean), (end, 0))
         held = Course([(float(t), unit * share) for t, share in corners])
         swinging = Sine(amplitude=unit * swing, frequency=frequency, start=self.begin)
-        turns = 2 * pi * ((frequency * (self.end - self.begin)) % 1.0)
-        return held, swinging, Sine(amplitude=-unit * swing, frequency=frequency, start=self.end, phase=turns)
-
-    def sine(self, preset: Preset) -> tuple[float, float, float]:
-        """Mean and amplitude [share of the static force] and frequency [Hz]."""
-        given = (self.mean, self.swing, self.frequency)
-        own = (preset.mean, preset.swing, preset.frequency)
-        mean, swing, frequency = (a if a is not None else b for a, b in zip(given, own, strict=True))
-        return mean, swing, frequency
+        turns = 2 * pi * ((frequency * (end - self.begin)) % 1.0)
+        return held, swinging, Sine(amplitude=-unit * swing, frequency=frequency, start=end, phase=turns)
 
     def columns(self, preset: Preset) -> tuple[Column, ...]:
         """What is measured."""
@@ -80,10 +87,10 @@ class Drift(Experiment):
 
     def measure(self, trial: Trial) -> Sequence[float]:
         """Displacement by the push, over whole periods without the first, over the last of them, and after the load."""
-        frequency = self.sine(trial.preset)[2]
-        periods = floor((self.end - self.begin) * frequency + 1e-9)
+        _, _, frequency, end = self.sine(trial.preset)
+        periods = floor((end - self.begin) * frequency + 1e-9)
         first, late, last = (self.begin + n / frequency for n in (1, min(11, periods), periods))
-        instants = (self.begin, first, late, last, self.end, self.end + self.rest)
+        instants = (self.begin, first, late, last, end, end + self.rest)
         x = np.interp(instants, trial["drift"].time, position(trial["drift"]))
         return float(x[0]), float(x[3] - x[1]), float(x[3] - x[2]), float(x[5] - x[4])
 
@@ -109,15 +116,15 @@ class Drift(Experiment):
         creep.set_ylabel(f"creep, {small(unit, 1e3)}")
         fine.set_ylabel(f"creep, {small(unit, 1e6)}")
         fine.set_xlabel("time, s")
-        fine.set_xlim(0.0, self.end + self.rest)
+        fine.set_xlim(0.0, self.sine(result.preset).end + self.rest)
         legend_below(whole)
         figure.align_ylabels()
 
     def _load(self, axes: Axes, result: Result) -> None:
-        time = np.linspace(0.0, self.end + self.rest, 4001)
-        mean, swing, frequency = self.sine(result.preset)
-        load = np.interp(time, (0, 1, 2, 3, self.end), (0, 0, self.push, mean, mean))
+        mean, swing, frequency, end = self.sine(result.preset)
+        time = np.linspace(0.0, end + self.rest, 4001)
+        load = np.interp(time, (0, 1, 2, 3, end), (0, 0, self.push, mean, mean))
         load += np.where(time > self.begin, swing * np.sin(2 * pi * frequency * (time - self.begin)), 0.0)
-        axes.plot(time, result.preset.force * np.where(time <= self.end, load, 0.0), color="#404040", linewidth=0.8)
+        axes.plot(time, result.preset.force * np.where(time <= end, load, 0.0), color="#404040", linewidth=0.8)
         axes.set_ylabel(f"load, {result.preset.unit_force}")
         head(axes, "a", "load")
