@@ -1,4 +1,4 @@
-"""The command line: run | check | demo | rig | --version.
+"""The command line: run | check | demo | rig | fit | --version.
 
 Exit codes: 0 done; 1 the run stopped early (what was asked for is written up to there); 2 the command line or an
 option is wrong; 3 the model is wrong, every mistake is listed; 4 a file cannot be read or written, or a package is
@@ -12,6 +12,7 @@ import json
 import sys
 import warnings
 from collections.abc import Callable, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -51,7 +52,8 @@ def parser() -> argparse.ArgumentParser:
     _run_parser(commands.add_parser("run", help="compute the motion of a model", epilog=_codes()))
     _check_parser(commands.add_parser("check", help="check a model and list its ratios, without running it"))
     _demo_parser(commands.add_parser("demo", help="launch and 3-4 shift of a six-speed planetary gearbox"))
-    _rig_parser(commands.add_parser("rig", help="experiments that tell friction laws apart", epilog=_codes()))
+    for module in ("rig", "fit"):
+        import_module(f"clutchwork.{module}.command").add_command(commands)
     return top
 
 
@@ -84,17 +86,6 @@ def _demo_parser(demo: argparse.ArgumentParser) -> None:
     demo.set_defaults(command=_demo)
     demo.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "demo"), help="default: out/demo")
     demo.add_argument("--json", action="store_true", help="tell the results as JSON on standard output")
-
-
-def _rig_parser(rig: argparse.ArgumentParser) -> None:
-    rig.set_defaults(command=_rig)
-    rig.add_argument("experiment", help="drift, stick_slip, judder ...; all; list tells experiments, laws and presets")
-    rig.add_argument("--laws", metavar="A,B", help="laws to compare, or all; default: those of the experiment")
-    rig.add_argument("--preset", metavar="NAME", help="where the laws take their parameters from")
-    rig.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a setting")
-    rig.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "rig"), help="default: out/rig")
-    rig.add_argument("--signals", action="store_true", help="write all signals of every run too")
-    rig.add_argument("--json", action="store_true", help="tell the results as JSON on standard output")
 
 
 def _run(asked: argparse.Namespace) -> int:
@@ -174,23 +165,6 @@ def _check(asked: argparse.Namespace) -> int:
     else:
         print(report.model_text(system, shafts))
     return DONE
-
-
-def _rig(asked: argparse.Namespace) -> int:
-    from clutchwork.rig import command
-
-    if asked.experiment == command.LIST:
-        print(command.listing())
-        return DONE
-    done, data = True, []
-    for outcome in command.outcomes(asked.experiment, asked.laws, asked.preset, asked.set, asked.out, asked.signals):
-        done &= outcome.result.complete
-        data.append(outcome.data)
-        if not asked.json:
-            print(outcome.text)
-    if asked.json:
-        _print_json({"experiments": data})
-    return DONE if done else STOPPED
 
 
 def _demo(asked: argparse.Namespace) -> int:

@@ -1,18 +1,55 @@
-"""What `clutchwork rig` does; the command line prints it."""
+"""`clutchwork rig`: arguments, and what is told and written."""
 
 from __future__ import annotations
 
+import argparse
+import json
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from clutchwork.errors import near
-from clutchwork.rig.experiment import EXPERIMENTS, Experiment, Result, made
-from clutchwork.rig.presets import PRESETS
-from clutchwork.text import columns
 
+if TYPE_CHECKING:
+    from clutchwork.rig.experiment import Experiment, Result
+
+DONE, STOPPED = 0, 1
 EVERY, LIST = "all", "list"
+
+
+def add_command(subparsers: Any) -> None:
+    """Add `rig` to the commands of the command line."""
+    rig = subparsers.add_parser(
+        "rig",
+        help="experiments that tell friction laws apart",
+        epilog="Exit code 1: a run stopped early, other than by the chatter of a law that cannot rest.",
+    )
+    rig.set_defaults(command=rig_command)
+    rig.add_argument("experiment", help="drift, stick_slip, judder ...; all; list tells experiments, laws and presets")
+    rig.add_argument("--laws", metavar="A,B", help="laws to compare, or all; default: those of the experiment")
+    rig.add_argument("--preset", metavar="NAME", help="where the laws take their parameters from")
+    rig.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a setting")
+    rig.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "rig"), help="default: out/rig")
+    rig.add_argument("--signals", action="store_true", help="write all signals of every run too")
+    rig.add_argument("--json", action="store_true", help="tell the results as JSON on standard output")
+
+
+def rig_command(asked: argparse.Namespace) -> int:
+    """Perform, tell, write; the exit code."""
+    if asked.experiment == LIST:
+        sys.stdout.write(listing() + "\n")
+        return DONE
+    done, data = True, []
+    for outcome in outcomes(asked.experiment, asked.laws, asked.preset, asked.set, asked.out, asked.signals):
+        done &= outcome.result.complete
+        data.append(outcome.data)
+        if not asked.json:
+            sys.stdout.write(outcome.text + "\n")
+    if asked.json:
+        sys.stdout.write(json.dumps({"experiments": data}, indent=2) + "\n")
+    return DONE if done else STOPPED
 
 
 @dataclass(frozen=True)
@@ -57,6 +94,9 @@ def outcomes(
 
 def listing() -> str:
     """The experiments with their settings, the laws and the presets."""
+    from clutchwork.rig import EXPERIMENTS, PRESETS
+    from clutchwork.text import columns
+
     lines = ["experiments"]
     for name, cls in EXPERIMENTS.items():
         settings = ", ".join(f"{item.name}={item.default}" for item in fields(cls))
@@ -68,6 +108,9 @@ def listing() -> str:
 
 
 def _experiments(name: str, settings: Sequence[str]) -> list[Experiment]:
+    from clutchwork.rig import EXPERIMENTS
+    from clutchwork.rig.experiment import made
+
     if name == EVERY:
         if settings:
             raise ValueError("settings belong to one experiment: name it in place of all")
