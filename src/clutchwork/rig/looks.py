@@ -21,7 +21,7 @@ ORDER = (
 PAGE = 66.0
 
 GUIDE: dict[str, Any] = {"color": "#404040", "linewidth": 0.7, "linestyle": (0, (3, 2)), "zorder": 1}
-GREY: dict[str, Any] = {"color": "#C4C4C4", "linewidth": 3.2, "zorder": 1}
+GREY: dict[str, Any] = {"color": "#D0D0D0", "linewidth": 6.0, "zorder": 1}
 
 
 def looks(labels: Iterable[str]) -> dict[str, dict[str, Any]]:
@@ -37,6 +37,13 @@ def looks(labels: Iterable[str]) -> dict[str, dict[str, Any]]:
         }
         for label, i in numbers.items()
     }
+
+
+def nested(labels: Iterable[str]) -> dict[str, dict[str, Any]]:
+    """Looks for curves that lie on each other: every next one is thinner, so that all of them are seen."""
+    every = looks(labels)
+    last = max(1, len(every) - 1)
+    return {label: {**look, "linewidth": 3.4 - 2.4 * i / last} for i, (label, look) in enumerate(every.items())}
 
 
 def title(label: str) -> str:

@@ -29,7 +29,7 @@ class Breakaway(Experiment):
     The load on a body at rest rises at a constant rate. The break-away force is the largest friction force while the
     body has moved less than a few elastic deflections. Measured contacts break away earlier under fast loads.
 
-    Source: V. I. Johannes, M. A. Green, C. A. Brockley 1973, doi:10.1016/0043-1648(73)90128-3.
+    Source: V. I. Johannes, M. A. Green, C. A. Brockley, Wear 24, 1973, 381-385.
     """
 
     title = "break-away over the rate of the load"

@@ -15,7 +15,7 @@ from clutchwork.elements.prescribed_speed import PrescribedSpeed
 from clutchwork.elements.spring_damper import SpringDamper
 from clutchwork.rig.bench import Bench, speed
 from clutchwork.rig.experiment import NOT_REACHED, Experiment, Result, Runs, Trial, experiment
-from clutchwork.rig.looks import GUIDE, head, legend_below, looks, title
+from clutchwork.rig.looks import GREY, GUIDE, head, legend_below, nested, title
 from clutchwork.rig.presets import Preset
 from clutchwork.rig.table import Column, Table
 
@@ -36,7 +36,8 @@ class Judder(Experiment):
     over slip: they grow while the damping is less than the slope. The damping is given over that limit, which is
     computed from the Stribeck curve of the preset.
 
-    Source: R. A. Ibrahim 1994, doi:10.1115/1.3111080.
+    Source: R. A. Ibrahim, Friction-induced vibration, chatter, squeal, and chaos, part II, Applied Mechanics Reviews
+    47, 1994, 227-253.
     """
 
     title = "clutch judder and its limit"
@@ -130,11 +131,11 @@ class Judder(Experiment):
         shares = [float(cell) for cell in result.table["over limit"]]
         theory = [float(cell) for cell in result.table["theory"]]
         growth.axvspan(shares[0] - 0.02, 1.0, color="#F4E7E0", zorder=0, linewidth=0)
-        growth.plot(shares, theory, color="#C4C4C4", linewidth=3.2, label="theory", zorder=1)
+        growth.plot(shares, theory, label="theory", **GREY)
         growth.axhline(0.0, color="#404040", linewidth=0.6)
         growth.axvline(1.0, **GUIDE)
-        for label, look in looks(result.runs).items():
-            growth.plot(shares, [float(c) for c in result.table[label]], marker="o", markersize=3.0, **look)
+        for label, look in nested(result.runs).items():
+            growth.plot(shares, [float(c) for c in result.table[label]], **look)
             run = result[label]
             part = run.time >= run.time[-1] - 3.0 / self.frequency
             late.plot(run.time[part], -run["friction.slip"][part], **{**look, "linewidth": 0.9})

@@ -32,7 +32,7 @@ class Lag(Experiment):
     A body slides in one direction with a speed that oscillates around a mean. Measured friction is larger while the
     speed rises than while it falls, so that it runs through a loop; a law without states stays on its curve.
 
-    Source: D. P. Hess, A. Soom 1990, doi:10.1115/1.2920240.
+    Source: D. P. Hess, A. Soom, Journal of Tribology 112, 1990, 147-152.
     """
 
     title = "frictional lag in sliding"

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from clutchwork.rig.bench import Bench, friction
 from clutchwork.rig.experiment import NOT_REACHED, Experiment, Result, Runs, Trial, experiment
-from clutchwork.rig.looks import GREY, legend_below, looks
+from clutchwork.rig.looks import GREY, legend_below, nested
 from clutchwork.rig.presets import Preset
 from clutchwork.rig.table import Column, Table
 from clutchwork.signals.table import Table as Course
@@ -83,8 +83,8 @@ class Steady(Experiment):
         axes = figure.subplots()
         speeds = [float(cell) for cell in result.table["speed"]]
         axes.plot(speeds, [float(cell) for cell in result.table["curve"]], label="Stribeck curve", **GREY)
-        for label, look in looks(result.runs).items():
-            axes.plot(speeds, [float(cell) for cell in result.table[label]], marker=".", markersize=3.5, **look)
+        for label, look in nested(result.runs).items():
+            axes.plot(speeds, [float(cell) for cell in result.table[label]], **look)
         axes.set_xscale("log")
         axes.set_ylim(bottom=0.0)
         axes.set_xlabel(f"slip speed, {result.preset.unit_speed}")
