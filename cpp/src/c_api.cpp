@@ -243,12 +243,14 @@ int cw_restore(cw_run* run, const void* bytes, std::int64_t n) {
 int cw_law(int number, const double* params, const double* points, std::int64_t n_points, double slip, double* kinetic,
            double* hold) {
   if (number < 0 || number >= law_kinds) return 0;
+  bool has_curves = false;
+  visit_law_curves(number, [&](int) { has_curves = true; });
   visit_law(number, [&](auto tag) {
     using L = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename L::template Params<double>*>(params);
     int piece = 0;
     if constexpr (Kinked<L, double>) {
-      const int edges = n_points > 0 ? L::edges(p) : 0;
+      const int edges = n_points > 0 || !has_curves ? L::edges(p) : 0;
       while (piece < edges && L::edge(p, points, piece) <= slip) ++piece;
     }
     const At<double> at{slip, nullptr, nullptr, piece, points};

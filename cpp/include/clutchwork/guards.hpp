@@ -201,6 +201,8 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
   const int nz = form.nz();
+  // round-off of a margin: a state at its limit has not passed it
+  constexpr double noise = 1e-12;
   for (int i = 0; i < ws.n_switching; ++i) {
     const int k = ws.switching[i];
     const Branch<T>& b = ws.branch[k];
@@ -215,9 +217,9 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
       interpolate(form, step, s, step.point());
       inputs_at(ws, step.t + s * step.h);
       const T rate = form.rate(k, step.point()) + offset_rate(ws, k);
-      return value(law_margin(ws, b, rate, T(0), step.point() + nz, step.f0() + nz, who).v);
+      return noise + value(law_margin(ws, b, rate, T(0), step.point() + nz, step.f0() + nz, who).v);
     };
-    const double s = first_crossing(f, value(start.v), value(end.v), hit.s);
+    const double s = first_crossing(f, noise + value(start.v), noise + value(end.v), hit.s);
     if (s < 0 || (hit.what != Hit::nothing && s >= hit.s)) continue;
     f(s);
     hit = {Hit::law, k, s, who};

@@ -167,6 +167,16 @@ T slip_acceleration(const Workspace<T>& ws, int c, const T* q) {
   return a;
 }
 
+/// Acceleration of a slip that the prescribed speeds give.
+template <class T>
+T slip_slope(const Workspace<T>& ws, int c) {
+  T a = T(0);
+  for (int p = 0; p < ws.sys.prescribed; ++p) {
+    a += prescribed_share(ws, int(ws.sys.elements) + c, p) * ws.prescribed_slope[p];
+  }
+  return a;
+}
+
 /// Gather the problem of the contacts in list[0..n): matrix and views.
 template <class T>
 BoundedProblem<T> gather(Workspace<T>& ws, const int* list, int n) {
@@ -263,6 +273,12 @@ bool settle_contacts(Workspace<T>& ws, int located) {
         ws.mode[c] = slip > 0 ? forward : backward;
       else if (ws.mode[c] == locked)
         ws.mode[c] = open;
+    } else if (c == located && ws.cause == Cause::torque_limit && is_rigid(ws, c)) {
+      // prescribed speeds have parted: there is no choice
+      const double parting = slip != 0 ? slip : value(slip_slope(ws, c));
+      candidate[c] = 0;
+      ws.mode[c] = parting < 0 && !contact_one_way(ws, c) ? backward : forward;
+      ws.forced[c] = ws.mode[c];
     } else if (candidate[c] && ws.forced[c] != 0) {
       candidate[c] = 0;
       ws.mode[c] = ws.forced[c];

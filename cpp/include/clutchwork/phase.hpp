@@ -209,8 +209,14 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   Workspace<T>& ws = form.ws;
   Branch<T>& b = ws.branch[k];
   T* state = step.y0() + form.nz();
-  if (who == turned) ws.heading[b.direction - int(ws.sys.elements)] *= -1;
+  int& heading = ws.heading[b.direction - int(ws.sys.elements)];
   b.piece = law_cross(ws, b, rate_of(ws, b.direction), who, state);
+  // a state reaches its limit the way the contact slips, however small the slip
+  if (who == turned) {
+    heading = -heading;
+  } else {
+    heading = value(state[b.state + who]) < 0 ? backward : forward;
+  }
   ws.piece[b.direction] = b.piece;
   for (int i = 0; i < b.states; ++i) ws.state[b.state + i] = state[b.state + i];
   ws.detail_component = b.direction;

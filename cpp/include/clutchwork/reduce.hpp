@@ -212,7 +212,8 @@ void list_slip(Workspace<T>& ws, int k) {
   const int c = b.direction - int(ws.sys.elements);
   const double slip = value(rate_of(ws, b.direction));
   if (may_stick(ws, c) && ws.mode[c] != locked) {
-    const double level = ws.forced[c] == 0 ? ws.sys.contact_tolerance[c] : 0.0;
+    // what prescribed speeds drive cannot be stopped
+    const double level = ws.forced[c] == 0 && !is_rigid(ws, c) ? ws.sys.contact_tolerance[c] : 0.0;
     const bool outside = abs(slip) >= level * (1 - 1e-9);
     ws.line[ws.n_lines++] = {LineGuard::slip, k, ws.mode[c], outside ? level * ws.mode[c] : 0.0};
   }
