@@ -2,7 +2,7 @@
 #include <clutchwork/c_api.h>
 
 #include <clutchwork/registry.gen.hpp>
-#include <memory>
+#include <initializer_list>
 #include <vector>
 
 /// Builds the bytes of a System from shafts, elements, contacts and signals; speeds are those of the free shafts.
@@ -32,6 +32,20 @@ int law_kind() {
   int kind = 0;
   while (!visit_law(kind, [](auto tag) { return std::is_same_v<typename decltype(tag)::type, L>; })) ++kind;
   return kind;
+}
+
+/// Number of states that a law uses with these parameters.
+template <class L>
+int law_states(const Numbers& law) {
+  if constexpr (SizedLaw<L>) return L::count(*reinterpret_cast<const typename L::template Params<double>*>(law.data()));
+  return int(L::states);
+}
+
+/// Several lists of numbers as one: parameters with curves among them.
+inline Numbers joined(std::initializer_list<Numbers> parts) {
+  Numbers all;
+  for (const Numbers& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
 
 /// From `time` on: c0 + c1 s + c2 s^2 + c3 s^3 + amplitude exp(-decay s) sin(omega s + phase).
@@ -81,14 +95,17 @@ class Model {
     element_state_.push_back(put(state_, own));
     return int(elements_.size()) - 1;
   }
+  /// `state`: where those of the law start, zero if left out; `tolerance`: slip below which it may lock.
   template <class E, class L>
   int contact(int base, int follower, const Numbers& params, const Indices& signals, const Numbers& law,
-              bool locked = false) {
+              bool locked = false, const Numbers& state = {}, double tolerance = 0) {
     contacts_.push_back({base, follower});
     contact_kind_.push_back(contact_kind<E>()), contact_law_.push_back(law_kind<L>());
     contact_param_.push_back(put(params_, params)), contact_law_param_.push_back(put(params_, law));
-    contact_input_.push_back(put(refs_, signals)), contact_state_.push_back(0);
-    contact_tolerance_.push_back(0), contact_initial_.push_back(locked);
+    Numbers own = state;
+    own.resize(std::size_t(law_states<L>(law)));
+    contact_input_.push_back(put(refs_, signals)), contact_state_.push_back(put(state_, own));
+    contact_tolerance_.push_back(tolerance), contact_initial_.push_back(locked);
     return int(contacts_.size()) - 1;
   }
 

@@ -9,149 +9,324 @@ using namespace clutchwork;
 namespace {
 
 // arguments of a function: rate, states, inputs, parameters
-constexpr int most = 16;
+constexpr int most = 24;
 using D = Dual<double, most>;
 constexpr double points[8 * 3] = {0, 1, 0.5,  1, 1.5, -0.2, 2, 1.3, -0.1, 3, 1.2, 0,
                                   4, 1, -0.3, 5, 0.7, 0.1,  6, 0.8, 0.2,  7, 1,   0.3};
+// sizes of states: those of ElastoPlastic come to lie below the elastic limit, beyond it, and beyond the plastic one
+constexpr double sizes[4][2] = {{0.1, 0.9}, {1, 3}, {11.9, 12.7}, {13, 20}};
 
-/// Compare f at x; arguments with step zero are not differentiated.
-template <class F>
-void differentiate(F&& f, const double* x, int n, const bool* fixed) {
-  D dual[most];
-  double moved[most];
-  for (int i = 0; i < n; ++i) dual[i] = D::variable(x[i], i), moved[i] = x[i];
-  const D r = f(static_cast<const D*>(dual));
-  const double plain = f(x);
-  if (plain - plain != 0) return;
-  CHECK(check::same_bits(r.v, plain));
-  bool zero = false;
-  for (int i = 0; i < n; ++i) zero = zero || fixed[i];
-  for (int i = 0; i < n; ++i) {
-    // a parameter of zero may divide: then only the value counts
-    if (fixed[i] || (zero && r.d[i] - r.d[i] != 0)) continue;
-    const double h = 1e-6 * (1 + abs(x[i]));
-    moved[i] = x[i] + h;
-    const double up = f(static_cast<const double*>(moved));
-    moved[i] = x[i] - h;
-    const double down = f(static_cast<const double*>(moved));
-    moved[i] = x[i];
-    const double slope = (up - down) / (2 * h);
-    CHECK_NEAR(r.d[i], slope, 1e-7 * (1 + abs(slope)) + 1e-9 * abs(plain));
+/// What is put into the parameters of a component: plain numbers, words among several, curves.
+struct Fields {
+  int count = 0, words[most] = {};
+  double start[most] = {};
+  bool fixed[most] = {};
+
+  template <class E, class Curves>
+  static Fields of(Tag<E>, Curves&& curves) {
+    using P = typename E::template Params<double>;
+    static_assert(sizeof(P) < most * sizeof(double));
+    Fields f;
+    f.count = int(sizeof(P) / sizeof(double));
+    for (int k = 0; k < f.count; ++k) f.start[k] = 1.35 + 0.3 * k;
+    curves([&](int k) {
+      f.start[k] = 1, f.start[k + 1] = 6;
+      f.fixed[k] = f.fixed[k + 1] = true;
+    });
+    P p{};
+    auto word = [&](const double& field, int values) {
+      const auto k = &field - reinterpret_cast<const double*>(&p);
+      f.words[k] = values, f.start[k] = 0, f.fixed[k] = true;
+    };
+    if constexpr (requires { p.shape; }) word(p.shape, 4);
+    if constexpr (requires { p.reset; }) word(p.reset, 3);
+    if constexpr (requires { p.passive; }) word(p.passive, 2);
+    return f;
   }
-}
+  /// The next combination of words; false: all were there.
+  bool next_words() {
+    for (int k = 0; k < count; ++k) {
+      if (words[k] == 0) continue;
+      if ((start[k] += 1) < words[k]) return true;
+      start[k] = 0;
+    }
+    return false;
+  }
+};
 
-/// Run `call(params, at)` over rates, pieces and parameter sets, one parameter at a time also zero.
-template <class E, class F>
-void over_arguments(F&& call, int inputs, int states) {
-  using P = typename E::template Params<double>;
-  constexpr int np = int(sizeof(P) / sizeof(double));
-  const int n = 1 + states + inputs + np;
-  check::Random g{17};
-  for (double rate : {-60.0, -3.1, -0.4, 0.7, 2.9, 60.0}) {
-    for (int zero = -1; zero < np; ++zero) {
-      double x[most] = {rate};
-      bool fixed[most] = {};
-      for (int i = 1; i < 1 + states + inputs; ++i) x[i] = g.between(-2, 2);
-      // above one and no whole numbers: a curve among them keeps its points when it is moved
-      for (int k = 0; k < np; ++k) x[n - np + k] = k == zero ? 0.0 : 1.35 + 0.3 * k;
-      if (zero >= 0) fixed[n - np + zero] = true;
-      int edges = 0;
-      if constexpr (Kinked<E, double>) edges = E::edges(*reinterpret_cast<const P*>(x + n - np));
-      for (int piece = 0; piece <= edges; ++piece) {
-        differentiate(
-            [&](const auto* v) {
-              using S = std::remove_cvref_t<decltype(*v)>;
-              const auto& p = *reinterpret_cast<const typename E::template Params<S>*>(v + n - np);
-              return call(p, At<S>{v[0], v + 1, v + 1 + states, piece, points});
-            },
-            x, n, fixed);
-      }
+/// A vector function at x; arguments that are fixed are not differentiated. `lenient`: values may be infinite.
+template <class F>
+void differentiate(F&& f, const double* x, int n, int outputs, const bool* fixed, bool lenient) {
+  D dual[most], r[most];
+  double moved[most], plain[most], up[most], down[most];
+  for (int i = 0; i < n; ++i) dual[i] = D::variable(x[i], i), moved[i] = x[i];
+  f(static_cast<const D*>(dual), r), f(x, plain);
+  for (int o = 0; o < outputs; ++o) CHECK(plain[o] - plain[o] != 0 ? lenient : check::same_bits(r[o].v, plain[o]));
+  for (int i = 0; i < n; ++i) {
+    if (fixed[i]) continue;
+    const double h = 1e-6 * (1 + abs(x[i]));
+    moved[i] = x[i] + h, f(static_cast<const double*>(moved), up);
+    moved[i] = x[i] - h, f(static_cast<const double*>(moved), down);
+    moved[i] = x[i];
+    for (int o = 0; o < outputs; ++o) {
+      // a parameter of zero may divide: then only the value counts
+      if (plain[o] - plain[o] != 0 || (lenient && r[o].d[i] - r[o].d[i] != 0)) continue;
+      const double slope = (up[o] - down[o]) / (2 * h);
+      CHECK_NEAR(r[o].d[i], slope, 1e-7 * (1 + abs(slope)) + 1e-9 * abs(plain[o]));
     }
   }
 }
 
+/// Pieces of a component on which it is smooth: `visit(piece)`.
+template <class E, class P, class F>
+void over_pieces(const P& p, check::Random& g, F&& visit) {
+  if constexpr (Kinked<E, double>) {
+    for (int piece = 0; piece <= E::edges(p); ++piece) visit(piece);
+  } else if constexpr (SwitchingLaw<E>) {
+    int count = 1;
+    if constexpr (SizedLaw<E>) count = E::count(p);
+    const int all = (1 << count) - 1;
+    visit(0), visit(all);
+    if (count > 1) visit(g.below(all));
+  } else {
+    visit(0);
+  }
+}
+
+/// Run `call(params, at, out)` over rates, states, pieces and parameter sets, one parameter at a time also zero.
+template <class E, class F>
+void over_arguments(F&& call, Fields fields, int inputs, int states, int outputs) {
+  using P = typename E::template Params<double>;
+  const int np = fields.count, n = 1 + states + inputs + np;
+  check::Random g{17};
+  double x[most] = {};
+  auto compare = [&](int zero) {
+    bool fixed[most] = {};
+    for (int k = 0; k < np; ++k) {
+      x[n - np + k] = k == zero ? 0.0 : fields.start[k];
+      fixed[n - np + k] = fields.fixed[k] || k == zero;
+    }
+    over_pieces<E>(*reinterpret_cast<const P*>(x + n - np), g, [&](int piece) {
+      auto f = [&](const auto* v, auto* out) {
+        using S = std::remove_cvref_t<decltype(*v)>;
+        const auto& p = *reinterpret_cast<const typename E::template Params<S>*>(v + n - np);
+        call(p, At<S>{v[0], v + 1, v + 1 + states, piece, points}, out);
+      };
+      differentiate(f, x, n, outputs, fixed, zero >= 0);
+    });
+  };
+  do {
+    for (double rate : {-60.0, -3.1, -0.4, 0.7, 2.9, 60.0}) {
+      for (int size = 0; size < (states > 0 ? 4 : 1); ++size) {
+        x[0] = rate;
+        for (int i = 1; i <= states; ++i) x[i] = (g.below(2) * 2 - 1) * g.between(sizes[size][0], sizes[size][1]);
+        for (int i = 1 + states; i < 1 + states + inputs; ++i) x[i] = g.between(-2, 2);
+        compare(-1);
+        for (int zero = 0; zero < np && size == 0; ++zero) {
+          if (!fields.fixed[zero]) compare(zero);
+        }
+      }
+    }
+  } while (fields.next_words());
+}
+
 void torque_kinds_all() {
   for (int kind = 0; kind < torque_kinds; ++kind) {
-    visit_torque(kind, [](auto tag) {
+    visit_torque(kind, [kind](auto tag) {
       using E = typename decltype(tag)::type;
-      over_arguments<E>([](const auto& p, const auto& at) { return E::torque(p, at); }, E::inputs, E::states);
-      for (int i = 0; i < E::states; ++i) {
-        over_arguments<E>(
-            [i](const auto& p, const auto& at) {
-              std::remove_cvref_t<decltype(at.rate)> rates[E::states > 0 ? E::states : 1];
-              E::state_rates(p, at, rates);
-              return rates[i];
-            },
-            E::inputs, E::states);
-      }
+      const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_torque_curves(kind, f); });
+      auto call = [](const auto& p, const auto& at, auto* out) {
+        out[0] = E::torque(p, at);
+        E::state_rates(p, at, out + 1);
+      };
+      over_arguments<E>(call, fields, E::inputs, E::states, 1 + E::states);
     });
   }
 }
 
 void contact_kinds_all() {
   for (int kind = 0; kind < contact_kinds; ++kind) {
-    visit_contact(kind, [](auto tag) {
+    visit_contact(kind, [kind](auto tag) {
       using E = typename decltype(tag)::type;
-      over_arguments<E>([](const auto& p, const auto& at) { return E::load(p, at); }, E::inputs, E::states);
+      const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_contact_curves(kind, f); });
+      auto call = [](const auto& p, const auto& at, auto* out) { out[0] = E::load(p, at); };
+      over_arguments<E>(call, fields, E::inputs, E::states, 1);
     });
   }
+}
+
+/// All functions of a law: hold and slide of one that sticks; hold, coefficient, rates and margin of a compliant one.
+template <class L, class P, class S>
+int law_values(const P& p, const At<S>& at, S* out) {
+  int n = 0;
+  out[n++] = S(L::hold(p));
+  if constexpr (StickingLaw<L>) {
+    out[n++] = L::slide(p, at);
+  } else {
+    out[n++] = L::coefficient(p, at);
+    if constexpr (SwitchingLaw<L>) {
+      int who = turned;
+      out[n++] = L::margin(p, at, who);
+    }
+    if constexpr (L::states > 0) L::state_rates(p, at, out + n);
+    n += L::states;
+  }
+  return n;
+}
+
+/// States that a law has in use with the parameters of the test.
+template <class L>
+int states_in_use(const Fields& fields) {
+  using P = typename L::template Params<double>;
+  if constexpr (SizedLaw<L>) return L::count(*reinterpret_cast<const P*>(fields.start));
+  return L::states;
 }
 
 void law_kinds_all() {
   for (int kind = 0; kind < law_kinds; ++kind) {
-    visit_law(kind, [](auto tag) {
+    visit_law(kind, [kind](auto tag) {
       using L = typename decltype(tag)::type;
-      over_arguments<L>([](const auto& p, const auto& at) { return L::slide(p, at); }, 0, L::states);
-      over_arguments<L>(
-          [](const auto& p, const auto& at) -> std::remove_cvref_t<decltype(at.rate)> { return L::hold(p); }, 0,
-          L::states);
+      const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_law_curves(kind, f); });
+      auto call = [](const auto& p, const auto& at, auto* out) { law_values<L>(p, at, out); };
+      const int states = states_in_use<L>(fields);
+      over_arguments<L>(call, fields, 0, states, (StickingLaw<L> ? 2 : 2 + SwitchingLaw<L>)+states);
     });
   }
 }
 
+/// From the edge of a piece, found by loading along the slip, a law comes into a piece whose edge it is not beyond.
+template <class L>
+void crosses(Fields fields) {
+  using P = typename L::template Params<double>;
+  const int n = states_in_use<L>(fields);
+  check::Random g{29};
+  int found = 0;
+  do {
+    const P& p = *reinterpret_cast<const P*>(fields.start);
+    for (int round = 0; round < 40; ++round) {
+      double ray[most], state[most];
+      int who = turned;
+      At<double> at{g.between(-2, 2), state, nullptr, 0, points};
+      for (int i = 0; i < n; ++i) ray[i] = at.rate < 0 ? -g.unit() : g.unit();
+      auto margin = [&](double length) {
+        for (int i = 0; i < n; ++i) state[i] = length * ray[i];
+        return L::margin(p, at, who);
+      };
+      double low = 0, high = 100;
+      if (margin(high) > 0) continue;
+      ++found;
+      while (high - low > 1e-15 * high) {
+        const double middle = 0.5 * (low + high);
+        (margin(middle) > 0 ? low : high) = middle;
+      }
+      margin(high);
+      if (!CHECK(who >= 0 && who < n)) continue;
+      const double before = state[who];
+      at.piece = L::cross(p, at, who, state);
+      CHECK(at.piece == 1 << who);
+      CHECK_NEAR(state[who], before, 1e-13 * abs(before));
+      int next = turned;
+      CHECK(L::margin(p, at, next) >= -1e-13);
+      CHECK(L::turns(p, at.piece));
+      at.rate = -at.rate, at.piece = L::cross(p, at, turned, state);
+      CHECK(at.piece == 0);
+      CHECK(L::margin(p, at, next) >= -1e-13);
+    }
+  } while (fields.next_words());
+  CHECK(found > 20);
+}
+
+void switching_laws() {
+  for (int kind = 0; kind < law_kinds; ++kind) {
+    visit_law(kind, [kind](auto tag) {
+      using L = typename decltype(tag)::type;
+      CHECK(is_switching_law(kind) == SwitchingLaw<L>);
+      CHECK(is_compliant_law(kind) == CompliantLaw<L>);
+      if constexpr (SwitchingLaw<L>) crosses<L>(Fields::of(tag, [kind](auto&& f) { visit_law_curves(kind, f); }));
+    });
+  }
+}
+
+/// A branch and all that it looks at.
+struct Probe {
+  Workspace<double> ws;
+  double params[most] = {}, law[most] = {}, input[4], slope[4], state[most], rates[most], moved_rates[most];
+  double f_state[most], g_rate[most], g_time[most], g_state[most * most];
+  Branch<double> b{};
+
+  Probe(int kind, check::Random& g) {
+    ws.sys.points = points;
+    b.params = params, b.law_params = law, b.input = input, b.input_slope = slope, b.kind = kind, b.law = -1;
+    for (int i = 0; i < 4; ++i) input[i] = g.between(0.5, 2), slope[i] = g.between(-1, 1);
+    for (int i = 0; i < most; ++i) state[i] = g.between(-1, 1);
+    const int contact = kind - torque_kinds;
+    if (contact < 0) {
+      visit_torque(kind, [&](auto tag) { fill(tag, params, [&](auto&& f) { visit_torque_curves(kind, f); }); });
+    } else {
+      b.kind = contact / law_kinds, b.law = contact % law_kinds;
+      visit_contact(b.kind, [&](auto tag) { fill(tag, params, [&](auto&& f) { visit_contact_curves(b.kind, f); }); });
+      visit_law(b.law, [&](auto tag) { fill(tag, law, [&](auto&& f) { visit_law_curves(b.law, f); }); });
+      b.compliant = is_compliant_law(b.law);
+      b.sign = b.compliant || kind % 2 == 0 ? 1 : -1;
+    }
+    b.states = states_of<double>(b.kind, b.law, law);
+  }
+  template <class E, class Curves>
+  void fill(Tag<E> tag, double* out, Curves&& curves) {
+    const Fields fields = Fields::of(tag, curves);
+    for (int k = 0; k < fields.count; ++k) out[k] = fields.start[k];
+  }
+  double torque(double rate) { return branch_torque(ws, b, rate, state, moved_rates); }
+
+  void compare(double rate) {
+    const double turn = 0.3, h = 1e-6;
+    const Partial<double> p = branch_partial(ws, b, rate, turn, state, rates, {f_state, g_rate, g_time, g_state});
+    CHECK(check::same_bits(torque(rate), p.torque));
+    for (int i = 0; i < b.states; ++i) CHECK(check::same_bits(moved_rates[i], rates[i]));
+    // central differences along `move`, which returns the rate: of the torque against `by`, of state rates against `g`
+    auto compare_along = [&](auto&& move, double by, const double* g, int stride) {
+      double ahead[most];
+      const double up = torque(move(h));
+      for (int i = 0; i < b.states; ++i) ahead[i] = moved_rates[i];
+      const double down = torque(move(-h));
+      CHECK_NEAR(by, (up - down) / (2 * h), 1e-8 * (1 + abs(by)));
+      for (int i = 0; i < b.states; ++i) {
+        CHECK_NEAR(g[i * stride], (ahead[i] - moved_rates[i]) / (2 * h), 1e-8 * (1 + abs(g[i * stride])));
+      }
+      move(0);
+    };
+    compare_along([&](double dx) { return rate + dx; }, p.by_rate, g_rate, 1);
+    for (int j = 0; j < b.states; ++j) {
+      const double keep = state[j];
+      compare_along([&](double dx) { return state[j] = keep + dx, rate; }, f_state[j], g_state + j, b.states);
+    }
+    double keep[4];
+    for (int i = 0; i < 4; ++i) keep[i] = input[i];
+    auto in_time = [&](double dt) {
+      for (int i = 0; i < 4; ++i) input[i] = keep[i] + dt * slope[i];
+      return rate + dt * turn;
+    };
+    compare_along(in_time, p.by_time, g_time, 1);
+  }
+};
+
 /// The partial derivatives that the integrators use: by rate, by own states, by time through rate and inputs.
 void branches() {
   check::Random g{23};
-  Workspace<double> ws;
-  ws.sys.points = points;
+  int compliant = 0, with_states = 0;
   for (int kind = 0; kind < torque_kinds + contact_kinds * law_kinds; ++kind) {
-    double params[8], law[8], input[4], slope[4], moved[4], state[4], rates[4], more[4], partials[3][4], own[16];
-    for (int i = 0; i < 8; ++i) params[i] = law[i] = 1.35 + 0.3 * i;
-    for (int i = 0; i < 4; ++i) input[i] = g.between(0.5, 2), slope[i] = g.between(-1, 1), state[i] = g.between(-1, 1);
-    const int contact = kind - torque_kinds;
-    Branch<double> b{params, law, input, slope, kind, -1, 0, 0, 0, 0, 0, false};
-    if (contact >= 0) b.kind = contact / law_kinds, b.law = contact % law_kinds, b.sign = kind % 2 == 0 ? 1 : -1;
-    b.states = states_of<double>(b.kind, b.law);
-    const double rate = 0.8 * (b.sign < 0 ? -1 : 1), turn = 0.3, h = 1e-6;
-    for (int held = 0; held <= (contact >= 0 ? 1 : 0); ++held) {
-      b.held = held != 0;
-      b.input = input;
-      const Partial<double> p =
-          branch_partial(ws, b, rate, turn, state, rates, {partials[0], partials[1], partials[2], own});
-      auto torque = [&](double r) { return branch_torque(ws, b, r, state, more); };
-      const double here = torque(rate);
-      CHECK(check::same_bits(here, p.torque));
-      for (int i = 0; i < b.states; ++i) CHECK(check::same_bits(more[i], rates[i]));
-      CHECK_NEAR(p.by_rate, (torque(rate + h) - torque(rate - h)) / (2 * h), 1e-8);
-      for (int i = 0; i < b.states; ++i) {
-        const double keep = state[i];
-        state[i] = keep + h;
-        const double up = torque(rate);
-        state[i] = keep;
-        CHECK_NEAR(partials[0][i], (up - here) / h, 1e-6);
-        torque(rate + h);
-        CHECK_NEAR(partials[1][i], (more[i] - rates[i]) / h, 1e-6);
-      }
-      double ends[2];
-      for (int side = 0; side < 2; ++side) {
-        const double dt = side == 0 ? -h : h;
-        for (int i = 0; i < 4; ++i) moved[i] = input[i] + dt * slope[i];
-        b.input = moved;
-        ends[side] = torque(rate + dt * turn);
-      }
-      CHECK_NEAR(p.by_time, (ends[1] - ends[0]) / (2 * h), 1e-8);
+    Probe probe(kind, g);
+    const bool sticks = kind >= torque_kinds && !probe.b.compliant;
+    compliant += probe.b.compliant, with_states += probe.b.states > 0;
+    for (int held = 0; held <= (sticks ? 1 : 0); ++held) {
+      probe.b.held = held != 0;
+      probe.compare(0.8 * (probe.b.sign < 0 ? -1 : 1));
+      if (!sticks) probe.compare(-0.6);
     }
+    probe.b.held = false;
+    if (kind >= torque_kinds && is_switching_law(probe.b.law)) probe.b.piece = 1, probe.compare(0.7);
   }
+  CHECK(compliant > 0 && with_states > 0);
 }
 
 }  // namespace
@@ -160,6 +335,7 @@ int main() {
   torque_kinds_all();
   contact_kinds_all();
   law_kinds_all();
+  switching_laws();
   branches();
   return check::result();
 }
