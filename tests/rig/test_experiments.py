@@ -69,6 +69,13 @@ def test_pictures_have_units_and_every_law(name: str) -> None:
         assert any(rig.title(label) in text for text in told)
 
 
+@pytest.mark.parametrize("name", ["memory", "stall"])
+def test_the_picture_grows_with_the_laws_that_have_panels_of_their_own(name: str) -> None:
+    pytest.importorskip("matplotlib")
+    few, many = getattr(rig, name)("stribeck"), getattr(rig, name)("all")
+    assert many.plot().get_figheight() > 3.0 * few.plot().get_figheight()
+
+
 def test_what_is_not_there_is_answered_with_what_is_near() -> None:
     result = performed("hysteresis")
     assert result["lugre", "sliding"].finished

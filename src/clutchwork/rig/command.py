@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.errors import near
 
 if TYPE_CHECKING:
-    from clutchwork.rig.experiment import Experiment, Result
+    from clutchwork.rig.experiment import Experiment
+    from clutchwork.rig.result import Result
 
 DONE, STOPPED = 0, 1
 EVERY, LIST = "all", "list"

@@ -4,26 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from clutchwork.errors import near
-from clutchwork.node import Law
 from clutchwork.options import Options
 from clutchwork.rig.bench import ACCURATE, Bench
 from clutchwork.rig.chosen import Laws, chosen
 from clutchwork.rig.presets import Preset, preset_of
+from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Cell, Column, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from clutchwork.trajectory import Trajectory
-
-# cases of one law by name
-Runs = Mapping[str, "Trajectory"]
-
-NOT_REACHED = float("nan")
 
 
 @dataclass(frozen=True)
@@ -34,7 +26,8 @@ class Experiment:
     title: ClassVar[str]
     usual: ClassVar[tuple[str, ...]]  # laws that are compared when none are named
     preset: ClassVar[str] = "first"
-    height: ClassVar[float] = 90.0  # mm, of the picture
+    height: ClassVar[float] = 90.0  # mm, of the picture, or of one row where laws have panels of their own
+    across: ClassVar[int] = 0  # laws in one row; 0: all share the panels
     whole: ClassVar[bool] = True  # only complete runs are measured
     own_preset: ClassVar[bool] = False  # it makes no sense with presets of another domain
 
@@ -74,97 +67,9 @@ class Experiment:
         return Result(self, of, trials, self.table(of, trials))
 
 
-@dataclass(frozen=True, eq=False)
-class Trial:
-    """One law on the bench, and what its runs gave."""
-
-    bench: Bench
-    runs: Runs
-
-    @property
-    def preset(self) -> Preset:
-        """The preset of the bench."""
-        return self.bench.preset
-
-    def __getitem__(self, case: str) -> Trajectory:
-        """The run of one case; KeyError with a near match for an unknown one."""
-        return _get(self.runs, case, "case")
-
-    @property
-    def early(self) -> list[Trajectory]:
-        """Runs that stopped before their end."""
-        return [run for run in self.runs.values() if not run.finished]
-
-    @property
-    def note(self) -> str:
-        """Why runs are incomplete, in a few words; empty when all are complete."""
-        return f"{self.early[0].status} at {self.early[0].time[-1]:.4g} s" if self.early else ""
-
-
-@dataclass(frozen=True, eq=False)
-class Result:
-    """What an experiment gave: print it for the table, `plot` it for the picture."""
-
-    experiment: Experiment
-    preset: Preset
-    trials: Mapping[str, Trial]
-    table: Table
-
-    @property
-    def laws(self) -> dict[str, Law]:
-        """The laws by label."""
-        return {label: trial.bench.law for label, trial in self.trials.items()}
-
-    @property
-    def runs(self) -> dict[str, Runs]:
-        """The trajectories by label of the law and name of the case."""
-        return {label: trial.runs for label, trial in self.trials.items()}
-
-    @property
-    def complete(self) -> bool:
-        """Whether all runs reached their end, but for those that chatter: to show that is what they are there for."""
-        return all(run.status == "chatter" for trial in self.trials.values() for run in trial.early)
-
-    def __getitem__(self, wanted: str | tuple[str, str]) -> Trajectory:
-        """The trajectory of a law, `result["lugre"]`, or of one case of it, `result["lugre", "sliding"]`."""
-        label, case = wanted if isinstance(wanted, tuple) else (wanted, None)
-        trial = _get(self.trials, label, "law")
-        return next(iter(trial.runs.values())) if case is None else trial[case]
-
-    def plot(self, path: str | Path | None = None) -> Figure:
-        """Draw the picture and write it to `path` (png, svg or pdf) when given; needs matplotlib."""
-        from clutchwork.plot.figure import figure_of
-
-        with figure_of(self.experiment.height) as figure:
-            self.experiment.draw(figure, self)
-            if path is not None:
-                Path(path).parent.mkdir(parents=True, exist_ok=True)
-                figure.savefig(path)
-        return figure
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write picture and table into a folder; their paths."""
-        picture, table = (Path(folder, f"{self.experiment.name}.{ending}") for ending in ("png", "csv"))
-        self.plot(picture)
-        self.table.to_csv(table)
-        return [picture, table]
-
-    @property
-    def messages(self) -> dict[str, str]:
-        """What the runs that stopped early say about it, by law."""
-        return {label: trial.early[0].message for label, trial in self.trials.items() if trial.early}
-
-    def __str__(self) -> str:
-        told = "\n".join(f"{label} {message}" for label, message in self.messages.items())
-        return f"{self.experiment.title}; {self.preset.title}\n\n{self.table}" + (f"\n\n{told}" if told else "")
-
-    __repr__ = __str__
-
-
 EXPERIMENTS: dict[str, type[Experiment]] = {}
 
 E = TypeVar("E", bound=type[Experiment])
-V = TypeVar("V")
 
 
 def experiment(cls: E) -> E:
@@ -200,9 +105,3 @@ def made(name: str, changes: Mapping[str, Any]) -> Experiment:
         if field not in known:
             raise ValueError(f"{name} has no setting {field!r}{near(field, known)}; settings are {', '.join(known)}")
     return EXPERIMENTS[name](**changes)
-
-
-def _get(mapping: Mapping[str, V], key: str, what: str) -> V:
-    if key not in mapping:
-        raise KeyError(f"no {what} {key!r}{near(key, mapping)}; there are {', '.join(mapping)}")
-    return mapping[key]

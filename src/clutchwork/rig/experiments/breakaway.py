@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.rig.bench import Bench, friction, position
-from clutchwork.rig.experiment import NOT_REACHED, Experiment, Result, Runs, Trial, experiment
+from clutchwork.rig.experiment import Experiment, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small
 from clutchwork.rig.presets import Preset
+from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Column, Table
 from clutchwork.signals.table import Table as Course
 

@@ -14,9 +14,10 @@ from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.prescribed_speed import PrescribedSpeed
 from clutchwork.elements.spring_damper import SpringDamper
 from clutchwork.rig.bench import Bench, speed
-from clutchwork.rig.experiment import NOT_REACHED, Experiment, Result, Runs, Trial, experiment
+from clutchwork.rig.experiment import Experiment, experiment
 from clutchwork.rig.looks import GREY, GUIDE, head, legend_below, nested, title
 from clutchwork.rig.presets import Preset
+from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Column, Table
 
 if TYPE_CHECKING:

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.rig.bench import Bench, friction, position
-from clutchwork.rig.experiment import Experiment, Result, Runs, Trial, experiment
+from clutchwork.rig.experiment import Experiment, experiment
 from clutchwork.rig.looks import looks, small, title
 from clutchwork.rig.presets import Preset
+from clutchwork.rig.result import Result, Runs, Trial
 from clutchwork.rig.table import Column
 from clutchwork.signals.table import Table as Course
 
@@ -35,7 +36,8 @@ class Memory(Experiment):
 
     title = "minor loops before sliding"
     usual = ("gms", "leuven", "mykhalevych", "elastoplastic", "lugre", "dahl")
-    height = 120.0
+    height = 60.0
+    across = 3
 
     outer: float = 1.5  # where the large loop turns, over the elastic deflection
     upper: float = 0.6  # where the minor loop begins and ends
@@ -73,9 +75,7 @@ class Memory(Experiment):
     def draw(self, figure: Figure, result: Result) -> None:
         """One panel for each law: the path with the minor loop over the large loop in grey."""
         labels = list(result.runs)
-        columns = min(3, len(labels))
-        rows = -(-len(labels) // columns)
-        panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        panels = figure.subplots(result.rows, min(self.across, len(labels)), sharex=True, sharey=True, squeeze=False)
         unit, every = result.preset.unit_length, looks(labels)
         for axes, label in zip(panels.flat, labels, strict=False):
             for case, look in (("large", {"color": "#C4C4C4", "linewidth": 2.6}), ("minor", every[label])):

@@ -16,9 +16,10 @@ from clutchwork.elements.spring_damper import SpringDamper
 from clutchwork.elements.torque import Torque
 from clutchwork.node import Domain
 from clutchwork.rig.bench import Bench
-from clutchwork.rig.experiment import NOT_REACHED, Experiment, Result, Runs, Trial, experiment
+from clutchwork.rig.experiment import Experiment, experiment
 from clutchwork.rig.looks import looks, title
 from clutchwork.rig.presets import Preset
+from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Column
 from clutchwork.signals.table import Table as Course
 
@@ -43,7 +44,8 @@ class Stall(Experiment):
     own_preset = True
     usual = ("naive_sign", "mykhalevych", "stribeck")
     preset = "clutch"
-    height = 150.0
+    height = 50.0
+    across = 1
     whole: ClassVar[bool] = False
 
     engine: float = 0.2  # kg m2

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.rig.bench import Bench, friction
-from clutchwork.rig.experiment import NOT_REACHED, Experiment, Result, Runs, Trial, experiment
+from clutchwork.rig.experiment import Experiment, experiment
 from clutchwork.rig.looks import GREY, legend_below, nested
 from clutchwork.rig.presets import Preset
+from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Column, Table
 from clutchwork.signals.table import Table as Course
 

@@ -13,9 +13,10 @@ from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.prescribed_speed import PrescribedSpeed
 from clutchwork.elements.spring import Spring
 from clutchwork.rig.bench import Bench
-from clutchwork.rig.experiment import NOT_REACHED, Experiment, Result, Runs, Trial, experiment
+from clutchwork.rig.experiment import Experiment, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small
 from clutchwork.rig.presets import Preset
+from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Column
 
 if TYPE_CHECKING:
