@@ -37,9 +37,14 @@ class Experiment:
 def advice(search: Search, u: Array, deviation: float, places: list[int]) -> dict[int, str]:
     """For each open parameter the experiment after which it would be known best.
 
-    Every candidate is computed with the fitted law, with the load and the noise of the samples, and added to them.
+    Every candidate is computed with the fitted law, what is open as at the start, with the load and the noise of the
+    samples, and added to them.
     """
     unknowns = search.unknowns
+    again = sorted({_column(unknowns, place) for place in places})
+    u = np.where(np.isin(np.arange(len(u)), again), unknowns.start, u)
+    if len(again) < len(u):
+        u = search.solve(u, held=again).u
     noise = max(deviation, 1e-3 * search.measured.size)
     counts = search.model.equations
     before = search.jacobian(u)[counts]
@@ -96,7 +101,7 @@ def _steady(search: Search, u: Array) -> Iterator[Experiment]:
     # a law with a band of slip in which it sticks says nothing there
     band = float(getattr(search.unknowns.law_at(u), "band", 0.0))
     low, high = max(float(np.min(moving)) * 1e-3, 2.0 * band), max(float(np.max(moving)), 2.0 * band)
-    for centre in np.geomspace(low, 10.0 * high, 25):
+    for centre in np.geomspace(low, 100.0 * high, 31):
         near = np.sum((slip > centre / 2.0) & (slip < centre * 2.0))
         seen = (
             f"{near} of the samples are within a factor 2 of that" if near else "no sample is within a factor 2 of that"
@@ -108,11 +113,11 @@ def _steady(search: Search, u: Array) -> Iterator[Experiment]:
 
 
 def _swings(search: Search, u: Array) -> Iterator[Experiment]:
-    """Displacements to and fro, slow ones first."""
+    """Displacements back and forth, slow ones first."""
     for frequency in (0.1, 1.0, 10.0, 100.0):
         time = np.linspace(0.0, 2.0 / frequency, SAMPLES)
         for amplitude in np.geomspace(1e-7, 1.0, 8):
-            words = f"move to and fro by {amplitude:.1g} {_units(search)[1]} at {frequency:g} Hz"
+            words = f"move back and forth by {amplitude:.1g} {_units(search)[1]} at {frequency:g} Hz"
             yield _planned(
                 search, u, words, time, amplitude * 2.0 * pi * frequency * np.sin(2.0 * pi * frequency * time)
             )

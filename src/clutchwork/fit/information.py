@@ -44,7 +44,9 @@ def information(jacobian: Array, size: float, exact: bool) -> Information:
     silent = columns <= NO_EFFECT[exact] * size
     norm = np.where(silent, 1.0, columns) * sqrt(len(jacobian))
     live = np.flatnonzero(~silent)
-    _, found, rows = np.linalg.svd((jacobian / norm)[:, live], full_matrices=True)
+    # rows of zeros say nothing and give every column a direction
+    scaled = np.vstack([jacobian / norm, np.zeros((max(len(norm) - len(jacobian), 0), len(norm)))])
+    _, found, rows = np.linalg.svd(scaled[:, live], full_matrices=False)
     # silent columns are directions of their own
     singular, directions = np.zeros(len(norm)), np.zeros((len(norm), len(norm)))
     singular[: len(found)] = found

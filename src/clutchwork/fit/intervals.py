@@ -27,6 +27,7 @@ class Estimate:
     """What the samples say of all parameters, in the order of the unknowns."""
 
     deviation: float  # of the residuals [N m], widened where neighbours are alike
+    tolerance: float  # N2 m2, by which squares may sum up to more in a solution that is as good
     covariance: Array  # of the codes of all parameters
     limits: list[tuple[float, float]]  # ends of the intervals
     reasons: list[str]  # why a parameter is not determined; "" where it is
@@ -36,12 +37,12 @@ class Estimate:
 
 def estimate(search: Search, u: Array, confidence: float) -> Estimate:
     """Intervals of all parameters at a confidence, and what is not determined."""
-    residuals, equations = search.residuals(u), search.model.equations
-    # at rest a sample says something only where it breaks its bound
-    counts = equations | (residuals != 0.0)
-    known = information(search.jacobian(u)[counts], search.measured.size, search.model.exact)
-    freedom = max(int(np.sum(counts)) - int(np.sum(~known.lost)), 1)
-    alike = _alike(residuals[equations])
+    # a bound that samples at rest lean on holds from one side only: it determines nothing
+    equations = search.model.equations
+    residuals = search.residuals(u)[equations]
+    known = information(search.jacobian(u)[equations], search.measured.size, search.model.exact)
+    freedom = max(len(residuals) - int(np.sum(~known.lost)), 1)
+    alike = _alike(residuals)
     variance = float(np.sum(residuals**2)) / freedom * (1.0 + alike) / (1.0 - alike)
     spread = _spread(search, u)
     covariance = variance * (spread @ known.inverse @ spread.T)
@@ -57,7 +58,17 @@ def estimate(search: Search, u: Array, confidence: float) -> Estimate:
         for cause, (item, code, half, end) in zip(reasons.causes(known, spread, items), rows, strict=True)
     ]
     directions = reasons.directions(known, spread, items, why)
-    return Estimate(sqrt(variance), covariance, limits, why, directions, alike)
+    return Estimate(sqrt(variance), t**2 * variance, covariance, limits, why, directions, alike)
+
+
+def limits_at(search: Search, u: Array, tolerance: float, places: Array) -> list[tuple[float, float]]:
+    """Intervals at some codes when only those at some places are unknown."""
+    jacobian = search.jacobian(u)[search.model.equations]
+    known = information(jacobian[:, places], search.measured.size, search.model.exact)
+    spread = _spread(search, u)[:, places]
+    halves = np.sqrt(tolerance * np.diag(spread @ known.inverse @ spread.T)).tolist()
+    rows = zip(search.unknowns.items, search.unknowns.codes(u).tolist(), halves, search.unknowns.ends(u), strict=True)
+    return [_interval(*row) for row in rows]
 
 
 def _alike(residuals: Array) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 
 from clutchwork.fit import table
 from clutchwork.fit.adjustable import faults
+from clutchwork.fit.elsewhere import widened
 from clutchwork.fit.experiment import advice
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.intervals import Estimate, estimate
@@ -89,7 +90,8 @@ def _fit(
         fault = f"give {equations} equations for {count} parameters"
         raise FitError("samples", fault, "record more samples that slide, or free fewer parameters")
     solution = search.solve()
-    return _result(search, solution, estimate(search, solution.u, confidence), confidence)
+    found = widened(search, solution, estimate(search, solution.u, confidence))
+    return _result(search, solution, found, confidence)
 
 
 def _check(law: Law, rest: float | None, confidence: float) -> None:

@@ -64,6 +64,14 @@ def wide(item: Unknown, code: float, half: float, confidence: float) -> str:
     return f"its {share} is +- {100 * half / abs(code):.3g} %"
 
 
+def spans(item: Unknown, limits: tuple[float, float]) -> bool:
+    """Whether limits of a value are too far apart to say anything."""
+    low, high = limits
+    if item.is_log:
+        return high > WIDE_FACTOR**2 * low
+    return high - low > WIDE_SHARE * abs(high + low)
+
+
 def directions(known: Information, spread: Array, items: Items, reasons: list[str]) -> list[str]:
     """For every open parameter what changes with it along the direction in which its uncertainty is largest."""
     # share of each direction in the uncertainty of each parameter

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -31,7 +31,7 @@ class Solution:
 
     u: Array  # codes
     converged: bool
-    message: str  # of the solver
+    squares: float  # N2 m2, sum over the samples
 
 
 class Search:
@@ -76,23 +76,41 @@ class Search:
         stay = STAY * float(np.sqrt(np.sum(self.measured.torque**2))) * (u - self.unknowns.start) / self.scales
         return np.concatenate([self.residuals(u), stay])
 
-    def solve(self) -> Solution:
-        """The best codes within their bounds, from the start values."""
-        lower, upper = self.unknowns.lower, self.unknowns.upper
+    def solve(self, start: Array | None = None, held: Sequence[int] = ()) -> Solution:
+        """The best codes within their bounds.
+
+        Parameters: start, codes to start from, by default those of the start values; held, places of codes that stay.
+        """
+        whole = self.unknowns.start if start is None else start
+        moving = np.setdiff1d(np.arange(len(whole)), held)
+        lower, upper = self.unknowns.lower[moving], self.unknowns.upper[moving]
+
+        def full(part: Array) -> Array:
+            made = whole.copy()
+            made[moving] = part
+            return made
+
         found = scipy("optimize").least_squares(
-            self.tied, self.unknowns.start, jac=lambda u: derivatives(self.tied, u, self), bounds=(lower, upper),
-            method="trf", x_scale="jac", xtol=1e-10, ftol=1e-12, gtol=1e-12, max_nfev=MOST_ITERATIONS,
+            lambda part: self.tied(full(part)),
+            np.clip(whole[moving], lower, upper),
+            jac=lambda part: derivatives(self.tied, full(part), self, moving),
+            bounds=(lower, upper), method="trf", x_scale="jac", xtol=1e-10, ftol=1e-12, gtol=1e-12,
+            max_nfev=MOST_ITERATIONS,
         )  # fmt: skip
-        u = np.clip(found.x, lower, upper)
-        return Solution(u, found.status > 0, str(found.message))
+        # the search comes close to its bounds and never touches them
+        close = 1e-9 * np.maximum(self.scales[moving], np.abs(found.x))
+        part = np.where(found.x - lower < close, lower, np.where(upper - found.x < close, upper, found.x))
+        return Solution(full(part), found.status > 0, float(np.sum(self.residuals(full(part)) ** 2)))
 
 
-def derivatives(function: Callable[[Array], Array], u: Array, search: Search) -> Array:
-    """Difference quotients by every code: central inside the bounds, one-sided at them."""
+def derivatives(
+    function: Callable[[Array], Array], u: Array, search: Search, places: Iterable[int] | None = None
+) -> Array:
+    """Difference quotients by every code, or some: central inside the bounds, one-sided at them."""
     lower, upper = search.unknowns.lower, search.unknowns.upper
     columns = []
-    for place, scale in enumerate(search.scales):
-        step = search.step * max(float(scale), 0.0 if search.logs[place] else abs(float(u[place])))
+    for place in range(len(u)) if places is None else places:
+        step = search.step * max(float(search.scales[place]), 0.0 if search.logs[place] else abs(float(u[place])))
         above, below = u.copy(), u.copy()
         above[place] = min(u[place] + step, upper[place])
         below[place] = max(u[place] - step, lower[place])

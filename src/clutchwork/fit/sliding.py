@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+# deviations of the noise within which two coefficients count as equal
+DOUBT = 3.0
 # share of the largest slip below which a sample counts as at rest, when none is given
 REST = 1e-3
 
@@ -100,7 +102,8 @@ def at_rest(measured: Measurement, rest: float | None) -> float:
 def break_aways(measured: Measurement, slides: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """The last samples at rest before it slides off under the torque.
 
-    Their coefficient is at least the one just after, else the peak fell between two samples and is not known.
+    Their coefficient is, up to the noise, at least the one just after, else the peak fell between two samples and is
+    not known.
     """
     found = np.zeros(len(slides), dtype=bool)
     last = np.flatnonzero(~slides[:-1] & slides[1:])
@@ -109,5 +112,11 @@ def break_aways(measured: Measurement, slides: NDArray[np.bool_]) -> NDArray[np.
     along = np.sign(measured.slip[last + 1])
     before = along * measured.torque[last] / measured.load[last]
     after = along * measured.torque[last + 1] / measured.load[last + 1]
-    found[last[(before > 0.0) & (before >= after)]] = True
+    found[last[(before > 0.0) & (before >= after - DOUBT * noise(measured.torque) / measured.load[last])]] = True
     return found
+
+
+def noise(values: Array) -> float:
+    """Standard deviation of noise on a smooth row, from the median of its second differences."""
+    bends = np.abs(values[2:] - 2.0 * values[1:-1] + values[:-2])
+    return float(np.median(bends) / (0.6745 * np.sqrt(6.0)))

@@ -70,7 +70,10 @@ def _head(name: str, wanted: str, known: list[str]) -> Head:
     unit = _split(text)[1] or unit
     if not same and not alike:
         if known:
-            remedy = f"the columns are {', '.join(known)}{near(wanted, known)}"
+            hint = near(wanted, known) or near(base, [_split(head)[0] for head in known])
+            remedy = f"the columns are {', '.join(known)}{hint}"
+            if len(known) == 1 and ";" in known[0]:
+                remedy = "separate the columns with commas, not with semicolons"
             raise FitError(name, f"has no column {wanted!r}", remedy)
         return Head(text, 1.0, None)
     if not unit:

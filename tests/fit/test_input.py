@@ -1,0 +1,90 @@
+"""What no fit can use is refused, with the remedy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from clutchwork.fit import FitError, fit_law
+from support import rig_data
+
+LAW = cw.Stribeck(static=0.15, kinetic=0.1, speed=2.0)
+
+
+def good() -> dict[str, Any]:
+    return dict(rig_data.measured(LAW).arguments)
+
+
+def spoilt(name: str, place: int, number: float) -> dict[str, Any]:
+    data = good()
+    data[name] = data[name].copy()
+    data[name][place] = number
+    return data
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (spoilt("torque", 7, float("nan")), "torque is nan at sample 7"),
+        (spoilt("slip", 3, float("inf")), "slip is inf at sample 3"),
+        (spoilt("time", 5, -1.0), "time does not rise at sample 5"),
+        (spoilt("load", 4, -2.0), "load is -2 N m at sample 4"),
+        ({**good(), "load": 0.0}, "load is always zero"),
+        ({**good(), "load": "high"}, "load is 'high'"),
+        ({**good(), "slip": 0.0 * good()["slip"]}, "slip is always zero"),
+        ({**good(), "torque": 0.0 * good()["torque"]}, "torque is always zero"),
+        ({**good(), "torque": good()["torque"][:-1]}, "torque has 959 values, time has 960"),
+        ({**good(), "torque": good()["torque"].reshape(-1, 2)}, "torque has 2 dimensions"),
+        ({**good(), "slip": ["a"] * 960}, "slip holds something that is no number"),
+        ({name: row[:3] for name, row in good().items()}, "time has 3 values"),
+        ({name: row[:43] for name, row in good().items()}, "samples give 4 equations for 4 parameters"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_samples(data: dict[str, Any], words: str) -> None:
+    with pytest.raises(FitError, match=words) as caught:
+        fit_law(cw.Stribeck(static=0.15, kinetic=0.1, speed=2.0, viscous=1e-3), **data)
+    assert caught.value.remedy
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"free": ["statik"]}, "did you mean 'static'"),
+        ({"free": []}, "free names no parameter"),
+        ({"free": ["static", "static"]}, "twice"),
+        ({"free": ["exponent"]}, "does not let vary"),
+        ({"free": ["shape"]}, "which Stribeck has not"),
+        ({"bounds": {"speeds": (0.0, 1.0)}}, "did you mean 'speed'"),
+        ({"bounds": {"speed": (3.0, 4.0)}}, "start within the bounds"),
+        ({"rest": -1.0}, "rest is -1"),
+        ({"rest": 100.0}, "lower `rest`"),
+        ({"confidence": 95.0}, "confidence is 95"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_settings(settings: dict[str, Any], words: str) -> None:
+    with pytest.raises(FitError, match=words):
+        fit_law(LAW, **good(), **settings)
+
+
+def test_laws() -> None:
+    with pytest.raises(FitError, match="no friction law"):
+        fit_law("stribeck", **good())  # type: ignore[arg-type]
+    with pytest.raises(FitError, match=r"start values that do not fit.*static"):
+        fit_law(cw.Stribeck(static=0.1, kinetic=0.2, speed=2.0), **good())
+
+
+def test_bounds_are_kept() -> None:
+    result = fit_law(LAW, **good(), bounds={"speed": (2.0, 2.5), "static": (None, 0.15)}, free=["static", "speed"])
+    assert 2.0 <= result["speed"].value <= 2.5
+    assert result["static"].value <= 0.15
+
+
+def test_one_name_may_stand_for_a_list() -> None:
+    result = fit_law(LAW, **good(), free="speed")
+    assert [p.name for p in result.parameters] == ["speed"]
+    assert np.isfinite(result["speed"].value)
