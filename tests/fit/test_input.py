@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import Any
 
 import numpy as np
 import pytest
 
 import clutchwork as cw
+import clutchwork.fit
 from clutchwork.fit import FitError, fit_law
 from support import rig_data
 
@@ -88,3 +91,24 @@ def test_one_name_may_stand_for_a_list() -> None:
     result = fit_law(LAW, **good(), free="speed")
     assert [p.name for p in result.parameters] == ["speed"]
     assert np.isfinite(result["speed"].value)
+
+
+def test_nothing_heavy_is_loaded_before_a_fit() -> None:
+    code = (
+        "import sys, clutchwork.fit.command, clutchwork.fit.law;"
+        "print([name for name in ('scipy', 'matplotlib', 'pandas') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_without_scipy_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
+    with pytest.raises(ImportError, match=r"pip install \"clutchwork\[fit\]\""):
+        fit_law(LAW, **good())
+
+
+def test_names_of_the_package() -> None:
+    assert {"fit_law", "fit_csv", "FitResult"} <= set(dir(clutchwork.fit))
+    with pytest.raises(AttributeError, match="did you mean 'fit_law'"):
+        clutchwork.fit.fit_lw  # noqa: B018

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+# share of samples with a torque of the wrong sign that is worth telling
+AGAINST = 0.01
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -69,6 +72,13 @@ class FitResult:
     equations: NDArray[np.bool_] = field(repr=False)  # samples that give an equation; the others only a bound
 
     @property
+    def against(self) -> float:
+        """Share of the samples that slide whose torque has the wrong sign, which a law without states cannot have."""
+        slip, torque = self.samples.slip, self.samples.torque
+        slides = np.abs(slip) > self.rest
+        return 0.0 if self.law.own_states() else float(np.sum(slip * torque * slides < 0.0) / np.sum(slides))
+
+    @property
     def residuals(self) -> Array:
         """Fitted minus measured torque [N m]."""
         return self.fitted - self.samples.torque
@@ -98,6 +108,11 @@ class FitResult:
         lines = list(self.advice)
         if self.samples.turned:
             lines.append("the torque was given against the slip, as it acts on the follower; its sign was turned")
+        if self.against > AGAINST:
+            lines.append(
+                f"in {100 * self.against:.2g} % of the samples that slide the torque drives in place of braking: give"
+                f" `rest` above the noise of the slip, or take out an offset; now it is {self.rest:.3g}"
+            )
         if self.alike:
             lines.append(
                 f"neighbouring residuals are alike (correlation {self.alike:.2f}): the law misses something or the"

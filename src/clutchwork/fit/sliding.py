@@ -33,9 +33,7 @@ def coefficients(law: Law, slips: Array) -> tuple[Array, float]:
     pools = Pools()
     pools.add(law, "law")
     number = kinds(Role.LAW).index(type(law).kind)  # type: ignore[attr-defined]
-    params = np.array(pools.params, dtype=float)
-    # the core asks for kinks only where there are points at all
-    points = np.array(pools.points or [(0.0, 0.0, 0.0)], dtype=float)
+    params, points = np.array(pools.params, dtype=float), np.array(pools.points, dtype=float).reshape(-1, 3)
     kinetic = np.array([core.law(number, params, points, slip)[0] for slip in slips.tolist()])
     return kinetic, float(core.law(number, params, points, 0.0)[1])
 
