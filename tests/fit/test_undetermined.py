@@ -40,7 +40,7 @@ def test_a_stribeck_speed_without_slip_near_it() -> None:
     assert open_names(result) == ["static", "speed"]
     assert result["kinetic"].value == pytest.approx(0.1, rel=0.01)
     assert "to determine it" in result["speed"].experiment
-    assert "no sample is within a factor 2" in result["speed"].experiment
+    assert "no samples within a factor 2" in result["speed"].experiment
     # what it asks for is enough
     slow = slid(law, np.geomspace(0.01, 0.5, 100))
     assert fit_law(START, **joined(fast, slow)).determined

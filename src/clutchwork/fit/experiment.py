@@ -95,21 +95,18 @@ def _load(search: Search) -> float:
 
 
 def _steady(search: Search, u: Array) -> Iterator[Experiment]:
-    """Steady slip, from a thousandth of the smallest measured one to the largest."""
+    """Steady slip, from a thousandth of the smallest measured one to a hundred times the largest."""
     slip = np.abs(search.measured.slip)
     moving = slip[slip > search.model.rest]
     # a law with a band of slip in which it sticks says nothing there
     band = float(getattr(search.unknowns.law_at(u), "band", 0.0))
     low, high = max(float(np.min(moving)) * 1e-3, 2.0 * band), max(float(np.max(moving)), 2.0 * band)
     for centre in np.geomspace(low, 100.0 * high, 31):
-        near = np.sum((slip > centre / 2.0) & (slip < centre * 2.0))
-        seen = (
-            f"{near} of the samples are within a factor 2 of that" if near else "no sample is within a factor 2 of that"
-        )
+        near = int(np.sum((slip > centre / 2.0) & (slip < centre * 2.0)))
+        seen = f"{near or 'no'} sample{'' if near == 1 else 's'} within a factor 2 of that"
         words = f"measure steady slip near {centre:.2g} {_units(search)[0]} ({seen})"
-        yield _planned(
-            search, u, words, np.linspace(0.0, 1.0, SAMPLES), np.geomspace(centre / 1.5, centre * 1.5, SAMPLES)
-        )
+        sweep = np.geomspace(centre / 1.5, centre * 1.5, SAMPLES)
+        yield _planned(search, u, words, np.linspace(0.0, 1.0, SAMPLES), sweep)
 
 
 def _swings(search: Search, u: Array) -> Iterator[Experiment]:
@@ -118,9 +115,8 @@ def _swings(search: Search, u: Array) -> Iterator[Experiment]:
         time = np.linspace(0.0, 2.0 / frequency, SAMPLES)
         for amplitude in np.geomspace(1e-7, 1.0, 8):
             words = f"move back and forth by {amplitude:.1g} {_units(search)[1]} at {frequency:g} Hz"
-            yield _planned(
-                search, u, words, time, amplitude * 2.0 * pi * frequency * np.sin(2.0 * pi * frequency * time)
-            )
+            speed = 2.0 * pi * frequency
+            yield _planned(search, u, words, time, amplitude * speed * np.sin(speed * time))
 
 
 def _planned(search: Search, u: Array, words: str, time: Array, slip: Array) -> Experiment:
@@ -128,10 +124,8 @@ def _planned(search: Search, u: Array, words: str, time: Array, slip: Array) -> 
     full = np.full(SAMPLES, _load(search))
     plan = Measurement(time, slip, np.zeros(SAMPLES), full, search.measured.translation, turned=False)
     law = search.unknowns.law_at(u)
-    other = Search(model_of(plan, law, 0.0), search.unknowns)
     # steps are those of the samples: a plan has no torque to judge them by
-    other.__dict__["scales"] = search.scales
-    return Experiment(words, other.jacobian(u))
+    return Experiment(words, Search(model_of(plan, law, 0.0), search.unknowns, search.scales).jacobian(u))
 
 
 def _break_away(search: Search, u: Array) -> Experiment:

@@ -37,8 +37,8 @@ class Solution:
 class Search:
     """Residuals of all samples over the codes of the free parameters, and their derivatives."""
 
-    def __init__(self, model: Model, unknowns: Unknowns) -> None:
-        self.model, self.unknowns = model, unknowns
+    def __init__(self, model: Model, unknowns: Unknowns, scales: Array | None = None) -> None:
+        self.model, self.unknowns, self._scales = model, unknowns, scales
         self.measured = model.measured
         self.step = STEP_EXACT if model.exact else STEP_RUN
         self.logs = [unknowns.items[place].is_log for place in unknowns.searched]
@@ -50,6 +50,8 @@ class Search:
     @cached_property
     def scales(self) -> Array:
         """What a change of each code by one step is measured in: 1 for logarithms, a typical size for numbers."""
+        if self._scales is not None:
+            return self._scales
         start = self.unknowns.start
         made = np.where(self.logs, 1.0, np.abs(start))
         for place in np.flatnonzero(made == 0.0):
