@@ -80,8 +80,8 @@ class Model {
   Numbers curve(const Numbers& x, const Numbers& y) {
     const double first = double(points_.size() / 3), n = double(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-      const std::size_t a = i + 1 < x.size() ? i : i - 1;
-      points_.insert(points_.end(), {x[i], y[i], (y[a + 1] - y[a]) / (x[a + 1] - x[a])});
+      const std::size_t a = i + 1 < x.size() || i == 0 ? i : i - 1, b = a + 1 < x.size() ? a + 1 : a;
+      points_.insert(points_.end(), {x[i], y[i], b > a ? (y[b] - y[a]) / (x[b] - x[a]) : 0.0});
     }
     return {first, n};
   }
