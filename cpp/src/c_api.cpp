@@ -40,6 +40,47 @@ bool signal_fits(const System& s, std::int64_t i) {
   return end - start <= period && start > -1e8 * period && abs(end) < 1e12 * period;
 }
 
+/// Whether n references from `first` on are to signals and shared states: torques know no rates of others.
+bool plain_inputs(const System& s, std::int64_t first, int n) {
+  for (int i = 0; i < n && first + n <= s.n_input_refs; ++i) {
+    if (s.input_refs[first + i] >= s.inputs + s.shared) return false;
+  }
+  return true;
+}
+
+/// As in_range, for what concerns the shared states.
+bool shared_in_range(const System& s) {
+  if (s.shared > s.states) return false;
+  const std::int64_t first = s.states - s.shared;
+  bool good = true;
+  for (std::int64_t i = 0; good && i < s.flows; ++i) {
+    good = s.flow_kind[i] >= 0 && s.flow_kind[i] < flow_kinds && s.flow_from[i] >= -1 && s.flow_from[i] < s.shared &&
+           s.flow_to[i] >= -1 && s.flow_to[i] < s.shared && s.flow_param[i] >= 0 && s.flow_input[i] >= 0;
+    if (!good) return false;
+    visit_flow(s.flow_kind[i], [&](auto tag) {
+      using E = typename decltype(tag)::type;
+      good = s.flow_param[i] + param_count<E> <= s.n_params && s.flow_input[i] + E::inputs <= s.n_input_refs;
+    });
+    visit_flow_curves(s.flow_kind[i], [&](int at) { good = good && curve_fits(s, s.flow_param[i] + at); });
+  }
+  for (std::int64_t i = 0; good && i < s.processes; ++i) {
+    good = s.process_kind[i] >= 0 && s.process_kind[i] < process_kinds && s.process_state[i] >= first &&
+           s.process_param[i] >= 0 && s.process_input[i] >= 0;
+    if (!good) return false;
+    visit_process(s.process_kind[i], [&](auto tag) {
+      using E = typename decltype(tag)::type;
+      good = s.process_param[i] + param_count<E> <= s.n_params && s.process_input[i] + E::inputs <= s.n_input_refs &&
+             s.process_state[i] + E::states <= s.states;
+    });
+    visit_process_curves(s.process_kind[i], [&](int at) { good = good && curve_fits(s, s.process_param[i] + at); });
+  }
+  for (std::int64_t h = 0; good && h < s.heats; ++h) {
+    good = s.heat_direction[h] >= 0 && s.heat_direction[h] < s.elements + s.contacts && s.heat_to[h] >= 0 &&
+           s.heat_to[h] < s.shared;
+  }
+  return good;
+}
+
 /// Offsets and numbers inside the system that the core follows without looking.
 bool in_range(const System& s) {
   auto within = [](const std::int32_t* x, std::int64_t n, std::int64_t low, std::int64_t high) {
@@ -55,14 +96,17 @@ bool in_range(const System& s) {
       within(s.contact_law_param, s.contacts, 0, s.n_params) && within(s.element_state, s.elements, 0, s.states) &&
       within(s.contact_state, s.contacts, 0, s.states) && within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) &&
       within(s.element_input, s.elements, 0, s.n_input_refs) &&
-      within(s.contact_input, s.contacts, 0, s.n_input_refs) && within(s.input_refs, s.n_input_refs, 0, s.inputs - 1);
+      within(s.contact_input, s.contacts, 0, s.n_input_refs) &&
+      within(s.contact_law_input, s.contacts, 0, s.n_input_refs) &&
+      within(s.input_refs, s.n_input_refs, 0, s.inputs + s.shared + 2 * (s.elements + s.contacts) - 1) &&
+      shared_in_range(s);
   for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
   std::int64_t states = 0;
   for (std::int64_t i = 0; good && i < s.elements; ++i) {
     visit_torque(s.element_kind[i], [&](auto tag) {
       using E = typename decltype(tag)::type;
       good = s.element_param[i] + param_count<E> <= s.n_params && s.element_input[i] + E::inputs <= s.n_input_refs &&
-             s.element_state[i] + E::states <= s.states;
+             s.element_state[i] + E::states <= s.states - s.shared && plain_inputs(s, s.element_input[i], E::inputs);
       states += E::states;
     });
     visit_torque_curves(s.element_kind[i], [&](int at) { good = good && curve_fits(s, s.element_param[i] + at); });
@@ -70,21 +114,24 @@ bool in_range(const System& s) {
   for (std::int64_t i = 0; good && i < s.contacts; ++i) {
     visit_contact(s.contact_kind[i], [&](auto tag) {
       using E = typename decltype(tag)::type;
-      good = s.contact_param[i] + param_count<E> <= s.n_params && s.contact_input[i] + E::inputs <= s.n_input_refs;
+      good = s.contact_param[i] + param_count<E> <= s.n_params && s.contact_input[i] + E::inputs <= s.n_input_refs &&
+             plain_inputs(s, s.contact_input[i], E::inputs);
     });
     visit_contact_curves(s.contact_kind[i], [&](int at) { good = good && curve_fits(s, s.contact_param[i] + at); });
     visit_law(s.contact_law[i], [&](auto tag) {
       using L = typename decltype(tag)::type;
-      good = good && s.contact_law_param[i] + param_count<L> <= s.n_params;
+      constexpr int inputs = law_inputs<L>();
+      good = good && s.contact_law_param[i] + param_count<L> <= s.n_params &&
+             s.contact_law_input[i] + inputs <= s.n_input_refs && plain_inputs(s, s.contact_law_input[i], inputs);
     });
     visit_law_curves(s.contact_law[i], [&](int at) { good = good && curve_fits(s, s.contact_law_param[i] + at); });
     if (!good) return false;
     const int own = states_of(s.contact_kind[i], s.contact_law[i], s.params + s.contact_law_param[i]);
-    good = s.contact_state[i] + own <= s.states;
+    good = s.contact_state[i] + own <= s.states - s.shared;
     states += own;
   }
   // states are nobody's twice
-  good = good && states <= s.states;
+  good = good && states <= s.states - s.shared;
   return good;
 }
 
@@ -240,8 +287,8 @@ int cw_restore(cw_run* run, const void* bytes, std::int64_t n) {
   return 1;
 }
 
-int cw_law(int number, const double* params, const double* points, std::int64_t n_points, double slip, double* kinetic,
-           double* hold) {
+int cw_law(int number, const double* params, const double* inputs, const double* points, std::int64_t n_points,
+           double slip, double* kinetic, double* hold) {
   if (number < 0 || number >= law_kinds) return 0;
   bool has_curves = false;
   visit_law_curves(number, [&](int) { has_curves = true; });
@@ -253,14 +300,14 @@ int cw_law(int number, const double* params, const double* points, std::int64_t 
       const int edges = n_points > 0 || !has_curves ? L::edges(p) : 0;
       while (piece < edges && L::edge(p, points, piece) <= slip) ++piece;
     }
-    const At<double> at{slip, nullptr, nullptr, piece, points};
+    const At<double> at{slip, nullptr, inputs, piece, points};
     if constexpr (StickingLaw<L>) *kinetic = L::slide(p, at);
     if constexpr (CompliantLaw<L>) {
       // with states the coefficient depends on what went before
       *kinetic = __builtin_nan("");
       if constexpr (L::states == 0) *kinetic = L::coefficient(p, at);
     }
-    *hold = L::hold(p);
+    *hold = L::hold(p, at);
   });
   return 1;
 }

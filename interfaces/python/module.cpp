@@ -3,10 +3,12 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 #include <memory>
 #include <string>
 #include <tuple>
+#include <vector>
 
 namespace nb = nanobind;
 using Vector = nb::ndarray<double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
@@ -116,9 +118,12 @@ class Run {
   cw_run* run_ = nullptr;
 };
 
-std::tuple<double, double> law(int number, Vector params, Matrix points, double slip) {
+std::tuple<double, double> law(int number, Vector params, Matrix points, double slip, std::vector<double> inputs) {
   double kinetic = 0, hold = 0;
-  if (!cw_law(number, params.data(), points.data(), std::int64_t(points.shape(0)), slip, &kinetic, &hold)) {
+  // a law reads as many as it declares
+  inputs.resize(16);
+  if (!cw_law(number, params.data(), inputs.data(), points.data(), std::int64_t(points.shape(0)), slip, &kinetic,
+              &hold)) {
     throw nb::index_error("no such friction law");
   }
   return {kinetic, hold};
@@ -130,7 +135,8 @@ NB_MODULE(_core, m) {
   m.doc() = "Compiled core of clutchwork.";
   m.def("schema_hash", &cw_schema_hash, "Fingerprint of the components and layouts this core was built from.");
   m.def("law", &law, nb::arg("number"), nb::arg("params"), nb::arg("points"), nb::arg("slip"),
-        "Kinetic coefficient at a slip [rad/s] and static coefficient of a friction law.");
+        nb::arg("inputs") = std::vector<double>(),
+        "Kinetic coefficient at a slip [rad/s] and static coefficient of a friction law at its inputs.");
   nb::class_<Run>(m, "Run", "One run of a frozen system: its memory, options, signals and results.")
       .def(nb::init<nb::bytes>(), nb::arg("system"))
       .def("set_option", &Run::set_option, nb::arg("name"), nb::arg("value"))

@@ -36,13 +36,15 @@ bool start(Workspace<T>& ws) {
   for (int i = 0; i < sys.states; ++i) ws.state[i] = T(sys.initial_state[i]);
   for (int i = 0; i < sys.nodes; ++i) ws.angle[i] = T(sys.initial_angle[i]);
   for (int d = 0; d < ws.n_directions; ++d) ws.work[d] = T(0), ws.piece[d] = 0;
+  for (int d = 0; d < ws.n_directions; ++d) ws.heading[d] = forward, ws.branch_of[d] = -1;
   for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_work[p] = T(0);
   load_inputs(ws, ws.time);
+  shared_inputs(ws, ws.state);
   for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];
   input_slopes_at(ws, ws.time);
   for (int c = 0; c < sys.contacts; ++c) {
     ws.compliant[c] = is_compliant_law(sys.contact_law[c]);
-    ws.heading[c] = forward;
+    ws.fault[c] = sound;
     ws.forced[c] = ws.held[c] = ws.loaded[c] = 0;
     const double slip = value(rate_of(ws, int(sys.elements) + c));
     ws.mode[c] = abs(slip) <= slip_tolerance(ws) ? open : slip > 0 ? forward : backward;

@@ -58,9 +58,9 @@ int64_t cw_detail(const cw_run* run, double* value);
 void cw_save(const cw_run* run, void* bytes);
 int cw_restore(cw_run* run, const void* bytes, int64_t n);
 
-/* Kinetic coefficient at a slip and static coefficient of a law; 0: no such law. */
-int cw_law(int number, const double* params, const double* points, int64_t n_points, double slip, double* kinetic,
-           double* hold);
+/* Kinetic coefficient at a slip and static coefficient of a law at its inputs (as a temperature); 0: no such law. */
+int cw_law(int number, const double* params, const double* inputs, const double* points, int64_t n_points, double slip,
+           double* kinetic, double* hold);
 
 #ifdef __cplusplus
 }

@@ -4,25 +4,23 @@
 /// The smooth motion inside a mode: torques, derivatives, multipliers. y = (z, states).
 namespace clutchwork {
 
-/// Part of the rate of a branch that the prescribed speeds give, and its time derivative.
-template <class T>
-CLUTCHWORK_INLINE T offset_rate(const Workspace<T>& ws, int k) {
-  const int np = int(ws.sys.prescribed);
-  return np == 0 ? T(0) : dot(np, ws.offset + k * np, ws.prescribed);
-}
-template <class T>
-CLUTCHWORK_INLINE T offset_slope(const Workspace<T>& ws, int k) {
-  const int np = int(ws.sys.prescribed);
-  return np == 0 ? T(0) : dot(np, ws.offset + k * np, ws.prescribed_slope);
-}
-
 /// d := (sum of row' torque, state rates) at (t, y). The first part is M dz/dt.
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void evaluate(Form& form, double t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
-  inputs_at(ws, t);
   const int nz = form.nz(), n = form.n();
+  inputs_with(ws, t, y + nz);
   for (int i = 0; i < n; ++i) d[i] = T(0);
+  if constexpr (!Form::small) {
+    if (ws.sys.shared > 0) {
+      for (int k = 0; k < ws.n_branches; ++k) {
+        ws.stage_rate[k] = form.rate(k, y) + offset_rate(ws, k);
+        ws.stage_torque[k] = branch_torque(ws, ws.branch[k], ws.stage_rate[k], y + nz, d + nz);
+        form.push(k, ws.stage_torque[k], d);
+      }
+      return shared_rates(ws, ws.stage_rate, ws.stage_torque, y + nz, d + nz);
+    }
+  }
   for (int k = 0; k < ws.n_branches; ++k) {
     const T rate = form.rate(k, y) + offset_rate(ws, k);
     form.push(k, branch_torque(ws, ws.branch[k], rate, y + nz, d + nz), d);
@@ -33,8 +31,8 @@ CLUTCHWORK_INLINE void evaluate(Form& form, double t, const T* y, T* d) {
 template <class Form, class T = typename Form::Scalar>
 void observe(Form& form, double t, const T* y, T* d, T* rate, T* torque) {
   Workspace<T>& ws = form.ws;
-  inputs_at(ws, t);
   const int nz = form.nz(), n = form.n();
+  inputs_with(ws, t, y + nz);
   for (int i = 0; i < n; ++i) d[i] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
     rate[k] = form.rate(k, y) + offset_rate(ws, k);
@@ -47,9 +45,9 @@ void observe(Form& form, double t, const T* y, T* d, T* rate, T* torque) {
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void linearize(Form& form, double t, const T* y, T* d, T* dt, Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
-  inputs_at(ws, t);
-  input_slopes_at(ws, t);
   const int nz = form.nz(), n = form.n();
+  inputs_with(ws, t, y + nz);
+  input_slopes_at(ws, t);
   for (int i = 0; i < n; ++i) d[i] = T(0);
   for (int i = 0; i < n; ++i) dt[i] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
@@ -64,6 +62,9 @@ CLUTCHWORK_INLINE void linearize(Form& form, double t, const T* y, T* d, T* dt, 
     for (int s = 0; s < b.states; ++s) dt[nz + b.state + s] = out.g_time[s];
   }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) edge.rate[k] = form.rate(k, y) + offset_rate(ws, k);
+  if constexpr (!Form::small) {
+    if (ws.sys.shared > 0) linearize_shared(ws, edge.rate, y + nz, d + nz, dt + nz);
+  }
   ++ws.statistics.jacobians;
 }
 
@@ -127,12 +128,14 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
     size += abs(p.torque);
     drift[k] = p.by_rate * (edge.slope[k] - offset_slope(ws, k)) + p.by_time;
     for (int s = 0; s < b.states; ++s) drift[k] += ws.f_state[b.state + s] * states[b.state + s];
+    const int nx = int(ws.sys.shared);
+    for (int j = 0; j < nx; ++j) drift[k] += ws.by_shared[k * nx + j] * states[ws.sys.states - nx + j];
   }
   multipliers(ws, torque, true, edge.multiplier);
   multipliers(ws, drift, false, edge.drift);
   for (int a = 0; a < m; ++a) {
     edge.noise[a] = T(1e-12) * size;
-    edge.capacity[a] = capacity_of(ws, ws.locked[a]);
+    edge.capacity[a] = capacity_at(ws, ws.locked[a], edge.multiplier[a]);
   }
 }
 

@@ -83,13 +83,33 @@ bool load_may_turn(const Workspace<T>& ws, int c) {
   });
 }
 
-/// Flags that follow from the signals: which contacts are closed, which loads vary.
+/// A contact fails: for good, and told as an event without a change of mode.
+template <class T>
+void fail(Workspace<T>& ws, int c) {
+  int kind, report;
+  fault_of(ws, c, kind, report);
+  // a freewheel that gave way transmits nothing more
+  if (kind == sound) kind = cannot_transmit;
+  ws.fault[c] = kind;
+  const double e = kinetic_energy(ws), torque = value(ws.torque_before[c]);
+  record(ws, c, ws.mode[c], ws.mode[c], Cause::fault, 0.0, torque, torque, e, e);
+  if (report == 2) ws.failed = c;
+  if (kind == cannot_transmit) ws.loaded[c] = 0;
+}
+
+/// Flags that follow from the signals: which contacts are closed, which loads vary, which fail.
 template <class T>
 bool refresh_loads(Workspace<T>& ws) {
   const System& sys = ws.sys;
   bool changed = false;
-  ws.n_watch = 0;
+  ws.n_watch = ws.n_faulty = 0;
   for (int c = 0; c < sys.contacts; ++c) {
+    int kind, report;
+    fault_of(ws, c, kind, report);
+    if (kind != sound && ws.fault[c] == sound) {
+      ws.faulty[ws.n_faulty++] = c;
+      if (fault_trigger(ws, c) > 0) fail(ws, c), changed = true;
+    }
     const int closed = is_loaded(ws, c) || contact_one_way(ws, c);
     changed = changed || closed != ws.loaded[c];
     ws.loaded[c] = closed;
@@ -127,6 +147,10 @@ Status switch_modes(Workspace<T>& ws) {
     if (edge_count(ws, d) > 0) ws.piece[d] = piece_of(ws, d, value(rate_of(ws, d)));
   }
   ws.fresh_phase = true;
+  if (ws.failed >= 0) {
+    ws.detail_component = ne + ws.failed;
+    return Status::fault;
+  }
 
   const double after = kinetic_energy(ws);
   T* acceleration = ws.qp_w;

@@ -7,7 +7,7 @@ namespace clutchwork {
 
 /// The first thing that happens inside a step.
 struct Hit {
-  enum What : int { nothing, line, multiplier, load, law } what = nothing;
+  enum What : int { nothing, line, multiplier, load, law, fault, exit } what = nothing;
   int index = -1;  ///< guard, locked contact, contact, or branch
   double s = 1;    ///< where in the step, 0 to 1
   int who = -1;    ///< what of a law leaves its piece
@@ -154,7 +154,16 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
 template <class T>
 CLUTCHWORK_INLINE double margin(const Workspace<T>& ws, int a, T torque, T capacity) {
   capacity += ws.here.noise[a];
-  return contact_one_way(ws, ws.locked[a]) ? value(torque + capacity) : value(capacity) - abs(value(torque));
+  if (!contact_one_way(ws, ws.locked[a])) return value(capacity) - abs(value(torque));
+  return smaller(value(torque + capacity), value(freewheel_limit(ws, ws.locked[a]) - torque));
+}
+
+/// Whether a freewheel was hit at the torque at which it gives way, and not where its torque ends.
+template <class T>
+bool rolls_over(const Workspace<T>& ws, int a) {
+  const int c = ws.locked[a];
+  return contact_one_way(ws, c) && value(freewheel_limit(ws, c)) < infinity &&
+         value(ws.output_torque[ws.sys.elements + c]) > 0;
 }
 
 /// Smallest margin of the watched locked contacts at s, and whose it is.
@@ -172,7 +181,8 @@ double least_margin(Form& form, Step<Form>& step, double s, const int* watched, 
   double least = infinity;
   for (int i = 0; i < n; ++i) {
     const int a = watched[i];
-    const double m = margin(ws, a, ws.output_torque[a], capacity_of(ws, ws.locked[a]));
+    const T torque = ws.output_torque[a];
+    const double m = margin(ws, a, torque, capacity_at(ws, ws.locked[a], torque));
     if (m < least) least = m, who = a;
   }
   ++ws.statistics.locations;
@@ -195,7 +205,62 @@ double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
   return first_crossing(f, f(0), f(1), limit);
 }
 
-/// Where the laws of compliant contacts leave their pieces.
+/// All inputs at the share s of a step.
+template <class Form>
+void inputs_in(Form& form, Step<Form>& step, double s) {
+  auto& ws = form.ws;
+  const double t = step.t + s * step.h;
+  if (ws.n_shared_refs == 0) return inputs_at(ws, t);
+  interpolate(form, step, s, step.point());
+  inputs_with(ws, t, step.point() + form.nz());
+}
+
+/// Where a contact fails.
+template <class Form, class Integrator>
+void find_fault(Form& form, Step<Form>& step, Hit& hit) {
+  auto& ws = form.ws;
+  if (ws.n_shared_refs > 0 && !step.dense) Integrator::prepare_dense(form, step);
+  for (int i = 0; i < ws.n_faulty; ++i) {
+    const int c = ws.faulty[i];
+    if (ws.fault[c] != sound) continue;
+    auto f = [&](double s) {
+      inputs_in(form, step, s);
+      return -fault_trigger(ws, c);
+    };
+    const double s = first_crossing(f, f(0), f(1), hit.s);
+    if (s < 0 || (hit.what != Hit::nothing && s >= hit.s)) continue;
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    hit = {Hit::fault, c, s, -1};
+  }
+}
+
+/// Where the law of a contact leaves a table that may not be left.
+template <class Form, class Integrator>
+void find_exit(Form& form, Step<Form>& step, Hit& hit) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  for (int i = 0; i < ws.n_bounded; ++i) {
+    const int k = ws.bounded[i];
+    const Branch<T>& b = ws.branch[k];
+    T seen = T(0);
+    inputs_with(ws, step.t + step.h, step.y1() + form.nz());
+    const double end = value(table_room(ws, b, ws.there.rate[k], seen));
+    if (end >= 0) continue;
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    auto f = [&](double s) {
+      interpolate(form, step, s, step.point());
+      inputs_with(ws, step.t + s * step.h, step.point() + form.nz());
+      return value(table_room(ws, b, form.rate(k, step.point()) + offset_rate(ws, k), seen));
+    };
+    const double s = first_crossing(f, f(0), end, hit.s);
+    if (s < 0 || (hit.what != Hit::nothing && s >= hit.s)) continue;
+    f(s);
+    ws.detail_value = value(seen);
+    hit = {Hit::exit, k, s, -1};
+  }
+}
+
+/// Where the laws of compliant contacts and the pieces of elements change.
 template <class Form, class Integrator>
 void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
   using T = typename Form::Scalar;
@@ -215,7 +280,7 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
     if (!step.dense) Integrator::prepare_dense(form, step);
     auto f = [&](double s) {
       interpolate(form, step, s, step.point());
-      inputs_at(ws, step.t + s * step.h);
+      inputs_with(ws, step.t + s * step.h, step.point() + nz);
       const T rate = form.rate(k, step.point()) + offset_rate(ws, k);
       return noise + value(law_margin(ws, b, rate, T(0), step.point() + nz, step.f0() + nz, who).v);
     };
@@ -286,14 +351,18 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
     }
   }
 
+  if (ws.n_faulty > 0) find_fault<Form, Integrator>(form, step, hit);
+  if (ws.n_bounded > 0) find_exit<Form, Integrator>(form, step, hit);
+
   // loads that pass zero
   for (int i = 0; i < ws.n_watch; ++i) {
     const int c = ws.watch[i];
     const double sign = ws.loaded[c] ? 1.0 : -1.0;
     auto f = [&](double s) {
-      inputs_at(ws, step.t + s * h);
+      inputs_in(form, step, s);
       return sign * value(load_of(ws, c));
     };
+    if (ws.n_shared_refs > 0 && !step.dense) Integrator::prepare_dense(form, step);
     const double l0 = f(0), l1 = f(1);
     const double s = first_crossing(f, l0, abs(l1) <= 1e-12 * abs(l0) ? 0.0 : l1, hit.s);
     if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) {

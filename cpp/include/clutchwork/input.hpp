@@ -92,6 +92,9 @@ CLUTCHWORK_INLINE double signal_slope(const Workspace<T>& ws, int i, double t) {
 template <class T>
 void signal_range(const Workspace<T>& ws, int i, double t, double& low, double& high) {
   const Signal& signal = ws.signal[i];
+  // a shared state may go anywhere
+  low = -infinity, high = infinity;
+  if (i >= ws.sys.inputs) return;
   low = high = signal_value(ws, i, t);
   if (!signal.varying) return;
   const double* c = signal.coef;
@@ -134,8 +137,17 @@ void load_inputs(Workspace<T>& ws, double t) {
     seek(ws, i, t);
     if (ws.signal[i].knot < ws.next_knot) ws.next_knot = ws.signal[i].knot;
   }
+  ws.n_shared_refs = ws.n_direction_refs = 0;
   for (int ref = 0; ref < ws.n_refs; ++ref) {
     const int i = ws.ref_signal[ref];
+    if (i >= ws.sys.inputs) {
+      if (i < ws.sys.inputs + ws.sys.shared) {
+        ws.shared_ref[ws.n_shared_refs++] = ref;
+      } else {
+        ws.direction_ref[ws.n_direction_refs++] = ref;
+      }
+      continue;
+    }
     ws.u[ref] = T(signal_value(ws, i, t));
     ws.du[ref] = T(signal_slope(ws, i, t));
     if (ws.signal[i].varying) ws.varying[ws.n_varying++] = ref;

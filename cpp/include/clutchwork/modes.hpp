@@ -38,6 +38,7 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign, bool held) {
   b.piece = ws.piece[d];
   b.law_params = nullptr;
   if (d < sys.elements) {
+    b.inputs = element_inputs(sys.element_kind[d]);
     b.kind = sys.element_kind[d];
     b.law = -1;
     b.params = ws.params + sys.element_param[d];
@@ -53,6 +54,11 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign, bool held) {
     b.state = sys.contact_state[c];
     b.input = ws.u + sys.contact_input[c];
     b.input_slope = ws.du + sys.contact_input[c];
+    b.inputs = contact_inputs(b.kind);
+    b.law_inputs = law_inputs_of(b.law);
+    b.law_input = ws.u + sys.contact_law_input[c];
+    b.law_input_slope = ws.du + sys.contact_law_input[c];
+    b.shaped = is_shaped(b.kind);
     b.compliant = ws.compliant[c] != 0;
     if (b.compliant) b.sign = forward, b.held = false;
   }
@@ -64,25 +70,59 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign, bool held) {
 template <class T>
 T load_of(const Workspace<T>& ws, int c) {
   const System& sys = ws.sys;
+  if (ws.fault[c] == cannot_transmit) return T(-1);
   return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], ws.u + sys.contact_input[c]);
 }
 
-/// Static torque of a contact now [N m].
+/// Static torque of a contact now that resists slip in a direction [N m].
 template <class T>
-T static_torque(const Workspace<T>& ws, int c) {
-  return larger(load_of(ws, c), T(0)) * law_hold(ws.sys.contact_law[c], ws.params + ws.sys.contact_law_param[c]);
+T static_torque(const Workspace<T>& ws, int c, int direction) {
+  return ws.fault[c] == cannot_transmit ? T(0) : contact_limit(ws.sys, c, ws.params, ws.u, direction);
 }
 
-/// What a contact can hold now while it sticks [N m]: nothing where its law never does.
+/// What a contact can hold now against slip in a direction [N m]: nothing where its law never sticks.
 template <class T>
-T capacity_of(const Workspace<T>& ws, int c) {
-  return ws.compliant[c] ? T(0) : static_torque(ws, c);
+T capacity_of(const Workspace<T>& ws, int c, int direction) {
+  if (ws.fault[c] == cannot_unlock) return T(infinity);
+  return ws.compliant[c] ? T(0) : static_torque(ws, c, direction);
+}
+
+/// The capacity that counts while a contact holds a torque: a positive one resists backward slip.
+template <class T>
+T capacity_at(const Workspace<T>& ws, int c, T torque) {
+  return capacity_of(ws, c, value(torque) > 0 && !contact_one_way(ws, c) ? backward : forward);
+}
+
+/// Above zero when a contact fails; below for one that cannot.
+template <class T>
+double fault_trigger(const Workspace<T>& ws, int c) {
+  return visit_contact(ws.sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (FaultyContact<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + ws.sys.contact_param[c]);
+      return value(E::fault(p, At<T>{T(0), nullptr, ws.u + ws.sys.contact_input[c], 0, nullptr}));
+    }
+    return -1.0;
+  });
+}
+
+/// What a failure does to a contact, and how it is reported.
+template <class T>
+void fault_of(const Workspace<T>& ws, int c, int& kind, int& report) {
+  kind = sound, report = 1;
+  visit_contact(ws.sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (FaultyContact<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + ws.sys.contact_param[c]);
+      kind = E::fault_kind(p), report = E::fault_report(p);
+    }
+  });
 }
 
 /// Whether a contact may stick: its law can, or it is a freewheel.
 template <class T>
 bool may_stick(const Workspace<T>& ws, int c) {
-  return !ws.compliant[c] || contact_one_way(ws, c);
+  return !ws.compliant[c] || contact_one_way(ws, c) || ws.fault[c] == cannot_unlock;
 }
 
 /// Time derivative of the load of a contact.
@@ -93,8 +133,9 @@ T load_slope(const Workspace<T>& ws, int c) {
     using E = typename decltype(tag)::type;
     Dual<T, 1> input[E::inputs > 0 ? E::inputs : 1];
     for (int i = 0; i < E::inputs; ++i) {
-      input[i] = Dual<T, 1>(ws.u[sys.contact_input[c] + i]);
-      input[i].d[0] = ws.du[sys.contact_input[c] + i];
+      const int ref = sys.contact_input[c] + i;
+      input[i] = Dual<T, 1>(ws.u[ref]);
+      input[i].d[0] = ws.du[ref] + ws.shared_slope[ref];
     }
     return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0]).d[0];
   });
@@ -103,17 +144,20 @@ T load_slope(const Workspace<T>& ws, int c) {
 /// Whether a contact is closed: a load now, or one that is about to rise from zero.
 template <class T>
 bool is_loaded(const Workspace<T>& ws, int c) {
+  if (ws.fault[c] == cannot_unlock && ws.mode[c] == locked) return true;
   const double load = value(load_of(ws, c));
   return load != 0 ? load > 0 : value(load_slope(ws, c)) > 0;
 }
 
 /// Static torque that a contact can use in a decision: one that rises from zero counts as it is a nanosecond later.
 template <class T>
-T usable_capacity(const Workspace<T>& ws, int c) {
-  if (ws.compliant[c]) return T(0);
-  if (value(load_of(ws, c)) > 0) return capacity_of(ws, c);
+T usable_capacity(const Workspace<T>& ws, int c, int direction) {
+  const System& sys = ws.sys;
+  if (ws.compliant[c] || ws.fault[c] == cannot_unlock || value(load_of(ws, c)) > 0)
+    return capacity_of(ws, c, direction);
   const T rising = larger(load_slope(ws, c), T(0)) * T(1e-9);
-  return rising * law_hold(ws.sys.contact_law[c], ws.params + ws.sys.contact_law_param[c]);
+  return rising * law_hold(sys.contact_law[c], ws.params + sys.contact_law_param[c], ws.u + sys.contact_law_input[c],
+                           sys.points);
 }
 
 /// Tolerance under which a slip counts as zero.
@@ -301,13 +345,13 @@ bool settle_contacts(Workspace<T>& ws, int located) {
     BoundedProblem<T> p = gather(ws, list, n);
     for (int a = 0; a < n; ++a) {
       const int c = list[a];
-      capacity[a] = usable_capacity(ws, c);
+      const T resists_forward = usable_capacity(ws, c, forward), resists_backward = usable_capacity(ws, c, backward);
       const bool one_way = contact_one_way(ws, c);
       p.gradient[a] = slip_acceleration(ws, c, q);
-      p.lower[a] = -capacity[a];
-      p.upper[a] = one_way ? T(infinity) : capacity[a];
+      p.lower[a] = -resists_forward;
+      p.upper[a] = one_way ? freewheel_limit(ws, c) : resists_backward;
+      capacity[a] = larger(resists_forward, p.upper[a]);
       p.x[a] = T(0);
-      if (one_way) capacity[a] = T(infinity);
       if (is_rigid(ws, c)) p.matrix[a * n + a] = T(1e-300);
     }
     capacity_weights(p, capacity);

@@ -216,7 +216,8 @@ void fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row)
   }
   for (int c = 0; c < sys.contacts; ++c) {
     row[at.contact_mode + c] = mode_shown(ws, shot, c);
-    row[at.contact_capacity + c] = value(static_torque(ws, c));
+    row[at.contact_capacity + c] =
+        value(static_torque(ws, c, value(ws.output_torque[ne + c]) > 0 ? backward : forward));
   }
   for (int p = 0; p < np; ++p) {
     row[at.prescribed_work + p] =

@@ -18,6 +18,8 @@ template <class T>
 bool explicit_suits(Workspace<T>& ws) {
   // speeds without inertia are algebraic: only the implicit method carries them
   if (has_massless(ws)) return false;
+  // shared states may be stiff
+  if (ws.sys.shared > 0 && ws.options.method == Method::automatic) return false;
   if (ws.options.method != Method::automatic) return ws.options.method == Method::dopri5;
   const int nv = int(ws.sys.speeds);
   double damping = 0, stiffness = 0;
@@ -63,7 +65,7 @@ bool enter_mode(Workspace<T>& ws) {
   ws.rank = many ? eliminate_locked(ws, ws.z_basis) : split_locked(ws, basis);
   ws.nz = int(sys.speeds) - ws.rank;
   ws.is_explicit = explicit_suits(ws);
-  ws.sparse = ws.is_explicit || ws.nz > small_speeds || sys.states > small_states || has_massless(ws);
+  ws.sparse = ws.is_explicit || sys.shared > 0 || ws.nz > small_speeds || sys.states > small_states || has_massless(ws);
   if (many && (!ws.sparse || sys.prescribed > 0)) split_locked(ws, basis);
   if (!factor_mobility(ws)) return false;
   map_prescribed(ws, basis);
@@ -137,7 +139,7 @@ void export_state(Form& form, const T* y) {
   Workspace<T>& ws = form.ws;
   for (int i = 0; i < form.n(); ++i) ws.y[i] = y[i];
   for (int i = 0; i < form.ns(); ++i) ws.state[i] = y[form.nz() + i];
-  inputs_at(ws, ws.time);
+  inputs_with(ws, ws.time, ws.state);
   expand(form, y, ws.v);
 }
 
@@ -209,12 +211,12 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   Workspace<T>& ws = form.ws;
   Branch<T>& b = ws.branch[k];
   T* state = step.y0() + form.nz();
-  int& heading = ws.heading[b.direction - int(ws.sys.elements)];
+  int& heading = ws.heading[b.direction];
   b.piece = law_cross(ws, b, rate_of(ws, b.direction), who, state);
   // a state reaches its limit the way the contact slips, however small the slip
   if (who == turned) {
     heading = -heading;
-  } else {
+  } else if (b.law >= 0) {
     heading = value(state[b.state + who]) < 0 ? backward : forward;
   }
   ws.piece[b.direction] = b.piece;
@@ -224,7 +226,8 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   return !stands_still(ws);
 }
 
-/// Whether a contact whose torque jumps with the sign of its slip reverses again and again within a few steps: it cannot come to rest.
+/// Whether a contact whose torque jumps with the sign of its slip reverses again and again within a few steps: it
+/// cannot come to rest.
 template <class T>
 bool chatters(Workspace<T>& ws) {
   constexpr int window = 800, most = 40;
@@ -416,6 +419,10 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
       h = ws.last_step;
       continue;
     }
+    if (hit.what == Hit::exit) {
+      ws.detail_component = ws.branch[hit.index].direction;
+      return Status::out_of_table;
+    }
     switch (hit.what) {
       case Hit::line:
         ws.located = ws.branch[guard->branch].direction - int(ws.sys.elements);
@@ -429,7 +436,10 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
     }
     ws.cause = hit.what == Hit::line         ? Cause::slip_zero
                : hit.what == Hit::multiplier ? Cause::torque_limit
+               : hit.what == Hit::fault      ? Cause::fault
                                              : Cause::input;
+    if (hit.what == Hit::fault) fail(ws, hit.index);
+    if (hit.what == Hit::multiplier && rolls_over(ws, hit.index)) fail(ws, ws.located);
     if (hit.what == Hit::load) ws.loaded[hit.index] = !ws.loaded[hit.index] || contact_one_way(ws, hit.index);
     return Status::running;
   }

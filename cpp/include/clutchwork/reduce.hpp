@@ -83,7 +83,9 @@ bool factor_mobility(Workspace<T>& ws) {
   BoundedProblem<T> p = gather(ws, ws.locked, m);
   T* capacity = ws.qp_g + ws.sys.contacts;
   for (int a = 0; a < m; ++a) {
-    capacity[a] = contact_one_way(ws, ws.locked[a]) ? T(infinity) : capacity_of(ws, ws.locked[a]);
+    const int c = ws.locked[a];
+    capacity[a] = larger(capacity_of(ws, c, forward), capacity_of(ws, c, backward));
+    if (contact_one_way(ws, c)) capacity[a] = T(infinity);
     if (is_rigid(ws, ws.locked[a])) p.matrix[a * m + a] = T(1);
     p.bound[a] = 0;
   }
@@ -172,11 +174,13 @@ void pack(Workspace<T>& ws, int d, int sign, bool held, int& block) {
 /// Branches whose laws switch or jump.
 template <class T>
 void list_laws(Workspace<T>& ws) {
-  ws.n_switching = ws.n_chattering = 0;
+  ws.n_switching = ws.n_chattering = ws.n_bounded = 0;
   for (int k = 0; k < ws.n_branches; ++k) {
-    if (!ws.branch[k].compliant) continue;
-    if (is_switching_law(ws.branch[k].law)) ws.switching[ws.n_switching++] = k;
-    if (is_chattering_law(ws.branch[k].law)) ws.chattering[ws.n_chattering++] = k;
+    const Branch<T>& b = ws.branch[k];
+    if (is_switching(b)) ws.switching[ws.n_switching++] = k;
+    if (b.law < 0) continue;
+    if (is_chattering_law(b.law)) ws.chattering[ws.n_chattering++] = k;
+    if (is_bounded_law(b.law) && !b.held) ws.bounded[ws.n_bounded++] = k;
   }
 }
 
@@ -205,7 +209,7 @@ void pack_branches(Workspace<T>& ws) {
   }
 }
 
-/// Guards of the slip of a contact: where it may lock, and where its law notices that it turns.
+/// Guard of the slip of a contact: where it may lock.
 template <class T>
 void list_slip(Workspace<T>& ws, int k) {
   const Branch<T>& b = ws.branch[k];
@@ -217,9 +221,17 @@ void list_slip(Workspace<T>& ws, int k) {
     const bool outside = abs(slip) >= level * (1 - 1e-9);
     ws.line[ws.n_lines++] = {LineGuard::slip, k, ws.mode[c], outside ? level * ws.mode[c] : 0.0};
   }
-  if (!b.compliant || !law_turns(b)) return;
-  if (abs(slip) > slip_tolerance(ws)) ws.heading[c] = slip > 0 ? forward : backward;
-  ws.line[ws.n_lines++] = {LineGuard::turn, k, ws.heading[c], 0.0};
+}
+
+/// Guard of a rate whose change of sign matters to the law or the element behind it.
+template <class T>
+void list_turn(Workspace<T>& ws, int k) {
+  const Branch<T>& b = ws.branch[k];
+  if ((b.law >= 0 && !b.compliant) || !law_turns(b)) return;
+  const double rate = value(rate_of(ws, b.direction));
+  int& heading = ws.heading[b.direction];
+  if (abs(rate) > slip_tolerance(ws)) heading = rate > 0 ? forward : backward;
+  ws.line[ws.n_lines++] = {LineGuard::turn, k, heading, 0.0};
 }
 
 /// Guards that are linear in the state.
@@ -231,6 +243,7 @@ void list_lines(Workspace<T>& ws) {
     const bool contact = b.law >= 0;
     if (contact && b.held) continue;
     if (contact) list_slip(ws, k);
+    list_turn(ws, k);
     const int edges = edge_count(ws, b.direction), sign = contact ? b.sign : 1;
     if (b.piece < edges) ws.line[ws.n_lines++] = {LineGuard::edge, k, -sign, sign * edge_at(ws, b.direction, b.piece)};
     if (edges > 0 && b.piece > 0)

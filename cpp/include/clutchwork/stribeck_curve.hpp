@@ -34,10 +34,14 @@ CLUTCHWORK_INLINE S fading(S x) {
 template <class T, class S>
 CLUTCHWORK_INLINE S stribeck_share(const StribeckCurve<T>& c, S x) {
   switch (Shape(int(value(c.shape)))) {
-    case Shape::tustin: return fading(x);
-    case Shape::lorentz: return S(1) / (S(1) + x * x);
-    case Shape::power: return fading(power_of_size(x, c.exponent));
-    default: return fading(x * x);
+    case Shape::tustin:
+      return fading(x);
+    case Shape::lorentz:
+      return S(1) / (S(1) + x * x);
+    case Shape::power:
+      return fading(power_of_size(x, c.exponent));
+    default:
+      return fading(x * x);
   }
 }
 

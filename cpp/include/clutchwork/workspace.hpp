@@ -7,7 +7,7 @@ namespace clutchwork {
 inline constexpr double infinity = __builtin_huge_val();
 
 enum Mode : int { backward = -1, locked = 0, forward = 1, open = 2 };
-enum class Cause : int { initial, slip_zero, torque_limit, input, consequence, impulse, restart, passing };
+enum class Cause : int { initial, slip_zero, torque_limit, input, consequence, impulse, restart, passing, fault };
 enum class Method : int { automatic, rodas5p, dopri5 };
 
 /// Settings of a run.
@@ -45,6 +45,9 @@ struct Branch {
   const T* law_params;
   const T* input;
   const T* input_slope;
+  const T* law_input;
+  const T* law_input_slope;
+  int inputs, law_inputs;
   int kind, law;      ///< law is -1 for a torque element
   int direction;      ///< number among elements, then contacts
   int state, states;  ///< own states: offset and number
@@ -52,6 +55,7 @@ struct Branch {
   int sign;           ///< direction of slip of a contact
   bool held;          ///< a saturated contact that does not slip: applies its static torque
   bool compliant;     ///< a contact whose law never sticks: smooth over signed slip
+  bool shaped;        ///< a contact whose torque per load is not the coefficient itself
 };
 
 /// Value and partial derivatives of one branch.
@@ -90,7 +94,9 @@ struct Workspace {
   double time = 0;
   T *v = nullptr, *state = nullptr, *angle = nullptr, *work = nullptr, *prescribed_work = nullptr;
   int *mode = nullptr, *piece = nullptr, *loaded = nullptr, *forced = nullptr, *held = nullptr;
-  int *compliant = nullptr, *heading = nullptr;  ///< contacts with a law that never sticks; sign of their slip
+  int *compliant = nullptr, *heading = nullptr;  ///< contacts with a law that never sticks; sign of a rate
+  int *fault = nullptr, *faulty = nullptr;       ///< what has failed in a contact; contacts that can
+  int n_faulty = 0, failed = -1;
   double last_step = 0;  ///< [s] last step that was not cut short
   bool started = false, fresh_phase = true, input_changed = false;
   double stand_time = -infinity, forced_time = -infinity;
@@ -104,6 +110,17 @@ struct Workspace {
   T *u = nullptr, *du = nullptr;
   double input_time = -infinity, next_knot = infinity;
   T *params = nullptr, *prescribed = nullptr, *prescribed_slope = nullptr, *prescribed_before = nullptr;
+
+  // references that are no signals: shared states first, then rates and heats of directions
+  int *shared_ref = nullptr, *direction_ref = nullptr;
+  int n_shared_refs = 0, n_direction_refs = 0;
+  T* shared_slope = nullptr;  ///< time derivative of each reference to a shared state, else zero
+  T *heat = nullptr, *heat_rate = nullptr, *heat_time = nullptr;  ///< of each branch [W], by its rate, by time
+  T* heat_share = nullptr;                                        ///< of each branch, by its torque
+  T *stage_rate = nullptr, *stage_torque = nullptr;               ///< of each branch at the present stage
+  T* by_shared = nullptr;                                         ///< torque of each branch by the shared states
+  T *shared_by_rate = nullptr, *shared_by_state = nullptr, *shared_by_shared = nullptr;  ///< of the shared rates
+  T *shared_reach = nullptr, *shared_inverse = nullptr;  ///< answer of the motion to a shared state; Schur complement
 
   // geometry in mass-weighted coordinates x = L' v
   T *factor = nullptr, *direction = nullptr, *prescribed_momentum = nullptr, *white = nullptr;
@@ -125,7 +142,8 @@ struct Workspace {
   T *torque = nullptr, *output_torque = nullptr, *slip_slope = nullptr, *torque_before = nullptr;
   int *watch = nullptr, *mode_before = nullptr, *impulse = nullptr;
   int *switching = nullptr, *chattering = nullptr;  ///< branches with laws that switch, or that jump with the slip
-  int n_switching = 0, n_chattering = 0, reversals = 0;
+  int* bounded = nullptr;                           ///< branches whose laws can be left
+  int n_switching = 0, n_chattering = 0, n_bounded = 0, reversals = 0;
   std::int64_t reversals_since = 0;
 
   // sparse form
@@ -185,7 +203,15 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   a.take(ws.v, nv), a.take(ws.state, ns), a.take(ws.angle, s.nodes), a.take(ws.work, nd),
       a.take(ws.prescribed_work, np);
   a.take(ws.mode, nc), a.take(ws.piece, nd), a.take(ws.loaded, nc), a.take(ws.forced, nc), a.take(ws.held, nc);
-  a.take(ws.compliant, nc), a.take(ws.heading, nc), a.take(ws.switching, nc), a.take(ws.chattering, nc);
+  a.take(ws.compliant, nc), a.take(ws.heading, nd), a.take(ws.switching, nd), a.take(ws.chattering, nc);
+  a.take(ws.bounded, nc), a.take(ws.fault, nc), a.take(ws.faulty, nc);
+  const auto nx = s.shared;
+  a.take(ws.shared_ref, ws.n_refs), a.take(ws.direction_ref, ws.n_refs), a.take(ws.shared_slope, ws.n_refs);
+  a.take(ws.heat, nx > 0 ? nd : 0), a.take(ws.heat_rate, nx > 0 ? nd : 0), a.take(ws.heat_time, nx > 0 ? nd : 0);
+  a.take(ws.heat_share, nx > 0 ? nd : 0), a.take(ws.stage_rate, nx > 0 ? nd : 0);
+  a.take(ws.stage_torque, nx > 0 ? nd : 0), a.take(ws.by_shared, nd * nx), a.take(ws.shared_by_rate, nd * nx);
+  a.take(ws.shared_by_state, ns * nx), a.take(ws.shared_by_shared, nx * nx), a.take(ws.shared_reach, (nv + ns) * nx);
+  a.take(ws.shared_inverse, 2 * nx * nx + nx);
   a.take(ws.signal, s.inputs), a.take(ws.ref_signal, ws.n_refs), a.take(ws.varying, ws.n_refs);
   a.take(ws.u, ws.n_refs), a.take(ws.du, ws.n_refs), a.take(ws.params, s.n_params), a.take(ws.prescribed_before, np);
   a.take(ws.factor, nv * nv), a.take(ws.direction, nd * nv), a.take(ws.prescribed_momentum, np * nv);

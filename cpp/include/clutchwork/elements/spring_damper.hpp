@@ -19,6 +19,10 @@ struct SpringDamper {
     return -(at.state[0] + p.damping * at.rate);
   }
   template <class T, class S>
+  static S heat(const Params<T>& p, const At<S>& at) {
+    return p.damping * at.rate * at.rate;
+  }
+  template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     rates[0] = p.stiffness * at.rate;
   }

@@ -40,6 +40,25 @@ struct Rodas5P {
   /// Fold the states of the branches into effective dampings and factor. docs/theory/integrators.md
   template <class Form, class T = typename Form::Scalar>
   static CLUTCHWORK_INLINE bool factor(Form& form, T scale) {
+    if (!factor_motion(form, scale)) return false;
+    if constexpr (!Form::small) {
+      if (form.ws.sys.shared > 0) return factor_border(form, scale, [&](T* b) { solve_motion(form, b); });
+    }
+    return true;
+  }
+
+  /// b := (scale M - J)^-1 b.
+  template <class Form, class T = typename Form::Scalar>
+  static CLUTCHWORK_INLINE void solve(Form& form, T* b) {
+    solve_motion(form, b);
+    if constexpr (!Form::small) {
+      if (form.ws.sys.shared > 0) solve_border(form, b);
+    }
+  }
+
+  /// As factor, with the shared states held.
+  template <class Form, class T = typename Form::Scalar>
+  static CLUTCHWORK_INLINE bool factor_motion(Form& form, T scale) {
     Workspace<T>& ws = form.ws;
     T* stiff = ws.scratch;
     for (int k = 0; k < ws.n_branches; ++k) {
@@ -62,9 +81,9 @@ struct Rodas5P {
     return form.factor(scale, stiff);
   }
 
-  /// b := (scale M - J)^-1 b, states condensed out and put back.
+  /// As solve, with the shared states held: own states condensed out and put back.
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE void solve(Form& form, T* b) {
+  static CLUTCHWORK_INLINE void solve_motion(Form& form, T* b) {
     Workspace<T>& ws = form.ws;
     const int nz = form.nz();
     if (form.ns() == 0) {

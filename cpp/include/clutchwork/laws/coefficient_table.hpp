@@ -17,7 +17,7 @@ struct CoefficientTable {
     return curve_value(p.kinetic, at.points, at.rate, at.piece);
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
 

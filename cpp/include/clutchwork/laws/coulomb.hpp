@@ -17,7 +17,7 @@ struct Coulomb {
     return S(p.kinetic);
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
 };

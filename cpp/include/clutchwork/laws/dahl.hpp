@@ -25,7 +25,7 @@ struct Dahl {
     rates[0] = p.stiffness * at.rate * power_of_size(left, p.exponent) * side;
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.kinetic;
   }
 };

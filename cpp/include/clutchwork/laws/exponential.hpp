@@ -21,7 +21,7 @@ struct Exponential {
     return p.fast + (p.slow - p.fast) * exp(-x);
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
 };

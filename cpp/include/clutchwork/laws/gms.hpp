@@ -35,7 +35,7 @@ struct GMS {
     }
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
 

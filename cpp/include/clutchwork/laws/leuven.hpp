@@ -34,15 +34,15 @@ struct Leuven {
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     const S bending = at.rate * share(p, at);
     for (int i = 0; i < count(p); ++i) {
-      const T stiffness = p.static_ * T(element_share(p.elements, at.points, i) /
-                                        element_deflection(p.elements, at.points, i));
+      const T stiffness =
+          p.static_ * T(element_share(p.elements, at.points, i) / element_deflection(p.elements, at.points, i));
       // one that slides stays at its limit, or leaves it inward
       const bool inward = (value(bending) < 0) != (value(at.state[i]) < 0);
       rates[i] = element_slides(at.piece, i) && !inward ? S(0) : stiffness * bending;
     }
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
 

@@ -26,7 +26,7 @@ struct LuGre {
     rates[0] = p.stiffness * bending(p, at);
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
 };

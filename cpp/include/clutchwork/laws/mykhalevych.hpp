@@ -32,7 +32,7 @@ struct Mykhalevych {
     rates[0] = at.piece == full ? S(0) : at.rate / p.elastic;
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
 

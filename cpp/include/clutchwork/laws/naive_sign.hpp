@@ -16,7 +16,7 @@ struct NaiveSign {
     return stribeck(p, at.rate) * T(slip > 0 ? 1 : slip < 0 ? -1 : 0) + p.viscous * at.rate;
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
 };

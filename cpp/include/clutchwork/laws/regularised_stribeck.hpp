@@ -16,7 +16,7 @@ struct RegularisedStribeck {
     return stribeck(p, at.rate) * tanh(at.rate / p.width) + p.viscous * at.rate;
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
 };

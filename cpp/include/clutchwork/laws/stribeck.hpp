@@ -14,7 +14,7 @@ struct Stribeck {
     return stribeck_forward(p, at.rate) + p.viscous * at.rate;
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
 };

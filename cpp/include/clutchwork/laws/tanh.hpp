@@ -17,7 +17,7 @@ struct Tanh {
     return p.kinetic * tanh(at.rate * T(2) / p.speed);
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.kinetic;
   }
 };
