@@ -1,0 +1,42 @@
+"""The independent counterpart of a law, found by the name of its kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from support.friction.bristle import Dahl, ElastoPlastic, LuGre
+from support.friction.curve import Curve
+from support.friction.law import Law
+from support.friction.maxwell import GMS, Leuven
+from support.friction.smooth import NaiveSign, RegularisedStribeck, Tanh
+from support.friction.wound import Mykhalevych
+
+
+def _curve(law: Any) -> Curve:
+    return Curve(law.static, law.kinetic, law.speed, law.shape, law.exponent, law.viscous)
+
+
+def _elements(law: Any) -> tuple[tuple[float, float], ...]:
+    return tuple((float(x), float(y)) for x, y in law.elements)
+
+
+# a compliant law that is not here fails tests/physics/test_law_hysteresis.py
+COUNTERPARTS: dict[str, Callable[[Any], Law]] = {
+    "tanh": lambda law: Tanh(law.kinetic, law.speed),
+    "regularised_stribeck": lambda law: RegularisedStribeck(_curve(law), law.width),
+    "naive_sign": lambda law: NaiveSign(_curve(law)),
+    "dahl": lambda law: Dahl(law.kinetic, law.stiffness, law.exponent),
+    "lugre": lambda law: LuGre(_curve(law), law.stiffness, law.damping),
+    "elastoplastic": lambda law: ElastoPlastic(_curve(law), law.stiffness, law.damping, law.elastic, law.plastic),
+    "leuven": lambda law: Leuven(_curve(law), _elements(law), law.order, law.damping),
+    "gms": lambda law: GMS(_curve(law), _elements(law), law.attraction),
+    "mykhalevych": lambda law: Mykhalevych(
+        law.static, law.kinetic, law.elastic, law.speed, law.viscous, law.reset, law.range, bool(law.passive)
+    ),
+}
+
+
+def counterpart(law: Any) -> Law:
+    """The independent law with the same parameters; KeyError for a kind that has none."""
+    return COUNTERPARTS[type(law).kind](law)

@@ -1,0 +1,59 @@
+"""Laws with numbers, by kind: those of the drift test, and others that reach every word and flag of a declaration."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import clutchwork as cw
+
+# unit mass; N, m, s
+CURVE: dict[str, float] = {"static": 1.0, "kinetic": 0.7, "speed": 0.01, "viscous": 0.4}
+BRISTLE: dict[str, float] = {**CURVE, "stiffness": 1e4, "damping": 200.0}
+# the second set of the drift test
+CURVE_2: dict[str, float] = {"static": 1.0, "kinetic": 0.8, "speed": 1e-3, "viscous": 0.4}
+BRISTLE_2: dict[str, float] = {**CURVE_2, "stiffness": 1e4, "damping": 100.0}
+WOUND: dict[str, float] = {"static": 1.0, "kinetic": 0.7, "elastic": 1e-4, "speed": 0.01, "viscous": 1.0}
+
+# weak elements bring the mass to rest, stiff ones carry the load
+MANY = (
+    (2e-6, 0.03), (5e-6, 0.05), (1e-5, 0.07), (2e-5, 0.1), (4e-5, 0.15), (8e-5, 0.2), (1.3e-4, 0.15), (2e-4, 0.15),
+    (3e-4, 0.1),
+)  # fmt: skip
+FEW = ((1e-5, 0.15), (5e-5, 0.25), (1e-4, 0.3), (2e-4, 0.3))
+
+DRIFT: dict[str, cw.Law] = {
+    "tanh": cw.Tanh(kinetic=0.7, speed=1e-3),
+    "regularised_stribeck": cw.RegularisedStribeck(static=1.0, kinetic=0.7, speed=0.01, width=1e-3),
+    "dahl": cw.Dahl(kinetic=0.7, stiffness=1e4),
+    "lugre": cw.LuGre(**BRISTLE),
+    "elastoplastic": cw.ElastoPlastic(**BRISTLE, elastic=4.9e-5),
+    "leuven": cw.Leuven(**CURVE, elements=FEW, order=50.0, damping=200.0),
+    "gms": cw.GMS(**CURVE, elements=FEW),
+    "mykhalevych": cw.Mykhalevych(**WOUND),
+    "mykhalevych clip": cw.Mykhalevych(**WOUND, reset="clip"),
+    "mykhalevych literal": cw.Mykhalevych(**WOUND, reset="literal"),
+    "mykhalevych passive": cw.Mykhalevych(**WOUND, passive=True),
+}
+
+# what slides with several times the Stribeck speed meets every part of a law
+OTHERS: dict[str, cw.Law] = {
+    "naive_sign": cw.NaiveSign(**CURVE),
+    "naive_sign tustin": cw.NaiveSign(**CURVE, shape="tustin"),
+    "regularised_stribeck lorentz": cw.RegularisedStribeck(**CURVE, shape="lorentz", width=2e-3),
+    "dahl square": cw.Dahl(kinetic=0.7, stiffness=1e4, exponent=2.0),
+    "dahl steep": cw.Dahl(kinetic=0.7, stiffness=1e4, exponent=1.5),
+    "lugre tustin": cw.LuGre(**BRISTLE | {"damping": 60.0}, shape="tustin"),
+    "lugre power": cw.LuGre(**BRISTLE | {"damping": 60.0}, shape="power", exponent=1.4),
+    "elastoplastic lorentz": cw.ElastoPlastic(**BRISTLE | {"damping": 60.0}, elastic=3e-5, plastic=6e-5, shape="lorentz"),
+    "leuven linear": cw.Leuven(**CURVE, elements=FEW),
+    "leuven square": cw.Leuven(**CURVE, elements=FEW[:2] + ((2e-4, 0.8),), order=2.0, damping=30.0),
+    "gms quick": cw.GMS(**CURVE, elements=FEW, attraction=2000.0),
+    "mykhalevych narrow": cw.Mykhalevych(**WOUND, range=1.5),
+}  # fmt: skip
+
+ALL = DRIFT | OTHERS
+
+
+def kinds(laws: dict[str, Any]) -> set[str]:
+    """Kinds of which there is at least one law."""
+    return {type(law).kind for law in laws.values()}
