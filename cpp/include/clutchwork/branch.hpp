@@ -102,6 +102,13 @@ T freewheel_limit(const Workspace<T>& ws, int c) {
   });
 }
 
+/// Room for numbers that are set before they are read.
+template <class S, int N>
+union Slots {
+  S at[N];
+  Slots() {}
+};
+
 /// Inputs as dual numbers over time, the last of N directions.
 template <int N, class S, class T>
 CLUTCHWORK_INLINE void dual_inputs(int count, const T* input, const T* slope, S* out) {
@@ -146,14 +153,14 @@ CLUTCHWORK_INLINE S sliding_torque(const Workspace<T>& ws, const Branch<T>& b, c
   return T(-b.sign) * load * coefficient;
 }
 
-/// Torque of a contact whose law never sticks; the rates of its states go to `rates`, which start with the own ones.
-template <class T, class S>
+/// Torque of a contact whose law never sticks; the rates of its states, at most Room, go to `rates`.
+template <int Room, class T, class S>
 CLUTCHWORK_INLINE S bending_torque(const Workspace<T>& ws, const Branch<T>& b, const S& rate, const S* own,
                                    const S* input, const S* law_input, S* rates) {
   const S load = larger(contact_load<T, S>(b.kind, b.params, input), S(0));
   S coefficient = visit_law(b.law, [&](auto tag) {
     using L = typename decltype(tag)::type;
-    if constexpr (CompliantLaw<L>) {
+    if constexpr (CompliantLaw<L> && L::states <= Room) {
       const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(b.law_params);
       const At<S> at{rate, own, law_input, b.piece, ws.sys.points};
       if constexpr (L::states > 0) L::state_rates(p, at, rates);
@@ -170,7 +177,7 @@ CLUTCHWORK_INLINE S bending_torque(const Workspace<T>& ws, const Branch<T>& b, c
 
 template <class T>
 [[gnu::noinline]] T compliant_torque(const Workspace<T>& ws, const Branch<T>& b, T rate, const T* state, T* rates) {
-  return bending_torque<T, T>(ws, b, rate, state + b.state, b.input, b.law_input, rates + b.state);
+  return bending_torque<most_own_states, T, T>(ws, b, rate, state + b.state, b.input, b.law_input, rates + b.state);
 }
 
 /// Torque of a contact on its follower; the rates of its states go to `rates`.
@@ -224,14 +231,15 @@ template <class T>
   auto with = [&](auto most) {
     constexpr int n = decltype(most)::value, N = n + 2;
     using S = Dual<T, N>;
-    S own[n > 0 ? n : 1], own_rates[n > 0 ? n : 1], input[most_inputs], law_input[most_inputs];
-    for (int i = 0; i < b.states; ++i) own[i] = S::variable(state[b.state + i], 1 + i);
-    dual_inputs<N>(b.inputs, b.input, b.input_slope, input);
-    dual_inputs<N>(b.law_inputs, b.law_input, b.law_input_slope, law_input);
+    Slots<S, n> own, own_rates;
+    Slots<S, most_inputs> input, law_input;
+    for (int i = 0; i < b.states; ++i) own.at[i] = S::variable(state[b.state + i], 1 + i);
+    dual_inputs<N>(b.inputs, b.input, b.input_slope, input.at);
+    dual_inputs<N>(b.law_inputs, b.law_input, b.law_input_slope, law_input.at);
     S x = S::variable(rate, 0);
     x.d[N - 1] = rate_slope;
-    const S f = bending_torque<T, S>(ws, b, x, own, input, law_input, own_rates);
-    return take_partials(b, f, own_rates, b.states, rates, out);
+    const S f = bending_torque<n, T, S>(ws, b, x, own.at, input.at, law_input.at, own_rates.at);
+    return take_partials(b, f, own_rates.at, b.states, rates, out);
   };
   if (b.states <= 1) return with(std::integral_constant<int, 1>{});
   return with(std::integral_constant<int, most_own_states>{});
@@ -245,13 +253,13 @@ CLUTCHWORK_INLINE Partial<T> branch_partial(const Workspace<T>& ws, const Branch
     return compliant_partial(ws, b, rate, rate_slope, state, rates, out);
   if (b.law >= 0) {
     using S = Dual<T, 2>;
-    S input[most_inputs], law_input[most_inputs];
-    dual_inputs<2>(b.inputs, b.input, b.input_slope, input);
-    dual_inputs<2>(b.law_inputs, b.law_input, b.law_input_slope, law_input);
+    Slots<S, most_inputs> input, law_input;
+    dual_inputs<2>(b.inputs, b.input, b.input_slope, input.at);
+    dual_inputs<2>(b.law_inputs, b.law_input, b.law_input_slope, law_input.at);
     if (b.held) return {held_torque(ws, b), T(0), held_slope(ws, b)};
     S x = S::variable(rate, 0);
     x.d[1] = rate_slope;
-    const S f = sliding_torque<T, S>(ws, b, x, input, law_input);
+    const S f = sliding_torque<T, S>(ws, b, x, input.at, law_input.at);
     return {f.v, f.d[0], f.d[1]};
   }
   return visit_torque(b.kind, [&](auto tag) {
@@ -289,7 +297,7 @@ template <class T>
       return E::torque(p, At<S>{S(rate), own, input, b.piece, ws.sys.points});
     });
   } else if (b.compliant) {
-    f = bending_torque<T, S>(ws, b, S(rate), own, input, law_input, rates);
+    f = bending_torque<most_own_states, T, S>(ws, b, S(rate), own, input, law_input, rates);
   } else if (!b.held) {
     f = sliding_torque<T, S>(ws, b, S(rate), input, law_input);
   }

@@ -52,6 +52,19 @@ void relax_open(Workspace<T>& ws) {
   }
 }
 
+/// Laws whose slip has jumped to the other sign notice it.
+template <class T>
+void turn_jumped(Workspace<T>& ws) {
+  for (int i = 0; i < ws.n_switching; ++i) {
+    Branch<T>& b = ws.branch[ws.switching[i]];
+    const T rate = rate_of(ws, b.direction);
+    const int heading = value(rate) > 0 ? forward : backward;
+    if (abs(value(rate)) <= slip_tolerance(ws) || heading == ws.heading[b.direction] || !law_turns(b)) continue;
+    ws.piece[b.direction] = b.piece = law_cross(ws, b, rate, turned, ws.state);
+    ws.heading[b.direction] = heading;
+  }
+}
+
 /// Reduced motion of the present modes; the state goes to ws.y. False: the inertias differ too much to tell them apart.
 template <class T>
 bool enter_mode(Workspace<T>& ws) {
@@ -60,6 +73,7 @@ bool enter_mode(Workspace<T>& ws) {
   relax_open(ws);
   list_locked(ws);
   pack_branches(ws);
+  turn_jumped(ws);
   // many speeds: the rank from sparse elimination, the dense basis only where it is used
   const bool many = sys.speeds > 3 * small_speeds;
   ws.rank = many ? eliminate_locked(ws, ws.z_basis) : split_locked(ws, basis);
@@ -235,9 +249,11 @@ bool chatters(Workspace<T>& ws) {
   if (steps - ws.reversals_since > window) ws.reversals_since = steps, ws.reversals = 0;
   for (int i = 0; i < ws.n_chattering; ++i) {
     const int k = ws.chattering[i];
-    if (value(ws.here.rate[k]) * value(ws.there.rate[k]) >= 0) continue;
+    // a slip that was driven through zero goes on; one that chatters is pushed back
+    const double rate = value(ws.here.rate[k]);
+    if (rate * value(ws.there.rate[k]) >= 0 || rate * value(ws.here.slope[k]) >= 0) continue;
     ws.detail_component = ws.branch[k].direction;
-    ws.detail_value = value(ws.there.rate[k]);
+    ws.detail_value = rate;
     if (++ws.reversals > most) return true;
   }
   return false;
