@@ -28,9 +28,12 @@ from clutchwork.errors import Problem as Problem
 from clutchwork.errors import near
 from clutchwork.layout import layout_text
 from clutchwork.node import Domain as Domain
+from clutchwork.node import HeatFlow as HeatFlow
 from clutchwork.node import Law as Law
 from clutchwork.node import Node as Node
+from clutchwork.node import Rate as Rate
 from clutchwork.node import Signal as Signal
+from clutchwork.node import ThermalNode as ThermalNode
 from clutchwork.schema import REGISTRY, schema_hash
 
 if TYPE_CHECKING:
@@ -38,10 +41,13 @@ if TYPE_CHECKING:
     from clutchwork.elements.bearing_friction import BearingFriction as BearingFriction
     from clutchwork.elements.brake import Brake as Brake
     from clutchwork.elements.clutch import Clutch as Clutch
+    from clutchwork.elements.conduction import Conduction as Conduction
+    from clutchwork.elements.convection import Convection as Convection
     from clutchwork.elements.damper import Damper as Damper
     from clutchwork.elements.double_planetary import DoublePlanetary as DoublePlanetary
     from clutchwork.elements.gear import Gear as Gear
     from clutchwork.elements.linear_torque import LinearTorque as LinearTorque
+    from clutchwork.elements.oil_flow import OilFlow as OilFlow
     from clutchwork.elements.one_way_clutch import OneWayClutch as OneWayClutch
     from clutchwork.elements.planetary import Planetary as Planetary
     from clutchwork.elements.prescribed_speed import PrescribedSpeed as PrescribedSpeed
@@ -96,7 +102,20 @@ _LAZY = {
 _DECLARED = {cls.__name__: cls for kinds in REGISTRY.values() for cls in kinds.values()}
 globals().update(_DECLARED)
 
-_FIXED = ("ClutchworkError", "Domain", "Driveline", "Law", "ModelError", "ModelWarning", "Node", "Problem", "Signal")
+_FIXED = (
+    "ClutchworkError",
+    "Domain",
+    "Driveline",
+    "HeatFlow",
+    "Law",
+    "ModelError",
+    "ModelWarning",
+    "Node",
+    "Problem",
+    "Rate",
+    "Signal",
+    "ThermalNode",
+)
 __all__ = sorted([*_FIXED, *_LAZY, *_DECLARED])
 
 

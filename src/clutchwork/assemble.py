@@ -7,15 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.checks import ports
+from clutchwork.checks import ports, thermal_ports
 from clutchwork.errors import ModelError
 from clutchwork.inputs import Wires
 from clutchwork.kinematics import apart, kinematics
 from clutchwork.layout import FIELDS
 from clutchwork.model_checks import model_advice
+from clutchwork.parts import take_apart
+from clutchwork.places import Places, places
 from clutchwork.pools import Pools
 from clutchwork.rational import Row, plus
 from clutchwork.schema import Role, kinds
+from clutchwork.shared import Shared, node_of_heat
 from clutchwork.start import start
 from clutchwork.structure import Kinematics, Model
 from clutchwork.system import TYPES, Gearing, System, frozen
@@ -23,7 +26,7 @@ from clutchwork.system import TYPES, Gearing, System, frozen
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from clutchwork.node import Component, Node
+    from clutchwork.node import Component, Node, ThermalNode
 
 Array = NDArray[Any]
 
@@ -34,9 +37,11 @@ def assemble(
     components: Sequence[Component],
     independent: Sequence[str] = (),
     source: Mapping[str, Any] | None = None,
+    thermal: Sequence[ThermalNode] = (),
 ) -> System:
     """The System of a driveline without mistakes; ModelError tells those of its structure."""
-    model = Model(tuple(nodes), tuple(components))
+    parts = take_apart(components, thermal)
+    model = Model(tuple(nodes), parts.components)
     made, problems = kinematics(model, independent)
     if made is None:
         raise ModelError(problems)
@@ -44,14 +49,19 @@ def assemble(
     speeds, motions, problems = start(model, made)
     if problems:
         raise ModelError(problems)
-    pools, wires, columns = Pools(), Wires(), Columns(model, made)
+    shared = Shared(parts.thermal, tuple(model.role(Role.PROCESS)))
+    where = places(parts.thermal, shared.processes, [component for component, _ in model.acting])
+    pools, wires, columns = Pools(), Wires(where), Columns(model, made)
+    wires.surround(parts.thermal)
     arrays = _inertia(model, made, columns)
     arrays |= _rates(model, made, columns, Role.TORQUE, "element")
     arrays |= _rates(model, made, columns, Role.CONTACT, "contact")
     states = list[float]()
     arrays |= _elements(model, pools, wires, states)
     arrays |= _contacts(model, pools, wires, states)
-    arrays |= {"initial_state": states}
+    arrays |= _flows(model, pools, wires)
+    arrays |= _heats(model, where)
+    arrays |= shared.arrays(pools, wires, states)
     arrays |= {"prescribed_input": wires.prescribe(motions)}
     arrays |= wires.arrays()
     arrays |= {"params": pools.params, "points": pools.points, "initial_speed": [float(speed) for speed in speeds]}
@@ -63,7 +73,12 @@ def assemble(
         contacts=tuple(model.role(Role.CONTACT)),
         motions=tuple(model.role(Role.MOTION)),
         gears=tuple(_gears(model)),
+        thermal=parts.thermal,
+        flows=tuple(model.role(Role.FLOW)),
+        processes=shared.processes,
         inputs=tuple(wires.inputs),
+        links=tuple(wires.links),
+        sums=parts.sums,
         independent=tuple(model.nodes[n].name for n in made.independent),
         parameters=pools.places,
         notes=tuple(made.notes),
@@ -161,9 +176,32 @@ def _contacts(model: Model, pools: Pools, wires: Wires, states: list[float]) -> 
         "contact_input": [wires.connect(contact) for contact in contacts],
         "contact_law": [laws.index(contact.friction.kind) for contact in contacts],
         "contact_law_param": [pools.add(contact.friction, f"{contact.name}.friction") for contact in contacts],
+        "contact_law_input": [wires.connect_law(contact) for contact in contacts],
         "contact_state": offsets,
         "contact_tolerance": [_tolerance(contact) for contact in contacts],
         "contact_initial": [int(contact.locked) for contact in contacts],
+    }
+
+
+def _flows(model: Model, pools: Pools, wires: Wires) -> dict[str, Any]:
+    flows = model.role(Role.FLOW)
+    ends = [[wires.places.shared[node.name] for node in thermal_ports(flow).values()] for flow in flows]
+    return {
+        "flow_kind": [kinds(Role.FLOW).index(flow.kind) for flow in flows],
+        "flow_param": [pools.add(flow, flow.name) for flow in flows],
+        "flow_input": [wires.connect(flow) for flow in flows],
+        "flow_from": [left for left, _ in ends],
+        "flow_to": [entered for _, entered in ends],
+    }
+
+
+def _heats(model: Model, where: Places) -> dict[str, Any]:
+    """Paths of heat from elements and contacts to thermal nodes."""
+    warm = [(number, component) for number, (component, _) in enumerate(model.acting) if node_of_heat(component)]
+    return {
+        "heat_direction": [number for number, _ in warm],
+        "heat_to": [where.shared[component.heat.name] for _, component in warm],
+        "heat_share": [float(component.heat_share) for _, component in warm],
     }
 
 

@@ -2,19 +2,21 @@
 
 Nothing is computed before it is asked for. A torque is what its element puts on its follower (or shaft); power is
 torque times rate, the work done on the driveline; heat of a contact is minus its work, and holds what the bristles of
-its friction law store. States of a friction law stand under the name of the contact: "c1.elastic".
+its friction law store. States of a friction law stand under the name of the contact: "c1.elastic". Where a part of an
+element counts as the element, such as the drag of a clutch, its torque, power, work and heat are added.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork import reactions
+from clutchwork import heat_channels, reactions
 from clutchwork.errors import near
 from clutchwork.layout import MODES
 from clutchwork.node import Domain
@@ -79,11 +81,13 @@ class Channels(Mapping[str, Channel]):
 
     def _all(self) -> Iterator[tuple[str, Channel]]:
         yield from self._nodes()
-        for index, branch in enumerate(self._wiring.elements):
-            yield from self._element(branch, index)
+        for branch in self._wiring.elements:
+            if not branch.hidden:
+                yield from self._element(branch)
         for index, branch in enumerate(self._wiring.contacts):
             yield from self._contact(branch, index)
         yield from self._rigid()
+        yield from self._thermal()
         start = self._start("input")
         for index, (name, unit) in enumerate(self._wiring.inputs):
             yield name, _column(start + index, unit)
@@ -98,12 +102,12 @@ class Channels(Mapping[str, Channel]):
             yield f"{node.name}.{PLACE[domain]}", _column(self._start("angle") + index, ANGLE[domain])
             yield f"{node.name}.acceleration", _column(self._start("acceleration") + index, ACCELERATION[domain])
 
-    def _element(self, branch: Branch, index: int) -> Iterator[tuple[str, Channel]]:
-        torque, rate = self._start("element_torque") + index, _linear(self._rate(branch))
-        yield f"{branch.name}.torque", _column(torque, TORQUE[branch.domain])
+    def _element(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
+        torque, rate = self._total("torque", branch), _linear(self._rate(branch))
+        yield f"{branch.name}.torque", Channel(TORQUE[branch.domain], torque)
         yield f"{branch.name}.rate", Channel(SPEED[branch.domain], rate)
-        yield f"{branch.name}.power", Channel("W", lambda rows: rows[:, torque] * rate(rows))
-        yield f"{branch.name}.work", _column(self._start("element_work") + index, "J")
+        yield f"{branch.name}.power", _power(torque, rate)
+        yield f"{branch.name}.work", Channel("J", self._total("work", branch))
         yield from self._states(branch)
 
     def _states(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
@@ -114,17 +118,34 @@ class Channels(Mapping[str, Channel]):
                 yield f"{branch.name}.twist", _scaled(column, 1.0 / branch.component.stiffness, ANGLE[branch.domain])
 
     def _contact(self, branch: Branch, index: int) -> Iterator[tuple[str, Channel]]:
-        torque, mode = self._start("contact_torque") + index, self._start("contact_mode") + index
-        work, slip = self._start("contact_work") + index, _slip(_linear(self._rate(branch)), mode)
-        yield f"{branch.name}.torque", _column(torque, TORQUE[branch.domain])
+        mode = self._start("contact_mode") + index
+        torque, work = self._total("torque", branch), self._total("work", branch)
+        slip = _slip(_linear(self._rate(branch)), mode)
+        yield f"{branch.name}.torque", Channel(TORQUE[branch.domain], torque)
         yield f"{branch.name}.slip", Channel(SPEED[branch.domain], slip)
-        yield f"{branch.name}.power", Channel("W", lambda rows: rows[:, torque] * slip(rows))
-        yield f"{branch.name}.work", _column(work, "J")
-        yield f"{branch.name}.heat", _scaled(work, -1.0, "J")
+        yield f"{branch.name}.power", _power(torque, slip)
+        yield f"{branch.name}.work", Channel("J", work)
+        yield f"{branch.name}.heat", Channel("J", lambda rows: -work(rows))
         yield f"{branch.name}.mode", Channel("1", lambda rows: rows[:, mode].astype(int))
         yield f"{branch.name}.state", Channel("", lambda rows: STATE_NAMES[rows[:, mode].astype(int) - FIRST_MODE])
         yield f"{branch.name}.capacity", _column(self._start("contact_capacity") + index, TORQUE[branch.domain])
         yield from self._states(branch)
+
+    def _thermal(self) -> Iterator[tuple[str, Channel]]:
+        for name, unit, columns in heat_channels.affine(self._wiring):
+            yield name, Channel(unit, _affine(*columns))
+
+    def _total(self, what: str, branch: Branch) -> Evaluate:
+        """Torque or work of a branch and of the parts that count as it."""
+        names = (branch.name, *self._wiring.sums.get(branch.name, ()))
+        columns = [self._start(f"{sort}_{what}") + index for sort, index in map(self._acting.__getitem__, names)]
+        return lambda rows: sum((rows[:, column] for column in columns[1:]), rows[:, columns[0]])
+
+    @cached_property
+    def _acting(self) -> dict[str, tuple[str, int]]:
+        """Sort and place of each element and contact by name."""
+        sorts = (("element", self._wiring.elements), ("contact", self._wiring.contacts))
+        return {part.name: (sort, index) for sort, branches in sorts for index, part in enumerate(branches)}
 
     def _rigid(self) -> Iterator[tuple[str, Channel]]:
         wiring, made = self._wiring, reactions.multipliers(self._wiring)
@@ -171,6 +192,10 @@ def _column(column: int, unit: str) -> Channel:
 
 def _scaled(column: int, factor: float, unit: str) -> Channel:
     return Channel(unit, lambda rows: factor * rows[:, column])
+
+
+def _affine(column: int, scale: float, offset: float) -> Evaluate:
+    return lambda rows: offset + scale * rows[:, column]
 
 
 def _linear(vector: Array) -> Evaluate:

@@ -12,7 +12,7 @@ from numbers import Real
 from typing import Any
 
 from clutchwork.errors import Problem, near
-from clutchwork.node import Component, Domain, Law, Node, Signal
+from clutchwork.node import Component, Domain, Law, Node, Signal, ThermalNode, is_reference
 from clutchwork.schema import REGISTRY, Role, Spec, inputs, specs
 
 
@@ -84,8 +84,10 @@ def _wanted(spec: Spec, unit: str) -> str:
         return f"one of {', '.join(spec.choices)}"
     return {
         "port": "a shaft",
+        "thermal": "a thermal node",
         "law": f"a friction law ({', '.join(REGISTRY[Role.LAW])})",
         "curve": f"points in [{spec.unit_x}] and [{unit}]",
+        "numbers": f"a list of numbers in [{unit}]",
         "text": "a text",
     }.get(spec.what, f"a value in [{unit}]")
 
@@ -139,7 +141,44 @@ def _port(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield at.problem(f"must be {wanted}", value=repr(value.name), remedy=f"{spec.doc} is in {spec.domain}")
 
 
+def _thermal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if not isinstance(value, ThermalNode):
+        remedy = f"give what `thermal` or `ambient` of the driveline handed out: {spec.doc}"
+        yield at.problem("must be a thermal node or an ambient", value=_shown(value), remedy=remedy)
+
+
+def _shown(value: Any) -> str:
+    return repr(value.name if isinstance(value, Node | Component) else value)
+
+
+def _numbers(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """A list of numbers, or of equally long lists of them."""
+    if isinstance(value, str) or not hasattr(value, "__len__") or len(value) == 0:
+        yield at.problem("must be a list of numbers", value=repr(value), remedy=f"write [x, y, ...]: {spec.doc}")
+        return
+    rows = [row if hasattr(row, "__len__") and not isinstance(row, str) else [row] for row in value]
+    if len({len(row) for row in rows}) > 1:
+        lengths = ", ".join(str(len(row)) for row in rows)
+        yield at.problem("has rows of different lengths", value=lengths, remedy="give every row as many numbers")
+        return
+    before = None
+    for number, item in enumerate((item for row in rows for item in row), 1):
+        place = At(at.path, f"{at.quantity}, number {number}", at.unit)
+        found = list(number_problems(item, spec, place))
+        if not found and spec.rising == "strictly" and before is not None and float(item) <= before:
+            fault = "comes after" if float(item) < before else "stands twice, after"
+            message, shown = f"{fault} {before:g} {at.unit}", f"{float(item):g} {at.unit}"
+            found = [place.problem(message, value=shown, remedy="sort the numbers; each must be above the one before")]
+        if found:
+            yield from found
+            return
+        before = float(item)
+
+
 def _curve(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if spec.constant and isinstance(value, Real):
+        yield from number_problems(value, spec, at)
+        return
     if isinstance(value, str) or not hasattr(value, "__len__") or len(value) == 0:
         yield at.problem("must be a list of points", value=repr(value), remedy=f"write [[x, y], ...]: {spec.doc}")
         return
@@ -159,8 +198,9 @@ def _point(point: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
         yield at.problem("must be a pair of numbers", value=repr(point), remedy="write [x, y]")
         return
-    for number, unit in zip(point, (spec.unit_x, at.unit), strict=True):
-        yield from number_problems(number, Spec("param", unit, ""), At(at.path, at.quantity, unit))
+    plain, bounded = Spec("param", spec.unit_x, ""), Spec("param", at.unit, "", at_least=spec.at_least)
+    for number, part in zip(point, (plain, bounded), strict=True):
+        yield from number_problems(number, part, At(at.path, at.quantity, part.unit))
 
 
 def _order(before: Any, point: Any, spec: Spec, at: At) -> Iterator[Problem]:
@@ -181,7 +221,8 @@ def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield from object_problems(value, at)
     elif isinstance(value, Real) and not isinstance(value, bool):
         yield from number_problems(value, spec, at)
-    else:
+    # whether a reference leads to something of that unit is checked where the driveline is known
+    elif not is_reference(value):
         remedy = f"give one of {', '.join(REGISTRY[Role.SIGNAL])}"
         yield at.problem(f"must be a number in [{at.unit}] or a signal", value=repr(value), remedy=remedy)
 
@@ -210,7 +251,9 @@ CHECKS: dict[str, Callable[[Any, Spec, At], Iterator[Problem]]] = {
     "param": _param,
     "option": _param,
     "port": _port,
+    "thermal": _thermal,
     "curve": _curve,
+    "numbers": _numbers,
     "signal": _signal,
     "alternative": _signal,
     "law": _law,
@@ -226,10 +269,16 @@ def ports(component: Component) -> dict[str, Node]:
     return {item.name: getattr(component, item.name) or HOUSING for item, _ in specs(type(component), "port")}
 
 
+def thermal_ports(component: Component) -> dict[str, ThermalNode]:
+    """Thermal nodes at the ports of an element, those that are given."""
+    values = {item.name: getattr(component, item.name) for item, _ in specs(type(component), "thermal")}
+    return {name: node for name, node in values.items() if node is not None}
+
+
 def connection_problems(component: Component, nodes: Sequence[Node]) -> Iterator[Problem]:
     """Ports that are on foreign nodes, on one and the same node, or of two kinds of motion."""
     at, joined = At(label(component), ""), ports(component)
-    if not all(isinstance(node, Node) for node in joined.values()):
+    if not joined or not all(isinstance(node, Node) for node in joined.values()):
         return
     known = {id(node) for node in nodes}
     for name, node in joined.items():

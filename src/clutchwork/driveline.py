@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from clutchwork.errors import ModelError, Problem, warn
-from clutchwork.node import HOUSING, Component, Domain, Node
+from clutchwork.node import HOUSING, Component, Domain, Node, Signal, ThermalNode
 
 if TYPE_CHECKING:
     from clutchwork.system import System
@@ -30,12 +30,18 @@ class Driveline:
             str, Any
         ] = {}  # settings of a run as in [simulation] of a model file: t_end, dt, rtol ...
         self._nodes: list[Node] = []
+        self._thermal: list[ThermalNode] = []
         self._elements: list[Component] = []
 
     @property
     def nodes(self) -> tuple[Node, ...]:
         """Shafts and masses in the order in which they were added."""
         return tuple(self._nodes)
+
+    @property
+    def thermal_nodes(self) -> tuple[ThermalNode, ...]:
+        """Thermal masses and ambients in the order in which they were added."""
+        return tuple(self._thermal)
 
     @property
     def elements(self) -> tuple[Component, ...]:
@@ -67,6 +73,22 @@ class Driveline:
         self._nodes.append(node)
         return node
 
+    def thermal(self, name: str, *, capacity: float, temperature: float = 300.0) -> ThermalNode:
+        """Add a mass that holds heat and has one temperature.
+
+        Parameters: capacity [J/K], mass times specific heat; temperature [K] at the start.
+        """
+        return self.add_thermal(ThermalNode(name, capacity, temperature))
+
+    def ambient(self, name: str, *, temperature: float | Signal = 300.0) -> ThermalNode:
+        """Add surroundings whose temperature [K], a number or a signal, does not depend on the heat they take."""
+        return self.add_thermal(ThermalNode(name, None, temperature))
+
+    def add_thermal(self, node: ThermalNode) -> ThermalNode:
+        """Add a thermal mass or an ambient that was made elsewhere."""
+        self._thermal.append(node)
+        return node
+
     def add(self, element: E) -> E:
         """Add an element and hand it back; TypeError for what is none."""
         if not isinstance(element, Component):
@@ -81,7 +103,7 @@ class Driveline:
         """
         from clutchwork.model_checks import model_advice, model_problems
 
-        problems = model_problems(self._nodes, self._elements)
+        problems = model_problems(self._nodes, self._elements, self._thermal)
         for advice in model_advice(self._elements):
             warn(advice)
         return problems
@@ -97,7 +119,7 @@ class Driveline:
         problems = self.check()
         if problems:
             raise ModelError(problems, self.name)
-        return assemble(self.name, self._nodes, self._elements, independent, self._source())
+        return assemble(self.name, self._nodes, self._elements, independent, self._source(), self._thermal)
 
     def simulate(self, t_end: float, **options: Any) -> Trajectory:
         """Assemble and run up to t_end [s]; options as for `clutchwork.simulate`."""

@@ -1,6 +1,7 @@
 """Where the energy of a run went.
 
     work of the sources = change of kinetic + change of elastic energy + heat + residual
+    heat = heat in thermal nodes + heat that nobody follows
 
 The work integrals come from the solver itself, so the residual measures what the integration lost or made.
 
@@ -11,7 +12,7 @@ counts as heat too: it is small, at most coefficient times deflection times load
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,8 @@ class EnergyBalance:
     elastic: float  # change, all springs
     heat: Mapping[str, float]  # per contact and damper
     impulses: float  # part of the heat: lost where speeds jumped
+    thermal: Mapping[str, float] = field(default_factory=dict)  # change of the heat of each thermal node and ambient
+    shares: Mapping[str, float] = field(default_factory=dict)  # share of the heat of each that goes to a thermal node
 
     @property
     def input(self) -> float:
@@ -44,9 +47,14 @@ class EnergyBalance:
         return sum(self.sources.values())
 
     @property
+    def untracked(self) -> float:
+        """Heat that goes to no thermal node [J]."""
+        return sum(heat * (1.0 - self.shares.get(name, 0.0)) for name, heat in self.heat.items())
+
+    @property
     def residual(self) -> float:
-        """What the balance misses [J]."""
-        return self.input - self.kinetic - self.elastic - sum(self.heat.values())
+        """What the balance misses [J]; where there are thermal nodes, it counts the heat that arrived there."""
+        return self.input - self.kinetic - self.elastic - self.untracked - sum(self.thermal.values())
 
     @property
     def turnover(self) -> float:
@@ -62,6 +70,8 @@ class EnergyBalance:
             "kinetic_J": self.kinetic,
             "elastic_J": self.elastic,
             "heat_J": dict(self.heat),
+            "thermal_J": dict(self.thermal),
+            "untracked_J": self.untracked,
             "impulses_J": self.impulses,
             "residual_J": self.residual,
         }
@@ -74,6 +84,10 @@ class EnergyBalance:
         lines += [("heat", f"{sum(self.heat.values()):.3f}")]
         lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.heat.items() if heat]
         lines += [("of it in impulses", f"{self.impulses:.3f}")] if self.impulses else []
+        if self.thermal:
+            lines += [("in thermal nodes", f"{sum(self.thermal.values()):.3f}")]
+            lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.thermal.items() if heat]
+            lines += [("heat to no thermal node", f"{self.untracked:.3f}")]
         share = self.residual / self.turnover if self.turnover else 0.0
         lines += [("residual", f"{self.residual:.3e}"), ("residual / turnover", f"{share:.1e}")]
         return columns([("energy", "J"), *lines], right={1})
@@ -84,6 +98,8 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
     ends = rows[[0, -1]]
     sources, heat, elastic = {}, {}, 0.0
     for branch, work in _works(wiring, ends, "element_work", wiring.elements):
+        if branch.hidden:
+            continue
         stored = _elastic(wiring, ends, branch)
         elastic += stored
         if is_source(branch):
@@ -102,7 +118,18 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
         sources[branch.name] += float(work)
     # where sources prescribe speeds, the change of kinetic energy is not what the contacts lost
     named = 0.0 if wiring.motions else _impulses(events)
-    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, named)
+    shares = {b.name: _share(b.component) for b in (*wiring.elements, *wiring.contacts) if _share(b.component)}
+    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, named, _thermal(wiring, ends), shares)
+
+
+def _share(component: Any) -> float:
+    """Share of the heat of an element that goes to a thermal node."""
+    return 0.0 if getattr(component, "heat", None) is None else float(component.heat_share)
+
+
+def _thermal(wiring: Wiring, ends: NDArray[np.float64]) -> dict[str, float]:
+    start = wiring.columns["state"].start
+    return {node.name: float(np.diff(ends[:, start + node.states[0][2]])[0]) for node in wiring.thermal}
 
 
 def is_spring(branch: Branch) -> bool:
@@ -111,8 +138,8 @@ def is_spring(branch: Branch) -> bool:
 
 
 def is_lossy(branch: Branch) -> bool:
-    """Whether an element turns work into heat: it has a damping."""
-    return hasattr(branch.component, "damping")
+    """Whether an element turns work into heat: it has a damping, or a thermal node takes what it makes."""
+    return hasattr(branch.component, "damping") or _share(branch.component) > 0.0
 
 
 def is_source(branch: Branch) -> bool:

@@ -23,7 +23,11 @@ def _acting(model: Model, made: Kinematics, speed: int) -> list[tuple[Any, Row, 
     """Elements and contacts that an independent speed moves: rate over the nodes, and per that speed."""
     moved = set(made.moved_by(speed))
     rates = ((c, row, made.over(row).get(speed, ZERO)) for c, row in model.acting if moved & row.keys())
-    return [(c, row, share) for c, row, share in rates if share]
+    return [(c, row, share) for c, row, share in rates if share and not _is_idle(c)]
+
+
+def _is_idle(component: Any) -> bool:
+    return component.kind == "damper" and not _damping(component)
 
 
 def _is_spring(component: Any) -> bool:

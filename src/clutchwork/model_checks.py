@@ -8,30 +8,42 @@ from clutchwork.checks import At, component_problems, connection_problems, label
 from clutchwork.errors import Problem
 from clutchwork.kinematics import kinematics
 from clutchwork.law_checks import component_advice
-from clutchwork.node import HOUSING, Component, Domain, Node
+from clutchwork.node import HOUSING, Component, Domain, Node, ThermalNode
+from clutchwork.parts import Parts, take_apart
 from clutchwork.schema import Spec
 from clutchwork.start import start
 from clutchwork.structure import Model
+from clutchwork.thermal_checks import Known, node_kind, port_problems, reference_problems, thermal_problems
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 
 def model_problems(
-    nodes: Sequence[Node], elements: Sequence[Component], incomplete: Sequence[str] = ()
+    nodes: Sequence[Node],
+    elements: Sequence[Component],
+    thermal: Sequence[ThermalNode] = (),
+    incomplete: Sequence[str] = (),
 ) -> list[Problem]:
     """All mistakes of a model: of single nodes and elements, then of the structure as far as that can be seen.
 
     Nothing is said about the inertia of nodes in `incomplete`, which belong to elements that are not there.
     """
     problems = [problem for node in nodes for problem in node_problems(node)]
+    problems += [problem for node in thermal for problem in thermal_problems(node)]
     sound, broken = list[Component](), list[Component]()
-    problems += name_problems(nodes, elements)
     for element in elements:
-        found = [*component_problems(element), *connection_problems(element, nodes)]
+        joints = [*connection_problems(element, nodes), *port_problems(element, thermal)]
+        found = [*component_problems(element), *joints]
         problems += found
         (broken if found else sound).append(element)
-    return problems + structure_problems(nodes, sound, [*incomplete, *_touched(broken)])
+    parts = take_apart(sound, thermal)
+    problems += name_problems(nodes, elements, parts)
+    known = Known.of(nodes, parts)
+    # what refers to an element with mistakes is looked at once those are mended
+    if not broken and not incomplete:
+        problems += [problem for part in parts.components for problem in reference_problems(part, known)]
+    return problems + structure_problems(nodes, parts.components, [*incomplete, *_touched(broken)])
 
 
 def model_advice(elements: Sequence[Component]) -> list[Problem]:
@@ -74,11 +86,14 @@ def node_problems(node: Node) -> list[Problem]:
     return problems
 
 
-def name_problems(nodes: Sequence[Node], elements: Sequence[Component]) -> list[Problem]:
-    """Names that are no text, reserved or given twice."""
+def name_problems(nodes: Sequence[Node], elements: Sequence[Component], parts: Parts) -> list[Problem]:
+    """Names that are no text, reserved or given twice, those of parts included."""
     problems, seen = [], {HOUSING.name: "the housing"}
     things = [(f'shaft "{node.name}"', node.name) for node in nodes]
+    things += [(f'{node_kind(node)} "{node.name}"', node.name) for node in parts.thermal]
     things += [(label(element), element.name) for element in elements]
+    whole = {element.name for element in elements}
+    things += [(label(part), part.name) for part in parts.components if part.name not in whole]
     for path, name in things:
         if not isinstance(name, str) or not name or name != name.strip():
             remedy = "give a text without blanks at its ends"

@@ -12,6 +12,13 @@
     gain = 0.1
     pressure = {type = "column", path = "pressures.csv", column = "c1", unit = "bar"}
     friction = {type = "coulomb", static = 0.12, kinetic = 0.1}
+    heat = "lining"
+    [[thermal]]
+    name = "lining"
+    capacity = "2 kJ/K"
+    [[ambient]]
+    name = "air"
+    temperature = 293.0
     [simulation]
     t_end = 2.0
 
@@ -29,6 +36,7 @@ from clutchwork.model_checks import model_problems
 from clutchwork.model_reader import FORMAT, Reader
 from clutchwork.model_writer import Writer, toml
 from clutchwork.node import Domain
+from clutchwork.thermal_checks import node_kind
 
 if TYPE_CHECKING:
     from clutchwork.driveline import Driveline
@@ -78,10 +86,14 @@ def from_dict(data: Any, folder: str | Path = "", source: str = "") -> Driveline
     """A driveline from the content of a model file; CSV paths are relative to the folder."""
     reader = Reader(str(folder))
     driveline = reader.driveline(data)
-    problems = reader.problems + model_problems(driveline.nodes, driveline.elements, reader.incomplete)
+    problems = reader.problems + _problems(driveline, reader.incomplete)
     if problems:
         raise ModelError(problems, source or driveline.name)
     return driveline
+
+
+def _problems(driveline: Driveline, incomplete: list[str]) -> list[Problem]:
+    return model_problems(driveline.nodes, driveline.elements, driveline.thermal_nodes, incomplete)
 
 
 def save(driveline: Driveline, path: str | Path) -> None:
@@ -108,6 +120,8 @@ def to_dict(driveline: Driveline, *, folder: str | Path | None = None, embed: bo
     data: dict[str, Any] = {"format": FORMAT, "name": driveline.name}
     for key, domain in (("shaft", Domain.ROTATION), ("mass", Domain.TRANSLATION)):
         data[key] = [writer.node(node) for node in driveline.nodes if node.domain is domain]
+    for key in ("thermal", "ambient"):
+        data[key] = [writer.thermal(node) for node in driveline.thermal_nodes if node_kind(node) == key]
     data["element"] = [writer.element(element) for element in driveline.elements]
     data["simulation"] = dict(driveline.simulation)
     if writer.problems:

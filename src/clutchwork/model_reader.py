@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import MISSING, replace
 from typing import Any
 
 from clutchwork.checks import BROKEN, CHECKS, At, value_problems
 from clutchwork.driveline import Driveline
 from clutchwork.errors import Problem, near
 from clutchwork.model_checks import NODE_FIELDS, node_path
-from clutchwork.node import HOUSING, Domain, Node
-from clutchwork.quantity import QuantityError, curve_in_si, factor_to_si, in_si
+from clutchwork.model_references import References, is_named, referred
+from clutchwork.node import HOUSING, Component, Domain, Node, ThermalNode
+from clutchwork.quantity import QuantityError, curve_in_si, factor_to_si, in_si, numbers_in_si
 from clutchwork.schema import REGISTRY, Role, Spec, specs
 from clutchwork.signals.column import Column
+from clutchwork.thermal_checks import NODE_FIELDS as THERMAL_FIELDS
 
 FORMAT = 1
-TOP = ("format", "name", "description", "shaft", "mass", "element", "simulation")
-ELEMENTS = (Role.TORQUE, Role.CONTACT, Role.GEAR, Role.MOTION)
+TOP = ("format", "name", "description", "shaft", "mass", "thermal", "ambient", "element", "simulation")
+ELEMENTS = tuple(role for role in Role if role not in (Role.LAW, Role.SIGNAL))
 SIMULATION = {
     "t_end": Spec("param", "s", "end time", above=0.0),
     "dt": Spec("param", "s", "spacing of the output", above=0.0),
@@ -40,6 +42,8 @@ class Reader:
         self.folder = folder
         self.problems: list[Problem] = []
         self.nodes: dict[str, Node] = {HOUSING.name: HOUSING}
+        self.thermal: dict[str, ThermalNode] = {}
+        self.elements = References(self._element)
         self.incomplete: list[str] = []  # nodes at elements that could not be made
 
     def driveline(self, data: Any) -> Driveline:
@@ -55,8 +59,11 @@ class Reader:
         for kind, domain in (("shaft", Domain.ROTATION), ("mass", Domain.TRANSLATION)):
             for place, entry in self._entries(data, kind):
                 self._node(driveline, entry, domain, kind, place)
-        for place, entry in self._entries(data, "element"):
-            self._element(driveline, entry, place)
+        for kind in THERMAL_FIELDS:
+            for place, entry in self._entries(data, kind):
+                self._thermal_node(driveline, entry, kind, place)
+        for element in self.elements.all(self._entries(data, "element")):
+            driveline.add(element)
         driveline.simulation.update(self._simulation(data.get("simulation", {})))
         return driveline
 
@@ -100,7 +107,21 @@ class Reader:
         node = driveline.add_node(Node(name, domain, 0.0 if inertia is None else inertia, speed, angle or 0.0))
         self.nodes.setdefault(name, node)
 
-    def _element(self, driveline: Driveline, entry: Mapping[str, Any], place: int) -> None:
+    def _thermal_node(self, driveline: Driveline, entry: Mapping[str, Any], kind: str, place: int) -> None:
+        name = self._text(entry, "name", At(f"{kind} number {place}", ""))
+        known, at = THERMAL_FIELDS[kind], At(node_path(kind, name or f"number {place}"), "")
+        self._unknown(entry, ("name", *known), at)
+        # a mistake is reported already: stand-ins let the rest be checked
+        values: dict[str, Any] = {"capacity": 1.0} if kind == "thermal" else {}
+        for key, spec in known.items():
+            value = self._value(entry[key], spec, at.inner(key, spec.unit)) if key in entry else MISSING
+            if value is MISSING and key == "capacity":
+                self._report(at.inner(key), "is missing", remedy=f"give a value in [{spec.unit}]: {spec.doc}")
+            elif value not in (MISSING, BROKEN):
+                values[key] = value
+        self.thermal.setdefault(name, driveline.add_thermal(ThermalNode(name, **values)))
+
+    def _element(self, entry: Mapping[str, Any], place: int) -> Component | None:
         name = self._text(entry, "name", At(f"element number {place}", ""))
         path, known = f'element "{name}"' if name else f"element number {place}", element_kinds()
         kind = self._text(entry, "type", At(path, ""))
@@ -111,9 +132,10 @@ class Reader:
         elif kind:
             values = self._values(known[kind], entry, At(f"{path} ({kind})", ""), ("name", "type"))
             if name and len(self.problems) == before:
-                driveline.add(known[kind](name, **values))
-                return
+                made: Component = known[kind](name, **values)
+                return made
         self.incomplete += [value for value in entry.values() if isinstance(value, str)]
+        return None
 
     def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
         """Values of the fields of a declaration, in SI; mistakes are reported."""
@@ -126,15 +148,19 @@ class Reader:
         return values
 
     def _value(self, value: Any, spec: Spec, at: At) -> Any:
-        if spec.what == "port":
-            return self._port(value, at)
+        if spec.what in ("port", "thermal"):
+            return self._port(value, spec, at)
         if spec.what == "law":
             return self._typed(value, Role.LAW, at)
         if spec.what in ("signal", "alternative"):
+            if is_named(value, self.thermal, self.elements, self.nodes):
+                return self._other(value, at)
             is_signal = isinstance(value, Mapping) and "type" in value
             return self._signal(value, spec, at) if is_signal else self._number(value, spec, at)
         if spec.what == "curve":
             return self._converted(lambda: curve_in_si(value, spec, at.unit, at.factor), at)
+        if spec.what == "numbers":
+            return self._converted(lambda: numbers_in_si(value, spec, at.unit), at)
         if spec.what == "function":
             return self._report(at, "cannot stand in a model file", remedy="give it in Python")
         if spec.what == "text" or spec.flag or spec.choices:
@@ -150,11 +176,26 @@ class Reader:
         except QuantityError as bad:
             return self._report(at, bad.message, bad.value, bad.remedy)
 
-    def _port(self, value: Any, at: At) -> Any:
-        if isinstance(value, str) and value in self.nodes:
-            return self.nodes[value]
-        remedy = f"known are {', '.join(self.nodes)}"
-        return self._report(at, "is no shaft of this model" + near(str(value), self.nodes), repr(value), remedy)
+    def _port(self, value: Any, spec: Spec, at: At) -> Any:
+        known: Mapping[str, Any] = self.nodes if spec.what == "port" else self.thermal
+        if isinstance(value, str) and value in known:
+            return known[value]
+        what = "shaft" if spec.what == "port" else "thermal node"
+        remedy = f"known are {', '.join(known)}" if known else "add one: [[thermal]] or [[ambient]]"
+        return self._report(at, f"is no {what} of this model" + near(str(value), known), repr(value), remedy)
+
+    def _other(self, value: Any, at: At) -> Any:
+        """An input that a thermal node, an element or a shaft gives."""
+        name = value["of"] if isinstance(value, Mapping) else value
+        found: Any = self.thermal.get(name) or self.elements.get(name) or self.nodes.get(name)
+        if name in self.elements and found is None:
+            # its own mistakes are reported where it stands
+            return BROKEN if self.elements.broken(name) else self._report(at, "leads back to itself", repr(name))
+        if found is None:
+            known = [*self.thermal, *self.elements, *self.nodes]
+            remedy = f"known are {', '.join(known)}"
+            return self._report(at, "is not known" + near(str(name), known), repr(name), remedy)
+        return found if isinstance(value, str) else referred(value, found)
 
     def _typed(self, value: Any, role: Role, at: At, taken: tuple[str, ...] = ("type",)) -> Any:
         """A law or a signal from a table with its type."""

@@ -7,17 +7,21 @@ import os
 import re
 from collections.abc import Mapping
 from dataclasses import MISSING
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.checks import At, label
 from clutchwork.errors import Problem
 from clutchwork.model_checks import NODE_FIELDS
+from clutchwork.node import HeatFlow, Rate, is_reference
 from clutchwork.schema import Spec, specs
 from clutchwork.signals.column import Column
+from clutchwork.thermal_checks import NODE_FIELDS as NODE_KINDS
+from clutchwork.thermal_checks import node_kind
 
 if TYPE_CHECKING:
-    from clutchwork.node import Component, Node
+    from clutchwork.node import Component, Node, ThermalNode
 
 
 class Writer:
@@ -34,6 +38,13 @@ class Writer:
         given = {key: float(value) for key, value in values.items() if value is not None and (value or key == "speed")}
         return {"name": node.name, **given}
 
+    def thermal(self, node: ThermalNode) -> dict[str, Any]:
+        """A thermal mass or an ambient."""
+        fields_ = NODE_KINDS[node_kind(node)]
+        at = At(f'{node_kind(node)} "{node.name}"', "")
+        given = {key: self._value(getattr(node, key), spec, at.inner(key)) for key, spec in fields_.items()}
+        return {"name": node.name, **given}
+
     def element(self, element: Component) -> dict[str, Any]:
         """An element with its type, ports and parameters."""
         kind = type(element).kind  # type: ignore[attr-defined]
@@ -48,14 +59,18 @@ class Writer:
         return made
 
     def _value(self, value: Any, spec: Spec, at: At) -> Any:
-        if spec.what == "port":
+        if spec.what in ("port", "thermal"):
             return value.name
+        if is_reference(value):
+            return _reference(value)
         if spec.what == "function":
             message = "is a Python function, which a model file cannot hold"
             self.problems.append(at.problem(message, remedy="give a table, or keep the model in Python"))
             return None
-        if spec.what == "curve":
+        if spec.what == "curve" and not isinstance(value, Real):
             return [[float(x), float(y)] for x, y in value]
+        if spec.what == "numbers":
+            return [list(map(float, row)) if hasattr(row, "__len__") else float(row) for row in value]
         if isinstance(value, Column) and self.embed:
             return {"type": "table", "points": [list(pair) for pair in value.points]}
         if hasattr(value, "__dataclass_fields__"):
@@ -70,6 +85,15 @@ class Writer:
         if self.folder is None or full.is_absolute():
             return str(full)
         return Path(os.path.relpath(full, self.folder)).as_posix()
+
+
+def _reference(value: Any) -> Any:
+    """An input that another component gives: its name, or a table."""
+    if isinstance(value, tuple):
+        return {"of": value[0].name, "state": value[1]}
+    if isinstance(value, Rate | HeatFlow):
+        return {"type": "rate" if isinstance(value, Rate) else "heat_flow", "of": value.of.name}
+    return value.name
 
 
 def toml(data: Mapping[str, Any]) -> str:

@@ -7,7 +7,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from clutchwork.schema import State
 
@@ -35,12 +35,33 @@ HOUSING = Node("housing", fixed=True)
 
 
 @dataclass(frozen=True)
+class ThermalNode:
+    """A mass that holds heat, or an ambient of given temperature, as `Driveline.thermal` and `.ambient` hand it out."""
+
+    name: str
+    capacity: float | None = None  # J/K; None: an ambient, whose temperature does not depend on the heat it takes
+    temperature: SignalLike = 300.0  # K, of a mass at the start, of an ambient over time
+
+
+@dataclass(frozen=True)
 class Component:
     """An element with a name that is its path in results and errors."""
 
     one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
 
     name: str
+
+    def parts(self) -> Iterable[Component | ThermalNode]:
+        """What it is made of, named `{self.name}.{part}`; nothing: it is one piece.
+
+        One part may have the name of the component itself and stands for it in events and results. Parts refer to
+        each other by name, so `HeatFlow(self)` is that of this part.
+        """
+        return ()
+
+    def sums(self) -> tuple[str, ...]:
+        """Names of parts whose torque, power, work and heat are added to those of the part with its own name."""
+        return ()
 
 
 @dataclass(frozen=True)
@@ -101,10 +122,31 @@ class Signal:
         return 0.0
 
 
+@dataclass(frozen=True)
+class Rate:
+    """Rate of an element, or slip of a contact, as an input of a flow or process [rad/s]."""
+
+    of: Component
+
+
+@dataclass(frozen=True)
+class HeatFlow:
+    """Heat that an element or a contact makes, as an input of a flow or process [W]."""
+
+    of: Component
+
+
 # what an input accepts
-SignalLike: TypeAlias = "float | Signal"
+SignalLike: TypeAlias = "float | Signal | ThermalNode | Component | tuple[Component, str] | Node | Rate | HeatFlow"
 # (x, y) pairs of a curve
 Points: TypeAlias = "Sequence[tuple[float, float]]"
 # units of the gain of a contact, on shafts and on masses: torque or force per pressure, per force, per share
 GAIN_OF_PRESSURE = ("m3", "m2")
 GAIN_OF_FORCE = ("m", "1", "N m", "N")
+
+
+def is_reference(value: object) -> bool:
+    """Whether an input is given by another component or node."""
+    if isinstance(value, tuple):
+        return len(value) == 2 and isinstance(value[0], Component) and isinstance(value[1], str)
+    return isinstance(value, ThermalNode | Component | Node | Rate | HeatFlow)

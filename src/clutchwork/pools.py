@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,15 +26,28 @@ class Pools:
     def add(self, component: Any, path: str) -> int:
         """Append the parameters of a component; the offset of the first one."""
         offset = len(self.params)
-        for item, spec in specs(type(component), "param", "curve"):
+        for item, spec in specs(type(component), "param", "curve", "numbers"):
             value = getattr(component, item.name)
             if spec.what == "param":
                 self.places[f"{path}.{item.name}"] = len(self.params)
                 self.params.append(float(spec.choices.index(value) if spec.choices else value))
             else:
-                self.params += [float(len(self.points)), float(len(value))]
-                self.points += _with_slopes([(float(x), float(y)) for x, y in value])
+                points = _points(value) if spec.what == "curve" else _plain(value)
+                self.params += [float(len(self.points)), float(len(points))]
+                self.points += points
         return offset
+
+
+def _points(value: Any) -> list[tuple[float, float, float]]:
+    """Points of a curve; a number is the same everywhere."""
+    pairs = [(0.0, value)] if isinstance(value, Real) else value
+    return _with_slopes([(float(x), float(y)) for x, y in pairs])
+
+
+def _plain(value: Any) -> list[tuple[float, float, float]]:
+    """Numbers, or rows of numbers one after another, each as the abscissa of a point."""
+    flat = [number for row in value for number in (row if hasattr(row, "__len__") else [row])]
+    return [(float(number), 0.0, 0.0) for number in flat]
 
 
 def _with_slopes(points: list[tuple[float, float]]) -> list[tuple[float, float, float]]:

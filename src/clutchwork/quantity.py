@@ -64,6 +64,8 @@ def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), shown: obj
 
 def curve_in_si(value: Any, spec: Spec, unit: str, factor: float = 1.0) -> Any:
     """Points in SI from a list of pairs, whose ordinates times `factor` are SI, or a table {points, unit_x, unit}."""
+    if spec.constant and (isinstance(value, str | float | int) or (isinstance(value, Mapping) and "value" in value)):
+        return in_si(value, unit, spec.units, factor)
     if not isinstance(value, Mapping):
         return _scaled(value, 1.0, factor)
     unknown = [key for key in value if key not in ("points", "unit_x", "unit")]
@@ -74,6 +76,20 @@ def curve_in_si(value: Any, spec: Spec, unit: str, factor: float = 1.0) -> Any:
     x = factor_to_si(value["unit_x"], spec.unit_x, spec.units_x) if "unit_x" in value else 1.0
     y = factor_to_si(value["unit"], unit, spec.units) if "unit" in value else factor
     return _scaled(value["points"], x, y)
+
+
+def numbers_in_si(value: Any, spec: Spec, unit: str) -> Any:
+    """Numbers, or rows of them, in SI from a list, or from a table {values, unit}."""
+    factor = 1.0
+    if isinstance(value, Mapping):
+        unknown = [key for key in value if key not in ("values", "unit")]
+        if unknown or "values" not in value:
+            raise QuantityError("must be a list of numbers", repr(dict(value)), "write {values = [x, y, ...], unit}")
+        factor = factor_to_si(value["unit"], unit, spec.units) if "unit" in value else 1.0
+        value = value["values"]
+    if not isinstance(value, list):
+        return value
+    return [[_times(x, factor) for x in row] if isinstance(row, list) else _times(row, factor) for row in value]
 
 
 def _scaled(value: Any, x: float, y: float) -> Any:

@@ -23,6 +23,9 @@ class Role(Enum):
     CONTACT = "contact"  # set-valued friction along one direction
     GEAR = "gear"  # rigid kinematic row between speeds, assembled in Python
     MOTION = "motion"  # prescribed speed
+    FLOW = "flow"  # heat flow between two thermal nodes
+    PROCESS = "process"  # states of its own that signals, rates and heats drive: an actuator, wear
+    COMPOSITE = "composite"  # made of other elements, nothing of its own
     LAW = "law"  # friction coefficient over slip
     SIGNAL = "signal"  # value over time that drives an input
 
@@ -40,7 +43,7 @@ class State:
 class Spec:
     """Metadata of one declared field."""
 
-    # "port" | "param" | "curve" | "signal" | "law" of the compiled core;
+    # "port" | "thermal" (port) | "param" | "curve" | "numbers" | "signal" | "law" of the core;
     # "alternative" (to another signal) | "option" | "text" | "function" for Python alone
     what: str
     unit: str  # SI; "*" in a signal: the unit of what it drives
@@ -60,8 +63,10 @@ class Spec:
     flag: bool = False  # true or false in Python, 1 or 0 in the core
     whole: bool = False  # a whole number
     rising: str = ""  # of a curve: "strictly", or "weakly" where equal x mean a jump
+    constant: bool = False  # of a curve: a number stands for the same value everywhere
     choices: tuple[str, ...] = ()  # a text in Python, its place among these in the core
     example: Any = None  # of a law: a value that fits the examples of its other fields
+    last: bool = False  # stands behind all other fields in files and tables
 
     @property
     def bound(self) -> str:
@@ -83,9 +88,19 @@ def _field(spec: Spec, default: Any, kw_only: bool = True) -> Any:
     return field(default=default, metadata={"spec": spec}, kw_only=kw_only)
 
 
-def port(doc: str, *, default: None = MISSING, domain: str = "") -> Any:  # type: ignore[assignment]
-    """A shaft, mass or the housing that the component is attached to; with default None: the housing."""
-    return _field(Spec("port", "", doc, default is None, domain=domain), default)
+def port(
+    doc: str,
+    *,
+    default: None = MISSING,  # type: ignore[assignment]
+    domain: str = "",
+    last: bool = False,
+) -> Any:
+    """What the component is attached to: a shaft, a mass or the housing; with default None: the housing.
+
+    In the domain "thermal" it is a thermal node or an ambient, with default None: nothing.
+    """
+    what = "thermal" if domain == "thermal" else "port"
+    return _field(Spec(what, "", doc, default is None, domain=domain, last=last), default)
 
 
 def param(
@@ -126,12 +141,36 @@ def curve(
     units: tuple[str, ...] = (),
     units_x: tuple[str, ...] = (),
     rising: str = "strictly",
+    at_least: float | None = None,
+    constant: bool = False,
     example: tuple[tuple[float, float], ...] | None = None,
     kw_only: bool = True,
 ) -> Any:
-    """A piecewise linear function as (x, y) points with x increasing: a `Curve` of the C++ `Params`."""
-    spec = Spec("curve", unit_y, doc, unit_x=unit_x, units=units, units_x=units_x, rising=rising, example=example)
+    """A piecewise linear function as (x, y) points with x increasing: a `Curve` of the C++ `Params`.
+
+    `at_least` bounds y; with `constant` a number may stand for one point.
+    """
+    ranges: dict[str, Any] = {"unit_x": unit_x, "units": units, "units_x": units_x, "at_least": at_least}
+    spec = Spec("curve", unit_y, doc, **ranges, rising=rising, constant=constant, example=example)
     return _field(spec, MISSING, kw_only)
+
+
+def numbers(
+    unit: str,
+    doc: str,
+    *,
+    units: tuple[str, ...] = (),
+    rising: str = "",
+    above: float | None = None,
+    at_least: float | None = None,
+    example: tuple[Any, ...] | None = None,
+) -> Any:
+    """A list of numbers, or of rows of equally many: a `Curve` of the C++ `Params` whose points hold one number each.
+
+    Rows stand one after another. With `rising` "strictly" each number must be above the one before.
+    """
+    spec = Spec("numbers", unit, doc, above=above, at_least=at_least, units=units, rising=rising, example=example)
+    return _field(spec, MISSING)
 
 
 def signal(
@@ -144,7 +183,10 @@ def signal(
     instead_of: str = "",
     otherwise: float | None = None,
 ) -> Any:
-    """An input over time: a number or a Signal; the C++ functions get it as `u[i]`.
+    """An input: a number, a Signal, a thermal node (its temperature), a process (its first state), or (process, state).
+
+    The inputs of flows and processes may also be `Rate` and `HeatFlow` of an element, and a shaft (its speed).
+    The C++ functions get them as `at.input[i]`, in order of declaration.
 
     With `instead_of` it is another way to give the signal of that name: exactly one of them is given, or
     none where that signal has a value `otherwise`.
@@ -166,11 +208,15 @@ def option(
     default: float | None = MISSING,  # type: ignore[assignment]
     above: float | None = None,
     at_least: float | None = None,
+    at_most: float | None = None,
     units: tuple[str, ...] = (),
     flag: bool = False,
+    last: bool = False,
 ) -> Any:
     """A setting that the assembly reads and the equations do not: no part of the C++ `Params`."""
-    return _field(Spec("option", unit, doc, default is None, above, at_least, units=units, flag=flag), default)
+    bounds = (above, at_least, None, at_most)
+    spec = Spec("option", unit, doc, default is None, *bounds, units=units, flag=flag, last=last)
+    return _field(spec, default)
 
 
 def text(doc: str, *, default: str = MISSING, kw_only: bool = True) -> Any:  # type: ignore[assignment]
@@ -189,7 +235,9 @@ C = TypeVar("C", bound=type)
 
 
 @dataclass_transform(
-    kw_only_default=True, frozen_default=True, field_specifiers=(port, param, flag, choice, curve, signal, law, option)
+    kw_only_default=True,
+    frozen_default=True,
+    field_specifiers=(port, param, flag, choice, curve, numbers, signal, law, option),
 )
 def family(cls: C) -> C:
     """Freeze fields that several declarations share, as a base that is itself none."""
@@ -200,7 +248,7 @@ def family(cls: C) -> C:
 @dataclass_transform(
     kw_only_default=True,
     frozen_default=True,
-    field_specifiers=(port, param, flag, choice, curve, signal, law, option, text, function),
+    field_specifiers=(port, param, flag, choice, curve, numbers, signal, law, option, text, function),
 )
 def component(role: Role, *, states: tuple[State, ...] = ()) -> Callable[[C], C]:
     """Freeze a declaration as a dataclass and register it under its kind, the stem of its module."""
@@ -217,9 +265,10 @@ def component(role: Role, *, states: tuple[State, ...] = ()) -> Callable[[C], C]
 
 def specs(cls: type, *what: str) -> Iterator[tuple[Field[Any], Spec]]:
     """The declared fields of a component, in order; optionally only some sorts."""
-    for item in fields(cls):
-        spec = item.metadata.get("spec")
-        if spec is not None and (not what or spec.what in what):
+    found = [(item, item.metadata["spec"]) for item in fields(cls) if "spec" in item.metadata]
+    # sorting keeps the order of equals
+    for item, spec in sorted(found, key=lambda pair: pair[1].last):
+        if not what or spec.what in what:
             yield item, spec
 
 
@@ -235,7 +284,7 @@ def kinds(role: Role) -> list[str]:
     return sorted(REGISTRY[role])
 
 
-COMPILED_ROLES = (Role.TORQUE, Role.CONTACT, Role.LAW)
+COMPILED_ROLES = (Role.TORQUE, Role.CONTACT, Role.LAW, Role.FLOW, Role.PROCESS)
 
 
 def schema_text() -> str:
@@ -244,7 +293,7 @@ def schema_text() -> str:
     for role in COMPILED_ROLES:
         for kind in kinds(role):
             cls: Any = REGISTRY[role][kind]
-            names = ",".join(_field_text(f.name, s) for f, s in specs(cls, "param", "curve", "signal"))
+            names = ",".join(_field_text(f.name, s) for f, s in specs(cls, "param", "curve", "numbers", "signal"))
             sort = "" if role is not Role.LAW else " sticks" if cls.sticks else " compliant"
             lines.append(f"{role.value} {kind} {names} {len(cls.states)}{sort}")
     return "\n".join(lines)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from clutchwork.errors import ClutchworkError, near
 from clutchwork.layout import COUNTS, FIELDS, layout_text
-from clutchwork.node import Component, Node, Signal
+from clutchwork.node import Component, Node, Signal, ThermalNode
 from clutchwork.schema import schema_hash
 
 MAGIC = b"CLUTCHWK"
@@ -38,6 +38,16 @@ class Input:
 
 
 @dataclass(frozen=True)
+class Link:
+    """An input that another component gives: "c1.pressure" from an actuator."""
+
+    name: str
+    unit: str
+    sort: str  # "input" (the temperature of an ambient) or "shared"
+    number: int
+
+
+@dataclass(frozen=True)
 class Gearing:
     """One rigid row of a gear: sum over its ports of coefficient * speed = 0."""
 
@@ -50,7 +60,7 @@ class System:
     """A driveline ready to run; never changes, so any number of runs and threads may share it.
 
     `arrays` holds what `layout.FIELDS` lists; each is also an attribute: `system.mass`.
-    Elements, contacts, motions and nodes stand in the order of their arrays.
+    Elements, contacts, motions, flows, processes and nodes stand in the order of their arrays.
     """
 
     name: str
@@ -60,7 +70,12 @@ class System:
     contacts: tuple[Component, ...] = ()
     motions: tuple[Component, ...] = ()
     gears: tuple[Gearing, ...] = ()
+    thermal: tuple[ThermalNode, ...] = ()
+    flows: tuple[Component, ...] = ()
+    processes: tuple[Component, ...] = ()
     inputs: tuple[Input, ...] = ()
+    links: tuple[Link, ...] = ()
+    sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # "c1" -> parts that count as "c1"
     independent: tuple[str, ...] = ()  # names of the nodes with independent speeds
     parameters: Mapping[str, int] = field(default_factory=dict)  # "c1.gain" -> place in params
     notes: tuple[str, ...] = ()

@@ -9,39 +9,40 @@ import re
 from math import pi
 from typing import NamedTuple
 
-# factor to SI, and powers of kg, m, s and rad
-_TABLE: dict[str, tuple[float, tuple[int, int, int, int]]] = {
-    "1": (1.0, (0, 0, 0, 0)),
-    "%": (0.01, (0, 0, 0, 0)),
-    "kg": (1.0, (1, 0, 0, 0)),
-    "g": (1e-3, (1, 0, 0, 0)),
-    "t": (1e3, (1, 0, 0, 0)),
-    "m": (1.0, (0, 1, 0, 0)),
-    "mm": (1e-3, (0, 1, 0, 0)),
-    "cm": (1e-2, (0, 1, 0, 0)),
-    "km": (1e3, (0, 1, 0, 0)),
-    "s": (1.0, (0, 0, 1, 0)),
-    "ms": (1e-3, (0, 0, 1, 0)),
-    "us": (1e-6, (0, 0, 1, 0)),
-    "min": (60.0, (0, 0, 1, 0)),
-    "h": (3600.0, (0, 0, 1, 0)),
-    "rad": (1.0, (0, 0, 0, 1)),
-    "deg": (pi / 180, (0, 0, 0, 1)),
-    "rev": (2 * pi, (0, 0, 0, 1)),
-    "rpm": (pi / 30, (0, 0, -1, 1)),
-    "Hz": (1.0, (0, 0, -1, 0)),
-    "N": (1.0, (1, 1, -2, 0)),
-    "kN": (1e3, (1, 1, -2, 0)),
-    "Nm": (1.0, (1, 2, -2, 0)),
-    "kNm": (1e3, (1, 2, -2, 0)),
-    "J": (1.0, (1, 2, -2, 0)),
-    "kJ": (1e3, (1, 2, -2, 0)),
-    "W": (1.0, (1, 2, -3, 0)),
-    "kW": (1e3, (1, 2, -3, 0)),
-    "Pa": (1.0, (1, -1, -2, 0)),
-    "kPa": (1e3, (1, -1, -2, 0)),
-    "MPa": (1e6, (1, -1, -2, 0)),
-    "bar": (1e5, (1, -1, -2, 0)),
+# factor to SI, and powers of kg, m, s, rad and K
+_TABLE: dict[str, tuple[float, tuple[int, int, int, int, int]]] = {
+    "1": (1.0, (0, 0, 0, 0, 0)),
+    "%": (0.01, (0, 0, 0, 0, 0)),
+    "kg": (1.0, (1, 0, 0, 0, 0)),
+    "g": (1e-3, (1, 0, 0, 0, 0)),
+    "t": (1e3, (1, 0, 0, 0, 0)),
+    "m": (1.0, (0, 1, 0, 0, 0)),
+    "mm": (1e-3, (0, 1, 0, 0, 0)),
+    "cm": (1e-2, (0, 1, 0, 0, 0)),
+    "km": (1e3, (0, 1, 0, 0, 0)),
+    "s": (1.0, (0, 0, 1, 0, 0)),
+    "ms": (1e-3, (0, 0, 1, 0, 0)),
+    "us": (1e-6, (0, 0, 1, 0, 0)),
+    "min": (60.0, (0, 0, 1, 0, 0)),
+    "h": (3600.0, (0, 0, 1, 0, 0)),
+    "rad": (1.0, (0, 0, 0, 1, 0)),
+    "deg": (pi / 180, (0, 0, 0, 1, 0)),
+    "rev": (2 * pi, (0, 0, 0, 1, 0)),
+    "rpm": (pi / 30, (0, 0, -1, 1, 0)),
+    "Hz": (1.0, (0, 0, -1, 0, 0)),
+    "N": (1.0, (1, 1, -2, 0, 0)),
+    "kN": (1e3, (1, 1, -2, 0, 0)),
+    "Nm": (1.0, (1, 2, -2, 0, 0)),
+    "kNm": (1e3, (1, 2, -2, 0, 0)),
+    "J": (1.0, (1, 2, -2, 0, 0)),
+    "kJ": (1e3, (1, 2, -2, 0, 0)),
+    "W": (1.0, (1, 2, -3, 0, 0)),
+    "kW": (1e3, (1, 2, -3, 0, 0)),
+    "Pa": (1.0, (1, -1, -2, 0, 0)),
+    "kPa": (1e3, (1, -1, -2, 0, 0)),
+    "MPa": (1e6, (1, -1, -2, 0, 0)),
+    "K": (1.0, (0, 0, 0, 0, 1)),
+    "bar": (1e5, (1, -1, -2, 0, 0)),
 }
 _FACTOR = re.compile(r"([A-Za-z%]+|1)\^?(-?\d+)?")
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
@@ -49,7 +50,7 @@ _POWERS = str.maketrans({"²": "2", "³": "3", "·": " ", "*": " ", "°": "deg"}
 
 
 class Unit(NamedTuple):
-    """Factor to SI, and powers of kg, m, s and rad."""
+    """Factor to SI, and powers of kg, m, s, rad and K."""
 
     factor: float
     powers: tuple[int, ...]
@@ -57,7 +58,7 @@ class Unit(NamedTuple):
 
 def parse(text: str) -> Unit:
     """Read a unit such as "N m s/rad", "kg.m2" or "1/s"; ValueError names the part that is not known."""
-    factor, powers = 1.0, [0, 0, 0, 0]
+    factor, powers = 1.0, [0, 0, 0, 0, 0]
     # what follows a slash divides, up to the end: N m/rad, m/s2
     for side, part in enumerate(text.translate(_POWERS).split("/")):
         sign = -1 if side else 1

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,10 +12,14 @@ from numpy.typing import NDArray
 from clutchwork.checks import ports
 from clutchwork.layout import ROW
 from clutchwork.node import Component, Domain, Node
+from clutchwork.parts import Sensor
+from clutchwork.schema import State
 
 if TYPE_CHECKING:
-    from clutchwork.system import System
+    from clutchwork.system import Link, System
 
+# state of a thermal node
+HEAT = (State("heat", "J", "heat that it holds above the start, or that an ambient took up"),)
 HOUSING = -1  # index that stands for the housing, which is no node of the system
 
 
@@ -28,6 +32,20 @@ class Branch:
     direction: Mapping[int, float]  # node index or HOUSING -> coefficient of its speed in the rate
     domain: Domain
     states: tuple[tuple[str, str, int], ...] = ()  # (name, unit, index among all states)
+
+    @property
+    def hidden(self) -> bool:
+        """Whether it only measures a speed."""
+        return isinstance(self.component, Sensor)
+
+
+@dataclass(frozen=True)
+class Source:
+    """Something without direction that has shared states: name, component, states."""
+
+    name: str
+    component: Any
+    states: tuple[tuple[str, str, int], ...]  # (name, unit, index among all states)
 
 
 @dataclass(frozen=True)
@@ -50,6 +68,11 @@ class Wiring:
     gears: tuple[GearRow, ...]
     inputs: tuple[tuple[str, str], ...]  # (name, unit)
     columns: Mapping[str, slice]
+    thermal: tuple[Source, ...] = ()
+    processes: tuple[Source, ...] = ()
+    flows: tuple[str, ...] = ()
+    links: tuple[Link, ...] = ()
+    sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def row_size(self) -> int:
@@ -80,7 +103,23 @@ def wiring(system: System) -> Wiring:
         gears=tuple(gears),
         inputs=tuple((item.name, item.unit) for item in system.inputs),
         columns=row_columns(system.counts),
+        thermal=tuple(_shared(system, system.thermal)),
+        processes=tuple(_shared(system, system.processes)),
+        flows=tuple(flow.name for flow in system.flows),
+        links=system.links,
+        sums=system.sums,
     )
+
+
+def _shared(system: System, components: tuple[Any, ...]) -> Iterator[Source]:
+    """Thermal nodes, whose state is their heat, or processes, which follow them, with the places of their states."""
+    nodes = components is system.thermal
+    first = system.counts["states"] - system.counts["shared"] + (0 if nodes else len(system.thermal))
+    for component in components:
+        own = HEAT if nodes else component.states
+        states = tuple((state.name, state.unit, first + k) for k, state in enumerate(own))
+        yield Source(component.name, component, states)
+        first += len(own)
 
 
 def row_columns(sizes: Mapping[str, int]) -> dict[str, slice]:

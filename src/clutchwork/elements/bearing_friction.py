@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Law, Node
+from clutchwork.heating import Heating
+from clutchwork.node import Law, Node
 from clutchwork.schema import Role, component, law, option, param, port
 
 
 @component(Role.CONTACT)
-class BearingFriction(Component):
+class BearingFriction(Heating):
     """Friction torque `torque * coefficient` that sticks exactly at rest.
 
     Use it for bearings, seals and guides with a constant load. With a coefficient of 1 in the law, `torque` is the

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from clutchwork.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Component, Law, Node, SignalLike
+from clutchwork.heating import Heating
+from clutchwork.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Law, Node, SignalLike
 from clutchwork.schema import Role, component, law, option, param, port, signal
 
 
 @component(Role.CONTACT)
-class Brake(Component):
+class Brake(Heating):
     """Clutch whose base is the housing.
 
     Use it for the brakes of a gearbox and for vehicle brakes. Capacity is `gain * pressure * coefficient`; a

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from clutchwork.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Component, Law, Node, SignalLike
+from clutchwork.heating import Heating
+from clutchwork.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Law, Node, SignalLike
 from clutchwork.schema import Role, component, law, option, param, port, signal
 
 
 @component(Role.CONTACT)
-class Clutch(Component):
+class Clutch(Heating):
     """Clutch that slips, locks exactly and breaks away.
 
     Use it for a plate clutch between two shafts that is closed by a pressure. Capacity is

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Node
+from clutchwork.heating import Heating
+from clutchwork.node import Node
 from clutchwork.schema import Role, component, param, port
 
 
 @component(Role.TORQUE)
-class Damper(Component):
+class Damper(Heating):
     """Viscous coupling: the torque on the follower is -damping (follower - base).
 
     Use it for fluid couplings near synchronous speed, viscous losses and drag in oil.

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from clutchwork.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
-from clutchwork.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Component, Law, Node, SignalLike
+from clutchwork.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Law, Node, SignalLike
 from clutchwork.schema import Role, component, law, option, param, port, signal
 
 
 @component(Role.CONTACT)
-class OneWayClutch(Component):
+class OneWayClutch(Heating):
     """Freewheel: the follower may run ahead of the base and never falls behind it.
 
     Use it for sprags, roller clutches and ratchets. While locked it transmits any torque that would make the

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Node, SignalLike
+from clutchwork.heating import Heating
+from clutchwork.node import Node, SignalLike
 from clutchwork.schema import Role, component, param, port, signal
 
 
 @component(Role.TORQUE)
-class ResistingTorque(Component):
+class ResistingTorque(Heating):
     """Torque `-torque * tanh(speed_of_shaft / speed)`: full size against the motion, none at rest.
 
     Use it for a road load that must not turn the shaft backward. For exact sticking use `BearingFriction`.

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Node
+from clutchwork.heating import Heating
+from clutchwork.node import Node
 from clutchwork.schema import Role, State, component, param, port
 
 
 @component(Role.TORQUE, states=(State("spring_torque", "N m", "stiffness times twist"),))
-class SpringDamper(Component):
+class SpringDamper(Heating):
     """Elastic shaft with internal damping.
 
     Use it where two inertias are joined by something that twists: shafts, dual-mass flywheels, tyres.

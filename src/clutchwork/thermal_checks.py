@@ -1,0 +1,142 @@
+"""Checks of thermal nodes, of the ports on them, and of inputs that other components give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from clutchwork import units
+from clutchwork.checks import CHECKS, At, label, number_problems, thermal_ports
+from clutchwork.errors import Problem, near
+from clutchwork.node import Component, Domain, HeatFlow, Law, Node, Rate, ThermalNode, is_reference
+from clutchwork.parts import Parts, role
+from clutchwork.places import state_name
+from clutchwork.schema import Role, Spec, specs
+
+CAPACITY = Spec("param", "J/K", "heat capacity", above=0.0)
+TEMPERATURE = Spec("param", "K", "temperature at the start", above=0.0)
+AROUND = Spec("signal", "K", "temperature over time")
+NODE_FIELDS: Mapping[str, Mapping[str, Spec]] = {
+    "thermal": {"capacity": CAPACITY, "temperature": TEMPERATURE},
+    "ambient": {"temperature": AROUND},
+}
+
+
+def node_kind(node: ThermalNode) -> str:
+    """Key of a thermal node in model files: thermal or ambient."""
+    return "ambient" if node.capacity is None else "thermal"
+
+
+def thermal_problems(node: ThermalNode) -> Iterator[Problem]:
+    """Mistakes of one thermal mass or ambient."""
+    path = f'{node_kind(node)} "{node.name}"'
+    if node.capacity is not None:
+        yield from number_problems(node.capacity, CAPACITY, At(path, "capacity", "J/K"))
+        yield from number_problems(node.temperature, TEMPERATURE, At(path, "temperature", "K"))
+    elif is_reference(node.temperature):
+        message, remedy = "must be a number in [K] or a signal", "join the nodes by a Conduction instead"
+        yield At(path, "temperature").problem(message, repr(node.temperature), remedy)
+    else:
+        yield from CHECKS["signal"](node.temperature, AROUND, At(path, "temperature", "K"))
+
+
+def port_problems(component: Component, thermal: Sequence[ThermalNode]) -> Iterator[Problem]:
+    """Thermal ports on foreign nodes, or both on one and the same."""
+    at, joined = At(label(component), ""), thermal_ports(component)
+    if not all(isinstance(node, ThermalNode) for node in joined.values()):
+        return
+    known = {id(node) for node in thermal}
+    for name, node in joined.items():
+        if id(node) not in known:
+            found = near(node.name, [other.name for other in thermal])
+            yield at.inner(name).problem("is of another driveline", repr(node.name), f"create it in this one{found}")
+    if role(component) is Role.FLOW and len({id(node) for node in joined.values()}) < len(joined):
+        message = f"{' and '.join(joined)} are both on {next(iter(joined.values())).name!r}"
+        yield at.problem(message, remedy="attach them to two thermal nodes")
+
+
+@dataclass(frozen=True)
+class Known:
+    """What inputs may refer to, by name."""
+
+    states: Mapping[str, tuple[str, ...]]  # thermal node or "process.state" -> unit
+    acting: frozenset[str]  # torque elements and contacts
+    shafts: frozenset[str]
+
+    @classmethod
+    def of(cls, nodes: Sequence[Node], parts: Parts) -> Known:
+        """Everything in a driveline."""
+        states: dict[str, tuple[str, ...]] = {node.name: ("K",) for node in parts.thermal}
+        for process in parts.components:
+            if role(process) is Role.PROCESS:
+                states |= {f"{process.name}.{s.name}": (s.unit,) for s in type(process).states}  # type: ignore[attr-defined]
+        acting = frozenset(c.name for c in parts.components if role(c) in (Role.TORQUE, Role.CONTACT))
+        return cls(states, acting, frozenset(node.name for node in nodes))
+
+
+def reference_problems(component: Component, known: Known) -> Iterator[Problem]:
+    """Inputs that other components give: whether those are there, and give what is wanted."""
+    law = getattr(component, "friction", None)
+    for thing, at in ((component, At(label(component), "")), (law, At(label(component), "friction"))):
+        if thing is component or isinstance(thing, Law):
+            for item, spec in specs(type(thing), "signal", "alternative"):
+                value, place = getattr(thing, item.name), at.inner(item.name, spec.unit)
+                if is_reference(value):
+                    yield from _reference(value, spec, place, component, known)
+                elif value is None and spec.unit == "K" and isinstance(thing, Law):
+                    yield from _temperature(component, place)
+
+
+def _temperature(component: Any, at: At) -> Iterator[Problem]:
+    """A friction law without a temperature takes that of the thermal node of its contact."""
+    if getattr(component, "heat", None) is None and role(component) is Role.CONTACT:
+        yield at.problem("is missing", remedy="give a temperature [K], or join `heat` of the contact to a thermal node")
+
+
+def _reference(value: Any, spec: Spec, at: At, component: Component, known: Known) -> Iterator[Problem]:
+    direct = isinstance(value, Rate | HeatFlow | Node)
+    if role(component) is Role.MOTION or (direct and role(component) not in (Role.FLOW, Role.PROCESS, Role.COMPOSITE)):
+        yield at.problem(f"must be a number in [{at.unit}] or a signal", _words(value), "give one of these")
+        return
+    missing = _missing(value, known)
+    if missing:
+        yield at.problem(*missing)
+        return
+    given = _unit(value, known)
+    if all(units.parse(given).powers != units.parse(unit).powers for unit in (spec.unit, *spec.units)):
+        yield at.problem(f"is in [{at.unit}], and {_words(value)} gives [{given}]", remedy=spec.doc)
+
+
+def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:
+    """Message, value and remedy where a reference leads nowhere."""
+    remedy = "add it to this driveline"
+    target = value.of if isinstance(value, Rate | HeatFlow) else value
+    if isinstance(target, Node):
+        return None if target.name in known.shafts else ("is no shaft of this driveline", _words(value), remedy)
+    if isinstance(value, Rate | HeatFlow):
+        found = target.name in known.acting
+        return None if found else ("is no torque element or contact of this driveline", _words(value), remedy)
+    process = value[0] if isinstance(value, tuple) else value
+    if isinstance(process, Component) and role(process) is not Role.PROCESS:
+        names = "a signal, a thermal node or a process"
+        return "is an element without output", _words(value), f"give {names}, or its Rate or HeatFlow"
+    if state_name(value) in known.states:
+        return None
+    return f"is not known{near(state_name(value), list(known.states))}", repr(state_name(value)), remedy
+
+
+def _unit(value: Any, known: Known) -> str:
+    if isinstance(value, HeatFlow):
+        return "W"
+    target = value.of if isinstance(value, Rate) else value
+    if isinstance(target, Node):
+        return "rad/s" if target.domain is Domain.ROTATION else "m/s"
+    return "rad/s" if isinstance(value, Rate) else known.states[state_name(value)][0]
+
+
+def _words(value: Any) -> str:
+    """A reference in words."""
+    if isinstance(value, Rate | HeatFlow):
+        return f"{type(value).__name__} of {value.of.name!r}"
+    return repr(value[0].name if isinstance(value, tuple) else value.name)
