@@ -35,15 +35,19 @@ SHIFT = {
 
 
 def gearbox(
-    pressures: Mapping[str, Any], speeds: Mapping[str, float] | None = None, *, stiffer: float = 1.0
+    pressures: Mapping[str, Any],
+    speeds: Mapping[str, float] | None = None,
+    *,
+    stiffer: float = 1.0,
+    law: cw.Law | None = None,
 ) -> cw.Driveline:
     """Gearbox with engine and load; the pressure of a clutch is a list of points or a signal."""
     d, w = members(speeds or {}, stiffer=stiffer)
     for name, (base, follower) in CLUTCHES.items():
         given = pressures[name]
         pressure = cw.Table([(float(t), float(p)) for t, p in given]) if isinstance(given, Sequence) else given
-        law = cw.Exponential(**LAW)
-        d.add(cw.Clutch(name, base=w[base], follower=w[follower], friction=law, gain=GAIN[name], pressure=pressure))
+        friction = law or cw.Exponential(**LAW)
+        d.add(cw.Clutch(name, base=w[base], follower=w[follower], friction=friction, gain=GAIN[name], pressure=pressure))
     d.add(cw.SpeedTorque("engine", shaft=w["w1"], torque=ENGINE))
     d.add(cw.ResistingTorque("load", shaft=w["w8"], torque=4000.0, speed=0.5))
     return d
