@@ -41,4 +41,37 @@ inline Model chain() {
   return m;
 }
 
+/// Two shafts whose clutch has bristles, under a pressure with knots and a gap; a freewheel blocks one. Small form.
+inline Model bristles() {
+  Model m;
+  const int a = m.shaft(0.4, 30), b = m.shaft(0.8);
+  const int push = m.signal({{0, {4, 0, 0, 0, 9, 8, 0, 0}}, {1.5, {-20, 0, 0, 0, 3, 15, 0, 0}}});
+  const int pressure = m.signal({{0, {0, 60}}, {0.8, {48, -60}}, {1.8, {40}}});
+  m.element<elements::Torque>(housing, a, {}, {push});
+  m.element<elements::Torque>(housing, b, {}, {m.signal({{0, {-2}}, {2.6, {30}}})});
+  m.contact<elements::Clutch, laws::LuGre>(a, b, {1}, {pressure}, {0.3, 0.2, 3, 0, 2, 0.001, 40, 0.05});
+  m.contact<elements::OneWayClutch, laws::Tanh>(housing, b, {1}, {m.constant(5)}, {0.1, 2});
+  return m;
+}
+
+/// Five shafts whose contacts have elements, wind-up and bristles that switch, beside a clutch that sticks. Sparse
+/// form.
+inline Model hysteresis() {
+  Model m;
+  const double start[] = {12, 0, 0, 0, -4};
+  for (int i = 0; i < 5; ++i) m.shaft(0.2 + 0.1 * i, start[i]);
+  const int push = m.signal({{0, {3, 0, 0, 0, 12, 9, 0, 0}}, {1.5, {-8, 0, 0, 0, 12, 20, 1, 0.5}}});
+  const int pressure = m.signal({{0, {0, 40}}, {0.7, {28, -80}}, {1.3, {30}}}), still = m.constant(25);
+  const Numbers curve{0.3, 0.2, 3, 1, 2, 0.001}, points = m.curve({0.01, 0.03, 0.08, 0.2}, {0.1, 0.2, 0.3, 0.4});
+  m.element<elements::Torque>(housing, 0, {}, {push});
+  for (int i = 0; i < 4; ++i) m.element<elements::SpringDamper>(i, i + 1, {60, 0.3, 0});
+  m.contact<elements::BearingFriction, laws::GMS>(housing, 0, {9}, {}, joined({curve, points, {30}}));
+  m.contact<elements::BearingFriction, laws::Leuven>(housing, 1, {7}, {}, joined({curve, points, {1.5, 0.01}}));
+  m.contact<elements::Clutch, laws::Mykhalevych>(0, 2, {1}, {pressure}, {0.2, 0.15, 0.05, 3, 0.5, 0, 2, 1});
+  m.contact<elements::Clutch, laws::ElastoPlastic>(3, 4, {1}, {pressure}, joined({curve, {20, 0.05, 0.003, 0}}));
+  m.contact<elements::Clutch, laws::Coulomb>(1, 4, {0.3}, {pressure}, {0.5, 0.4});
+  m.contact<elements::Brake, laws::Mykhalevych>(housing, 4, {0.4}, {still}, {0.2, 0.15, 0.05, 3, 0.5, 1, 3, 0});
+  return m;
+}
+
 }  // namespace fixture

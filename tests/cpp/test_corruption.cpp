@@ -36,12 +36,13 @@ void survive(const Bytes& bytes) {
   cw_advance(run, 0.3, times, rows.data(), 4, 1, &filled);
 }
 
+constexpr double reals[] = {0, -1, 1e300, -1e300, NAN, INFINITY, 1e-300, 1, 2, 7, 25, 0.1};
+
 void corrupt(const Model& model, std::uint64_t seed, int rounds) {
   const Bytes whole = model.bytes();
   check::Random g{seed};
   for (std::size_t n = 0; n < 200; ++n) survive(Bytes(whole.begin(), whole.begin() + std::ptrdiff_t(n)));
   constexpr std::int32_t numbers[] = {-1, 1, 2, 3, 4, 5, 8, 12, 40, 1000, 0x7fffffff, -0x7fffffff - 1};
-  constexpr double reals[] = {0, -1, 1e300, -1e300, NAN, INFINITY, 1e-300, 1, 2, 7, 25, 0.1};
   for (int round = 0; round < rounds; ++round) {
     Bytes bytes = whole;
     const int changes = 1 + g.below(3);
@@ -56,6 +57,56 @@ void corrupt(const Model& model, std::uint64_t seed, int rounds) {
       if (kind == 3) std::memcpy(&bytes[at], &bytes[104 + std::size_t(g.below(int(bytes.size() / 4) - 30)) * 4], 4);
     }
     if (g.below(10) == 0) bytes.resize(bytes.size() - std::size_t(g.below(100)));
+    survive(bytes);
+  }
+}
+
+/// Every parameter of every law takes odd values, its curves and their counts among them.
+void odd_parameters(const Model& model) {
+  const Bytes whole = model.bytes();
+  System sys{};
+  bind(sys, whole.data(), std::int64_t(whole.size()));
+  const auto pool = std::size_t(reinterpret_cast<const unsigned char*>(sys.params) - whole.data());
+  auto put = [&](std::int64_t k, double x) {
+    Bytes bytes = whole;
+    std::memcpy(&bytes[pool + 8 * std::size_t(k)], &x, 8);
+    survive(bytes);
+    return cw_size(bytes.data(), std::int64_t(bytes.size())) >= 0;
+  };
+  for (std::int64_t k = 0; k < sys.n_params; ++k) {
+    for (double x : {0.0, -1.0, 1e300, double(NAN), 2.0}) put(k, x);
+  }
+  for (std::int64_t c = 0; c < sys.contacts; ++c) {
+    visit_law_curves(sys.contact_law[c], [&](int at) {
+      const std::int64_t first = sys.contact_law_param[c] + at;
+      // as many as there are points, or states
+      CHECK(put(first + 1, 1) && put(first + 1, 3) && put(first, 0));
+      for (double x : {0.0, -3.0, 4.5, 5.0, 9.0, 10.0, 11.0, 1e9}) CHECK(!put(first + 1, x));
+      for (double x : {0.5, 1.0, 3.0, 4.0, -1.0, 1e9}) CHECK(!put(first, x));
+    });
+  }
+}
+
+/// Many points, too few states: as many elements as the curve has points would write beyond them.
+void few_states() {
+  Model m;
+  const int a = m.shaft(1, 2);
+  Numbers x, y;
+  for (int i = 1; i <= 14; ++i) x.push_back(0.01 * i), y.push_back(0.1);
+  const Numbers all = m.curve(x, y), curve{0.3, 0.2, 3, 1, 2, 0.001};
+  for (double count : {4.0, 9.0, 10.0, 14.0}) {
+    Model n = m;
+    n.contact<elements::BearingFriction, laws::GMS>(housing, a, {9}, {}, joined({curve, {all[0], count}, {30}}));
+    const Bytes whole = n.bytes();
+    survive(whole);
+    System sys{};
+    bind(sys, whole.data(), std::int64_t(whole.size()));
+    CHECK(sys.states == std::int64_t(count < 10 ? count : 10));
+    // a state less: the number stands in the header
+    Bytes bytes = whole;
+    std::int64_t states = sys.states - 1;
+    std::memcpy(&bytes[16 + 5 * 8], &states, 8);
+    CHECK(cw_size(bytes.data(), std::int64_t(bytes.size())) < 0);
     survive(bytes);
   }
 }
@@ -100,6 +151,11 @@ int main() {
   little_room();
   corrupt(three_shafts(), 3, 6000);
   corrupt(chain(), 4, 1500);
+  corrupt(bristles(), 5, 800);
+  corrupt(hysteresis(), 6, 600);
+  odd_parameters(bristles());
+  odd_parameters(hysteresis());
+  few_states();
   CHECK(refused > 500 && ran > 500);
   std::printf("%d refused, %d ran\n", refused, ran);
   return check::result();

@@ -79,5 +79,8 @@ int main() {
   silent(three_shafts(), 2.5, 0);
   silent(chain(), 2.0, 1);
   silent(chain(), 2.0, 2);
+  silent(bristles(), 3.0, 1);
+  silent(hysteresis(), 3.0, 1);
+  silent(hysteresis(), 3.0, 2);
   return check::result();
 }

@@ -54,5 +54,7 @@ void continues(const Model& model, double middle, double end) {
 int main() {
   for (double middle : {0.0, 0.3, 0.7, 0.95, 1.4, 1.83, 2.2}) continues(three_shafts(), middle, 2.5);
   for (double middle : {0.0, 0.1, 0.35, 0.5, 0.77, 1.3}) continues(chain(), middle, 2.0);
+  for (double middle : {0.0, 0.4, 0.8, 1.21, 1.6, 1.9, 2.5}) continues(bristles(), middle, 3.0);
+  for (double middle : {0.0, 0.2, 0.7, 1.05, 1.3, 1.61, 2.1}) continues(hysteresis(), middle, 2.5);
   return check::result();
 }
