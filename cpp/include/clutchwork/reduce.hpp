@@ -4,7 +4,7 @@
 /// The reduced motion of one mode: v = Z z + Y u with the locked slips gone. docs/theory/multipliers.md.
 namespace clutchwork {
 
-inline constexpr int small_speeds = 4, small_states = 3;
+inline constexpr int small_speeds = 4, small_states = 4;
 
 /// The mass-weighted directions without their zeros, and the mobility of the contacts: their products.
 template <class T>
