@@ -1,0 +1,160 @@
+#pragma once
+#include <clutchwork/component.hpp>
+
+/// Tables of friction coefficients: linear or smooth, beyond their ends continued, kept or refused.
+/// docs/theory/clutches.md
+namespace clutchwork {
+
+enum class Interpolation : int { linear, smooth };
+enum class Extrapolation : int { linear, nearest, error };
+
+/// Parameters that every law with tables has; the first ones of it.
+template <class T>
+struct Tabulated {
+  T interpolation;  ///< [1]
+  T extrapolation;  ///< [1]
+};
+
+/// What a table does between its points and beyond them.
+struct Manner {
+  Interpolation interpolation;
+  Extrapolation extrapolation;
+
+  template <class T>
+  explicit Manner(const Tabulated<T>& p)
+      : interpolation(int(value(p.interpolation))), extrapolation(int(value(p.extrapolation))) {}
+  constexpr Manner(Interpolation between, Extrapolation beyond) : interpolation(between), extrapolation(beyond) {}
+  bool smooth() const { return interpolation == Interpolation::smooth; }
+  bool kept() const { return extrapolation == Extrapolation::nearest; }
+};
+
+/// Points of one row of a table, inside the pool.
+struct Axis {
+  const double* x;
+  int count;
+
+  double operator[](int i) const { return x[3 * i]; }
+  double width(int i) const { return x[3 * (i + 1)] - x[3 * i]; }
+  double last() const { return x[3 * (count - 1)]; }
+};
+
+template <class T>
+CLUTCHWORK_INLINE Axis axis_of(const Curve<T>& c, const double* points) {
+  return {points + 3 * int(value(c.first)), int(value(c.count))};
+}
+
+/// Number of the interval that holds x, the outer ones for what lies beyond.
+CLUTCHWORK_INLINE int interval_of(const Axis& axis, double x) {
+  int low = 0, high = axis.count - 2;
+  while (low < high) {
+    const int middle = (low + high + 1) / 2;
+    if (axis[middle] <= x) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  return low < 0 ? 0 : low;
+}
+
+/// x, taken to the nearest end where a table keeps its end values.
+template <class S>
+CLUTCHWORK_INLINE S within(const Axis& axis, const Manner& manner, S x) {
+  if (!manner.kept()) return x;
+  return larger(smaller(x, S(axis.last())), S(axis[0]));
+}
+
+/// Slope at a point inside: harmonic mean of the secants beside it, weighted by their widths; zero at a peak.
+template <class S>
+CLUTCHWORK_INLINE S inner_slope(S before, S after, double width_before, double width_after) {
+  if (value(before * after) <= 0) return S(0);
+  const double a = 2 * width_after + width_before, b = width_after + 2 * width_before;
+  return S(a + b) * before * after / (S(a) * after + S(b) * before);
+}
+
+/// Slope at an end: of the parabola through three points, kept monotone.
+template <class S>
+CLUTCHWORK_INLINE S end_slope(S near, S next, double width, double width_next) {
+  const S slope = (S(2 * width + width_next) * near - S(width) * next) / S(width + width_next);
+  if (value(slope * near) <= 0) return S(0);
+  if (value(near * next) <= 0 && abs(slope) > abs(S(3) * near)) return S(3) * near;
+  return slope;
+}
+
+/// Slope at point i of a smooth table of at least three points; `at(i)` gives their values.
+template <class S, class At_>
+CLUTCHWORK_INLINE S smooth_slope(const Axis& axis, At_&& at, int i) {
+  auto secant = [&](int k) { return (at(k + 1) - at(k)) / S(axis.width(k)); };
+  const int last = axis.count - 1;
+  if (i == 0) return end_slope<S>(secant(0), secant(1), axis.width(0), axis.width(1));
+  if (i == last) return end_slope<S>(secant(last - 1), secant(last - 2), axis.width(last - 1), axis.width(last - 2));
+  return inner_slope<S>(secant(i - 1), secant(i), axis.width(i - 1), axis.width(i));
+}
+
+/// Cubic through two values with the given slopes over s from 0 to 1, continued by its slopes.
+template <class S>
+CLUTCHWORK_INLINE S cubic(S low, S high, S slope_low, S slope_high, S s) {
+  if (value(s) <= 0) return low + slope_low * s;
+  if (value(s) >= 1) return high + slope_high * (s - S(1));
+  const S r = S(1) - s;
+  return low * r * r * (S(1) + S(2) * s) + high * s * s * (S(1) + S(2) * r) + s * r * (slope_low * r - slope_high * s);
+}
+
+/// Value at x of a table whose point i has the value at(i); `k` is the interval that counts.
+template <class S, class At_>
+CLUTCHWORK_INLINE S table_value(const Axis& axis, const Manner& manner, At_&& at, S x, int k) {
+  if (axis.count == 1) return at(0);
+  const S low = at(k), high = at(k + 1), h = S(axis.width(k));
+  const S s = (x - S(axis[k])) / h;
+  if (!manner.smooth()) return low + (high - low) * s;
+  return cubic(low, high, smooth_slope<S>(axis, at, k) * h, smooth_slope<S>(axis, at, k + 1) * h, s);
+}
+
+/// Value of a table over any quantity but the slip.
+template <class S, class At_>
+CLUTCHWORK_INLINE S value_over(const Axis& axis, const Manner& manner, At_&& at, S x) {
+  const S inside = within(axis, manner, x);
+  return table_value<S>(axis, manner, at, inside, interval_of(axis, value(inside)));
+}
+
+/// How far x is inside the ends of an axis, round-off conceded; below zero outside.
+CLUTCHWORK_INLINE double room_inside(const Axis& axis, double x) {
+  return smaller(x - axis[0], axis.last() - x) + 1e-9 * (axis.last() - axis[0]);
+}
+
+/// The same for a slip, which passes zero: its table starts there.
+CLUTCHWORK_INLINE double room_for_slip(const Axis& axis, double slip) { return (1 + 1e-9) * axis.last() - abs(slip); }
+
+/// Kinks of a table over the slip: its inner points where it is linear, and its ends where it keeps their values.
+struct Kinks {
+  Axis axis;
+  Manner manner;
+
+  int inner() const { return manner.smooth() || axis.count < 3 ? 0 : axis.count - 2; }
+  int ends() const { return int(manner.kept()); }
+  int count() const { return inner() + 2 * ends(); }
+  double at(int i) const {
+    // an end at zero is no kink, for slips are not below
+    if (manner.kept() && i == 0) return axis[0] > 0 ? axis[0] : -1e300;
+    i -= ends();
+    return i < inner() ? axis[i + 1] : axis.last();
+  }
+};
+
+/// Value over a slip on one of the pieces between the kinks.
+template <class S, class At_>
+CLUTCHWORK_INLINE S slip_value(const Axis& axis, const Manner& manner, At_&& at, S slip, int piece) {
+  const Kinks kinks{axis, manner};
+  if (manner.kept() && piece == 0) return at(0);
+  if (manner.kept() && piece == kinks.count()) return at(axis.count - 1);
+  const int k = manner.smooth() ? interval_of(axis, value(slip)) : piece - kinks.ends();
+  return table_value<S>(axis, manner, at, slip, k);
+}
+
+/// A friction coefficient never drives.
+template <class S>
+CLUTCHWORK_INLINE S not_negative(S coefficient) {
+  return larger(coefficient, S(0));
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,84 @@
+#pragma once
+#include <clutchwork/interpolation.hpp>
+
+namespace clutchwork::laws {
+
+/// Static coefficient over the temperature, kinetic coefficient over temperature and slip. docs/theory/clutches.md
+struct FrictionMap {
+  template <class T>
+  struct Params : Tabulated<T> {
+    Curve<T> temperatures;  ///< K
+    Curve<T> speeds;        ///< rad/s
+    Curve<T> static_;       ///< 1, one for each temperature
+    Curve<T> kinetic;       ///< 1, a row over the speeds for each temperature
+  };
+  static constexpr int states = 0;
+  static constexpr int inputs = 1;
+
+  template <class T>
+  static Manner manner(const Params<T>& p) {
+    return Manner(p);
+  }
+  /// Slope between two secants, differentiable by both, within what keeps the cubic monotone; zero at a peak.
+  template <class S>
+  static S gentle_slope(S before, S after) {
+    if (value(before * after) <= 0) return S(0);
+    const S square = before * after;
+    return S(2) * square * square / (before * before * before + after * after * after);
+  }
+  /// Value over the temperature of what has the value row(i) at temperature i.
+  template <class T, class S, class Row>
+  static S over_temperature(const Params<T>& p, const At<S>& at, Row&& row) {
+    const Axis axis = axis_of(p.temperatures, at.points);
+    const S x = within(axis, manner(p), at.input[0]);
+    const int k = interval_of(axis, value(x));
+    const S low = row(k), high = row(k + 1), s = (x - S(axis[k])) / S(axis.width(k));
+    if (!manner(p).smooth()) return not_negative(low + (high - low) * s);
+    // slopes per interval; those at the ends are the secants
+    const S here = high - low, h = S(axis.width(k));
+    const S from = k > 0 ? gentle_slope((low - row(k - 1)) / S(axis.width(k - 1)), here / h) * h : here;
+    const S to = k + 2 < axis.count ? gentle_slope(here / h, (row(k + 2) - high) / S(axis.width(k + 1))) * h : here;
+    return not_negative(cubic(low, high, from, to, s));
+  }
+  template <class T, class S>
+  static S slide(const Params<T>& p, const At<S>& at) {
+    const Axis speeds = axis_of(p.speeds, at.points), all = axis_of(p.kinetic, at.points);
+    return over_temperature(p, at, [&](int i) {
+      auto kinetic = [&](int j) { return S(all[i * speeds.count + j]); };
+      return slip_value<S>(speeds, manner(p), kinetic, at.rate, at.piece);
+    });
+  }
+  /// The kinetic coefficient is a floor: continued far enough, the lines of a table may cross.
+  template <class T>
+  static T hold(const Params<T>& p, const At<T>& at) {
+    const Axis speeds = axis_of(p.speeds, at.points), all = axis_of(p.kinetic, at.points);
+    const Axis own = axis_of(p.static_, at.points);
+    const T still = over_temperature(p, at, [&](int i) { return T(own[i]); });
+    const T sliding = over_temperature(p, at, [&](int i) {
+      auto kinetic = [&](int j) { return T(all[i * speeds.count + j]); };
+      return value_over<T>(speeds, manner(p), kinetic, T(0));
+    });
+    return larger(still, sliding);
+  }
+  /// Below zero where the map is left, which `seen` did: the slip [rad/s] or the temperature [K].
+  template <class T>
+  static T outside(const Params<T>& p, const At<T>& at, T& seen) {
+    seen = at.rate;
+    if (manner(p).extrapolation != Extrapolation::error) return T(1);
+    const double slip = room_for_slip(axis_of(p.speeds, at.points), value(at.rate));
+    const double temperature = room_inside(axis_of(p.temperatures, at.points), value(at.input[0]));
+    if (temperature < slip) seen = at.input[0];
+    return T(smaller(slip, temperature));
+  }
+
+  template <class T>
+  static int edges(const Params<T>& p) {
+    return Kinks{Axis{nullptr, int(value(p.speeds.count))}, manner(p)}.count();
+  }
+  template <class T>
+  static double edge(const Params<T>& p, const double* points, int i) {
+    return Kinks{axis_of(p.speeds, points), manner(p)}.at(i);
+  }
+};
+
+}  // namespace clutchwork::laws

@@ -1,0 +1,33 @@
+"""Band brake."""
+
+from __future__ import annotations
+
+from math import tau
+
+from clutchwork.heating import Heating
+from clutchwork.node import Law, Node, SignalLike
+from clutchwork.schema import Role, component, flag, law, option, param, port, signal
+
+
+@component(Role.CONTACT)
+class BandBrake(Heating):
+    """Band around a drum, pulled at one end and fixed at the other: it energises itself in one direction.
+
+    The torque is `force radius (exp(coefficient wrap) - 1)` where the drum pulls the band on, forward slip unless
+    `reversed`, and `force radius (1 - exp(-coefficient wrap))` where it pulls it off. Use it for the bands of planetary
+    gearboxes and for hoists.
+
+    Source: R. G. Budynas, J. K. Nisbett, Shigley's Mechanical Engineering Design, chapter on clutches and brakes.
+    """
+
+    shaft: Node = port("drum: slip is its speed relative to the base")
+    base: Node | None = port("member that takes the reaction", default=None)
+    friction: Law = law("friction coefficient over slip, static coefficient at rest")
+    radius: float = param("m", "radius of the drum", above=0.0)
+    wrap: float = param("rad", "angle over which the band lies on the drum", above=0.0, at_most=3 * tau)
+    reversed: bool = flag("energises itself in backward slip", default=False)
+    force: SignalLike = signal("N", "force at the pulled end; below zero counts as zero")
+    tolerance: float = option(
+        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+    )
+    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)

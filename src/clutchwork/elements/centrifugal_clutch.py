@@ -1,0 +1,58 @@
+"""Centrifugal clutch."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from clutchwork.elements.flyweights import Flyweights
+from clutchwork.elements.plate_contact import PlateContact
+from clutchwork.heating import Heating
+from clutchwork.node import Component, Law, Node, ThermalNode
+from clutchwork.schema import Role, component, law, option, param, port
+
+
+@component(Role.COMPOSITE)
+class CentrifugalClutch(Heating):
+    """Clutch whose shoes the speed of its base throws against a drum.
+
+    The capacity is `coefficient shoes drum_radius mass radius (speed^2 - onset^2)` above the speed `onset`; the shoes
+    follow the speed with a small lag. Use it for small engines, whose load it takes only above idle speed.
+    """
+
+    base: Node = port("shaft with the shoes, whose speed closes it")
+    follower: Node = port("drum: slip = follower - base")
+    friction: Law = law("friction coefficient over slip, static coefficient at rest")
+    shoes: int = param("1", "number of shoes", default=2, above=0.0, whole=True)
+    mass: float = param("kg", "mass of each shoe", above=0.0)
+    radius: float = param("m", "distance of the centre of mass of a shoe from the axis", above=0.0)
+    drum_radius: float = param("m", "inner radius of the drum", above=0.0)
+    onset: float = param("rad/s", "speed at which the springs let go", at_least=0.0)
+    lag: float = param("s", "time constant of the shoes", default=5e-3, above=0.0)
+    tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
+    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+
+    def parts(self) -> Iterable[Component | ThermalNode]:
+        """The shoes and the contact."""
+        speed = self.base.speed or 0.0
+        weights = Flyweights(
+            f"{self.name}.shoes",
+            mass=self.mass,
+            radius=self.radius,
+            onset=self.onset,
+            lag=self.lag,
+            speed=self.base,
+            initial_force=self.mass * self.radius * (speed**2 - self.onset**2),
+        )
+        yield weights
+        yield PlateContact(
+            self.name,
+            base=self.base,
+            follower=self.follower,
+            friction=self.friction,
+            gain=self.shoes * self.drum_radius,
+            normal_force=weights,
+            tolerance=self.tolerance,
+            locked=self.locked,
+            heat=self.heat,
+            heat_share=self.heat_share,
+        )

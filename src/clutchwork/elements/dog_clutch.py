@@ -1,0 +1,55 @@
+"""Dog clutch."""
+
+from __future__ import annotations
+
+from math import tau
+
+from clutchwork.heating import Heating
+from clutchwork.node import Node, SignalLike
+from clutchwork.schema import Role, State, component, flag, option, param, port, signal
+from clutchwork.tables import Found
+
+
+@component(
+    Role.TORQUE,
+    states=(
+        State("angle", "rad", "angle of follower - base"),
+        State("sleeve", "1", "place of the sleeve, 0 out, 1 in"),
+    ),
+)
+class DogClutch(Heating):
+    """Teeth that mesh only when tooth faces gap and the slip is below `speed`; then they hold any torque.
+
+    The sleeve follows the command with a time constant and meets the tips at `reach`. Where tooth stands on tooth or
+    the slip is too high it is blocked there, until both fit or the command goes back. In mesh the flanks have play over
+    `gap` and press with `stiffness depth (1 + damping closing speed)`, never pulling. Use it for shift sleeves, parking
+    locks and range clutches. Pointed teeth find their gap from any angle.
+
+    Source of the damping: K. H. Hunt, F. R. E. Crossley 1975, doi:10.1115/1.3423596.
+    """
+
+    base: Node = port("side that the slip is counted from")
+    follower: Node = port("side whose motion counts positive")
+    teeth: int = param("1", "number of teeth around", above=0.0, whole=True, example=24)
+    gap: float = param("rad", "play of a tooth in its gap, the whole backlash", above=0.0, example=0.02)
+    stiffness: float = param("N m/rad", "stiffness of the flanks", above=0.0, example=1e5)
+    damping: float = param("s/rad", "damping of the flanks over their force", default=1.0, at_least=0.0)
+    speed: float = param("rad/s", "slip above which it does not mesh", default=5.0, above=0.0)
+    reach: float = param("1", "place of the sleeve at which tips meet", default=0.5, above=0.0, below=1.0)
+    lag: float = param("s", "time constant of the sleeve", default=0.02, above=0.0)
+    pointed: bool = flag("pointed teeth, which find their gap by themselves", default=False)
+    reversed: bool = flag("a negative command closes it", default=False)
+    command: SignalLike = signal("1", "place where the sleeve is wanted, 0 out, 1 in")
+    initial_angle: float = option("rad", "angle at the start, 0 in the middle of a gap", default=0.0)
+    engaged: bool = option("1", "in mesh at the start", default=False, flag=True)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        pitch = tau / self.teeth
+        if self.gap < pitch:
+            return []
+        return [("gap", f"is {self.gap:g} rad, not below the pitch {pitch:g} rad", "a tooth needs room beside its gap")]
+
+    def initial_states(self) -> tuple[float, ...]:
+        """Angle [rad] and place of the sleeve at the start."""
+        return (self.initial_angle, 1.0 if self.engaged else 0.0)

@@ -1,0 +1,67 @@
+"""Drum brake with two shoes."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+
+from clutchwork.heating import Heating
+from clutchwork.node import Law, Node, SignalLike
+from clutchwork.schema import Role, choice, component, law, option, param, port, signal
+from clutchwork.tables import Found
+
+
+@component(Role.CONTACT)
+class DoubleShoeBrake(Heating):
+    """Two long hinged shoes inside a drum, both with the same actuating force.
+
+    A leading shoe is pressed on by the friction on it, a trailing one pushed off. With the hinge of each shoe at its
+    own end, a simplex brake has one leading and one trailing shoe in both directions; a duplex brake has two leading
+    ones in forward slip, two trailing ones in backward slip. Use it for drum brakes of vehicles and hoists.
+
+    Source: R. G. Budynas, J. K. Nisbett, Shigley's Mechanical Engineering Design, internal expanding rim clutches and
+    brakes: pressure as the sine of the angle from the hinge.
+    """
+
+    shaft: Node = port("drum: slip is its speed relative to the base")
+    base: Node | None = port("member that takes the reaction", default=None)
+    friction: Law = law("friction coefficient over slip, static coefficient at rest")
+    radius: float = param("m", "radius of the drum", above=0.0, example=0.15)
+    hinge: float = param("m", "distance of the hinges from the axis", above=0.0, example=0.12)
+    arm: float = param("m", "lever of the actuating force about the hinge", above=0.0, example=0.2)
+    start: float = param("rad", "angle from the hinge to the start of the lining", at_least=0.0, below=pi, example=0.2)
+    end: float = param("rad", "angle from the hinge to its end", above=0.0, at_most=pi, example=2.2)
+    leading: str = choice(
+        "which shoes lead: one in both directions, or both in forward slip",
+        choices=("simplex", "duplex"),
+        default="simplex",
+    )
+    force: SignalLike = signal("N", "actuating force on each shoe; below zero counts as zero")
+    tolerance: float = option(
+        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+    )
+    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        if not self.end > self.start:
+            return [("end", f"is {self.end:g} rad, not above the start {self.start:g} rad", "give it behind the start")]
+        limit, largest = self.locking_coefficient(), largest_coefficient(self.friction)
+        if largest >= limit:
+            fault = f"has the coefficient {largest:g}, at which a leading shoe locks by itself: it must be < {limit:g}"
+            return [("friction", fault, "lower it, or move the hinge outwards")]
+        return []
+
+    def locking_coefficient(self) -> float:
+        """Coefficient from which on a leading shoe needs no force."""
+        a, b = self.start, self.end
+        normal = (b - a) / 2 - (sin(2 * b) - sin(2 * a)) / 4
+        along = self.radius * (cos(a) - cos(b)) - self.hinge / 2 * (sin(b) ** 2 - sin(a) ** 2)
+        return self.hinge * normal / along if along > 0 else float("inf")
+
+
+def largest_coefficient(friction: Law) -> float:
+    """Largest static coefficient that a law names, over all temperatures; 0 where it names none."""
+    static = getattr(friction, "static", getattr(friction, "kinetic", 0.0))
+    if isinstance(static, int | float):
+        return float(static)
+    return max(float(value[1] if hasattr(value, "__len__") else value) for value in static)

@@ -1,0 +1,34 @@
+"""Clutch whose torques are inputs."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from clutchwork.heating import Heating
+from clutchwork.laws.coulomb import Coulomb
+from clutchwork.node import Law, Node, SignalLike
+from clutchwork.schema import Role, component, option, port, signal
+
+
+@component(Role.CONTACT)
+class FundamentalClutch(Heating):
+    """Clutch that slips with a given torque and holds between two given limits.
+
+    Use it where friction is computed elsewhere. It locks when the slip is within the tolerance and the torque that
+    it takes lies between `lower` and `upper`; it lets go when that leaves them. Torques are those on the follower: the
+    lower limit resists forward slip, the upper one backward slip. Where all are zero it is open.
+    """
+
+    friction: ClassVar[Law] = Coulomb(static=1.0, kinetic=1.0)
+
+    base: Node = port("side that the slip is counted from")
+    follower: Node = port("side whose motion counts positive: slip = follower - base")
+    kinetic: SignalLike = signal(
+        "N m", "torque while it slips, against the slip; below zero counts as zero", units=("N",)
+    )
+    upper: SignalLike = signal("N m", "largest torque that it holds, at least zero", units=("N",))
+    lower: SignalLike = signal("N m", "smallest torque that it holds, at most zero", units=("N",))
+    tolerance: float = option(
+        "rad/s", "slip below which it may lock; 0: exact zero", default=1e-3, at_least=0.0, units=("m/s",)
+    )
+    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)

@@ -1,0 +1,32 @@
+"""Hydraulic piston of a clutch."""
+
+from __future__ import annotations
+
+from clutchwork.node import Component, SignalLike
+from clutchwork.schema import Role, State, component, option, param, signal
+
+
+@component(
+    Role.PROCESS,
+    states=(State("pressure", "Pa", "pressure on the plates; below zero: what is left to be filled"),),
+)
+class PressureActuator(Component):
+    """Piston that has to fill, then follows its command with a lag and within limits of its rate.
+
+    Use it as the `pressure` of any contact. The return spring takes `spring` off the command. An empty piston fills
+    first, in `fill_time` where the command is `fill_pressure` above the spring, and in inverse proportion else; then
+    the pressure on the plates rises with the time constant `lag`. Below the pressure of the spring it empties again.
+    """
+
+    command: SignalLike = signal("Pa", "pressure that is wanted in front of the piston")
+    lag: float = param("s", "time constant of the pressure", above=0.0)
+    fill_time: float = param("s", "time to fill at `fill_pressure`", default=0.0, at_least=0.0)
+    fill_pressure: float = param("Pa", "command above the spring at which it fills so fast", default=1e5, above=0.0)
+    spring: float = param("Pa", "pressure that balances the return spring", default=0.0, at_least=0.0)
+    rise: float = param("Pa/s", "fastest rise of the pressure, no limit by default", default=1e15, above=0.0)
+    fall: float = param("Pa/s", "fastest fall of the pressure, no limit by default", default=1e15, above=0.0)
+    filled: bool = option("1", "filled at the start", default=False, flag=True)
+
+    def initial_states(self) -> tuple[float, ...]:
+        """Pressure at the start [Pa]: none, less what an empty piston has to fill."""
+        return (0.0 if self.filled else -self.fill_time * self.fill_pressure / self.lag,)

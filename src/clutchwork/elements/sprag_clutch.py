@@ -1,0 +1,33 @@
+"""Freewheel that rolls over."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from clutchwork.heating import Heating
+from clutchwork.laws.coulomb import Coulomb
+from clutchwork.node import Law, Node
+from clutchwork.schema import Role, component, law, option, param, port
+
+
+@component(Role.CONTACT)
+class SpragClutch(Heating):
+    """Freewheel with a drag that gives way when its sprags roll over, at the torque `holding`.
+
+    Use it where a freewheel may be overloaded, or where its drag counts. The follower may run ahead of the base
+    against the drag; it falls behind only above the torque that the sprags hold. `OneWayClutch` holds any torque.
+    """
+
+    one_way: ClassVar[bool] = True
+
+    base: Node = port("side that the slip is counted from")
+    follower: Node = port("side that may run ahead: slip = follower - base is not negative until it rolls over")
+    friction: Law = law("drag torque over `drag`", default=Coulomb(static=1.0, kinetic=1.0))
+    holding: float = param("N m", "torque at which the sprags roll over", above=0.0, units=("N",))
+    drag: float = param(
+        "N m", "drag while it overruns, and after it has rolled over", default=0.0, at_least=0.0, units=("N",)
+    )
+    tolerance: float = option(
+        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+    )
+    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)

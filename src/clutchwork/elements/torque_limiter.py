@@ -1,0 +1,26 @@
+"""Torque limiter."""
+
+from __future__ import annotations
+
+from clutchwork.heating import Heating
+from clutchwork.laws.coulomb import Coulomb
+from clutchwork.node import Law, Node
+from clutchwork.schema import Role, component, law, option, param, port
+
+
+@component(Role.CONTACT)
+class TorqueLimiter(Heating):
+    """Clutch under a constant spring force that slips when its torque is exceeded.
+
+    Use it to protect a drive from overload. With the default friction it slips with the torque at which it breaks
+    away; `Coulomb(static=1.0, kinetic=0.8)` lets it slip with less.
+    """
+
+    base: Node = port("side that the slip is counted from")
+    follower: Node = port("side whose motion counts positive: slip = follower - base")
+    torque: float = param("N m", "torque at which it slips, per coefficient", above=0.0, units=("N",))
+    friction: Law = law("torque over `torque`, one by default", default=Coulomb(static=1.0, kinetic=1.0))
+    tolerance: float = option(
+        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+    )
+    locked: bool = option("1", "locked at the start, with an impulse if need be", default=True, flag=True)

@@ -1,0 +1,24 @@
+"""Drag of an open wet clutch."""
+
+from __future__ import annotations
+
+from clutchwork.heating import Heating
+from clutchwork.node import Node, SignalLike
+from clutchwork.schema import Role, component, param, port, signal
+
+
+@component(Role.TORQUE)
+class WetDrag(Heating):
+    """Drag `2 peak scale x/(1 + x^2)` against the slip, with x = slip/speed: it rises to a peak and falls beyond it.
+
+    Use it beside the clutch of a wet pack: at low slip the oil film is sheared, beyond the peak air enters and the
+    film breaks up. Give `scale` as a signal where the drag changes with the oil flow or the temperature.
+
+    Source of the shape: Y. Kitabayashi, C. Y. Li, H. Hiraki 2003, doi:10.4271/2003-01-1973.
+    """
+
+    base: Node = port("side that the slip is counted from")
+    follower: Node = port("side whose motion counts positive")
+    peak: float = param("N m", "largest drag", at_least=0.0, units=("N",))
+    speed: float = param("rad/s", "slip of the largest drag", above=0.0, units=("m/s",))
+    scale: SignalLike | None = signal("1", "factor on the drag, 1 by default", default=None, otherwise=1.0)

@@ -1,0 +1,67 @@
+"""Coefficients over temperature and slip."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from clutchwork.node import SignalLike
+from clutchwork.schema import Role, component, numbers, signal
+from clutchwork.tables import Found, Tabulated, crossing, few_points, not_positive, slip_axis
+
+
+@component(Role.LAW)
+class FrictionMap(Tabulated):
+    """Static coefficient over the temperature, kinetic coefficient over temperature and abs(slip).
+
+    Use it for linings whose fall over the slip changes with the temperature. A row of `kinetic` belongs to a
+    temperature, a column to a speed. The temperature is that of the thermal node at the contact unless it is given.
+
+    Source of the smooth one: F. N. Fritsch, R. E. Carlson 1980, doi:10.1137/0717021.
+    """
+
+    temperatures: Sequence[float] = numbers(
+        "K", "temperatures, rising", rising="strictly", example=(280.0, 400.0, 500.0)
+    )
+    speeds: Sequence[float] = numbers(
+        "rad/s", "slips, rising from 0", units=("m/s",), rising="strictly", example=(0.0, 50.0, 200.0)
+    )
+    static: Sequence[float] = numbers(
+        "1", "coefficient at rest, one for each temperature", above=0.0, example=(0.35, 0.33, 0.28)
+    )
+    kinetic: Sequence[Sequence[float]] = numbers(
+        "1",
+        "coefficient while it slips, a row over the speeds for each temperature",
+        above=0.0,
+        example=((0.3, 0.28, 0.25), (0.29, 0.27, 0.24), (0.22, 0.2, 0.18)),
+    )
+    temperature: SignalLike | None = signal("K", "temperature of the lining", default=None)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        found = few_points("temperatures", len(self.temperatures), self.interpolation)
+        found += few_points("speeds", len(self.speeds), self.interpolation)
+        found = found or slip_axis("speeds", self.speeds[0], "rad/s") or self._shape_problems()
+        found = found or not_positive("static", self.static, "K", self.temperatures)
+        for speed, column in zip(self.speeds, zip(*self.kinetic, strict=True) if not found else (), strict=not found):
+            found = not_positive("kinetic", column, f"K, {speed:g} rad/s", self.temperatures)
+            found = found or crossing(self.static, column, f"K, {speed:g} rad/s", self.temperatures)
+            if found:
+                return found
+        return found
+
+    def _shape_problems(self) -> Found:
+        """Too few or too many static coefficients, rows or columns."""
+        rows, columns = len(self.temperatures), len(self.speeds)
+        if len(self.static) != rows:
+            return [
+                ("static", f"has {len(self.static)} values for {rows} temperatures", "give one for each temperature")
+            ]
+        if len(self.kinetic) != rows or any(len(row) != columns for row in self.kinetic):
+            shape = f"{len(self.kinetic)} rows of {sorted({len(row) for row in self.kinetic})} numbers"
+            fault = f"has {shape}, must have {rows} rows, one for each temperature, of {columns} numbers"
+            return [("kinetic", fault, "give a row over the speeds for each temperature")]
+        return []
+
+    def sliding(self) -> float | None:
+        """None: it depends on the temperature."""
+        return None

@@ -1,0 +1,37 @@
+"""Kinetic coefficient over slip as a table."""
+
+from __future__ import annotations
+
+from clutchwork.node import Points
+from clutchwork.schema import Role, component, curve, param
+from clutchwork.tables import Found, Tabulated, crossing, few_points, not_positive, slip_axis
+
+
+@component(Role.LAW)
+class FrictionTable(Tabulated):
+    """Kinetic coefficient over abs(slip) as a table, linear or smooth, and one static coefficient above all of it.
+
+    Use it for measured linings at one temperature. It never goes below zero, however far it is continued.
+
+    Source of the smooth one: F. N. Fritsch, R. E. Carlson 1980, doi:10.1137/0717021.
+    """
+
+    static: float = param("1", "coefficient at rest, above every kinetic one", above=0.0, example=0.35)
+    kinetic: Points = curve(
+        "rad/s",
+        "1",
+        "kinetic coefficient over abs(slip), from 0",
+        units_x=("m/s",),
+        example=((0.0, 0.3), (50.0, 0.28), (100.0, 0.27)),
+    )
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        slips, values = [x for x, _ in self.kinetic], [y for _, y in self.kinetic]
+        found = few_points("kinetic", len(slips), self.interpolation)
+        found = found or slip_axis("kinetic", slips[0], "rad/s") or not_positive("kinetic", values, "rad/s", slips)
+        return found or crossing([self.static] * len(slips), values, "rad/s", slips)
+
+    def sliding(self) -> float:
+        """Kinetic coefficient at vanishing slip."""
+        return float(self.kinetic[0][1])

@@ -1,0 +1,41 @@
+"""Coefficients over the temperature as tables."""
+
+from __future__ import annotations
+
+from clutchwork.node import Points, SignalLike
+from clutchwork.schema import Role, component, curve, signal
+from clutchwork.tables import Found, Tabulated, crossing, few_points, not_positive
+
+
+@component(Role.LAW)
+class TemperatureTable(Tabulated):
+    """Static and kinetic coefficient over the temperature, both at the same temperatures.
+
+    Use it for linings that fade. The temperature is that of the thermal node at the contact unless it is given.
+
+    Source of the smooth one: F. N. Fritsch, R. E. Carlson 1980, doi:10.1137/0717021.
+    """
+
+    static: Points = curve("K", "1", "coefficient at rest", example=((280.0, 0.35), (400.0, 0.33), (500.0, 0.28)))
+    kinetic: Points = curve(
+        "K",
+        "1",
+        "coefficient while it slips, below the static one",
+        example=((280.0, 0.3), (400.0, 0.29), (500.0, 0.2)),
+    )
+    temperature: SignalLike | None = signal("K", "temperature of the lining", default=None)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        places, others = ([x for x, _ in points] for points in (self.static, self.kinetic))
+        found = few_points("static", len(places), self.interpolation)
+        if not found and places != others:
+            found = [("kinetic", "has other temperatures than static", "give both at the same temperatures")]
+        static, kinetic = ([y for _, y in points] for points in (self.static, self.kinetic))
+        for name, values in (("static", static), ("kinetic", kinetic)):
+            found = found or not_positive(name, values, "K", places)
+        return found or crossing(static, kinetic, "K", places)
+
+    def sliding(self) -> float | None:
+        """None: it depends on the temperature."""
+        return None
