@@ -39,6 +39,9 @@ PAGES = (
             Role.TORQUE: "Springs, dampers and torque sources",
             Role.GEAR: "Gears",
             Role.MOTION: "Prescribed motion",
+            Role.FLOW: "Heat flows",
+            Role.PROCESS: "Processes: states that signals, rates and heats drive",
+            Role.COMPOSITE: "Made of other elements",
         },
         "elements",
     ),
@@ -62,7 +65,13 @@ compares them.
 | law | type in files | sticks | states | |
 |---|---|---|---|---|"""
 
-SORTS = {"param": "number", "alternative": "signal", "option": "setting", "law": "friction law"}
+SORTS = {
+    "param": "number",
+    "alternative": "signal",
+    "option": "setting",
+    "law": "friction law",
+    "thermal": "thermal port",
+}
 
 
 def write(folder: Path) -> list[Path]:

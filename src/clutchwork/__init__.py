@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from clutchwork.elements.speed_torque import SpeedTorque as SpeedTorque
     from clutchwork.elements.spring import Spring as Spring
     from clutchwork.elements.spring_damper import SpringDamper as SpringDamper
+    from clutchwork.elements.thermal_plate import ThermalPlate as ThermalPlate
     from clutchwork.elements.torque import Torque as Torque
     from clutchwork.failure import SimulationError as SimulationError
     from clutchwork.failure import StoppedEarly as StoppedEarly

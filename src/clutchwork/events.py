@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from clutchwork.layout import EVENT, MODES
 from clutchwork.text import columns
 
-CAUSES = ("start", "slip zero", "torque limit", "input", "other event", "impulse", "restart", "passing")
+CAUSES = ("start", "slip zero", "torque limit", "input", "other event", "impulse", "restart", "passing", "fault")
 
 
 @dataclass(frozen=True)

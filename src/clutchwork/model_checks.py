@@ -31,19 +31,25 @@ def model_problems(
     """
     problems = [problem for node in nodes for problem in node_problems(node)]
     problems += [problem for node in thermal for problem in thermal_problems(node)]
-    sound, broken = list[Component](), list[Component]()
+    parts, found = _parts(elements, thermal)
+    inner = [node for node in parts.thermal if not any(node is other for other in thermal)]
     for element in elements:
-        joints = [*connection_problems(element, nodes), *port_problems(element, thermal)]
-        found = [*component_problems(element), *joints]
-        problems += found
-        (broken if found else sound).append(element)
-    parts = take_apart(sound, thermal)
-    problems += name_problems(nodes, elements, parts)
-    known = Known.of(nodes, parts)
+        found[id(element)] += [*connection_problems(element, nodes), *port_problems(element, thermal, inner)]
+        problems += found[id(element)]
+    broken = [element for element in elements if found[id(element)]]
+    sound = take_apart([element for element in elements if not found[id(element)]], thermal)
+    problems += name_problems(nodes, elements, sound)
     # what refers to an element with mistakes is looked at once those are mended
     if not broken and not incomplete:
-        problems += [problem for part in parts.components for problem in reference_problems(part, known)]
-    return problems + structure_problems(nodes, parts.components, [*incomplete, *_touched(broken)])
+        known = Known.of(nodes, sound)
+        problems += [problem for part in sound.components for problem in reference_problems(part, known)]
+    return problems + structure_problems(nodes, sound.components, [*incomplete, *_touched(broken)])
+
+
+def _parts(elements: Sequence[Component], thermal: Sequence[ThermalNode]) -> tuple[Parts, dict[int, list[Problem]]]:
+    """The parts of all elements whose values make sense, and the mistakes of the others."""
+    found = {id(element): list(component_problems(element)) for element in elements}
+    return take_apart([element for element in elements if not found[id(element)]], thermal), found
 
 
 def model_advice(elements: Sequence[Component]) -> list[Problem]:

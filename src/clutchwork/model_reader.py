@@ -153,7 +153,7 @@ class Reader:
         if spec.what == "law":
             return self._typed(value, Role.LAW, at)
         if spec.what in ("signal", "alternative"):
-            if is_named(value, self.thermal, self.elements, self.nodes):
+            if is_named(value, self.thermal, self.elements, self.nodes) or self.elements.thermal_part(value):
                 return self._other(value, at)
             is_signal = isinstance(value, Mapping) and "type" in value
             return self._signal(value, spec, at) if is_signal else self._number(value, spec, at)
@@ -180,6 +180,9 @@ class Reader:
         known: Mapping[str, Any] = self.nodes if spec.what == "port" else self.thermal
         if isinstance(value, str) and value in known:
             return known[value]
+        part = self.elements.thermal_part(value) if spec.what == "thermal" else None
+        if part is not None:
+            return part
         what = "shaft" if spec.what == "port" else "thermal node"
         remedy = f"known are {', '.join(known)}" if known else "add one: [[thermal]] or [[ambient]]"
         return self._report(at, f"is no {what} of this model" + near(str(value), known), repr(value), remedy)
@@ -187,7 +190,8 @@ class Reader:
     def _other(self, value: Any, at: At) -> Any:
         """An input that a thermal node, an element or a shaft gives."""
         name = value["of"] if isinstance(value, Mapping) else value
-        found: Any = self.thermal.get(name) or self.elements.get(name) or self.nodes.get(name)
+        found: Any = self.thermal.get(name) or self.elements.thermal_part(name)
+        found = found or self.elements.get(name) or self.nodes.get(name)
         if name in self.elements and found is None:
             # its own mistakes are reported where it stands
             return BROKEN if self.elements.broken(name) else self._report(at, "leads back to itself", repr(name))

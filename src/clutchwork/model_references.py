@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from typing import Any
 
-from clutchwork.node import Component, HeatFlow, Rate
+from clutchwork.checks import component_problems
+from clutchwork.node import Component, HeatFlow, Rate, ThermalNode
+from clutchwork.parts import take_apart
 
 Entry = Mapping[str, Any]
 REFERENCES = {"rate": Rate, "heat_flow": HeatFlow}
@@ -40,6 +42,12 @@ class References(Container[str]):
     def get(self, name: str) -> Component | None:
         """An element, None where it has mistakes, is being made, or is not there."""
         return self._at(self._places[name]) if name in self._places else None
+
+    def thermal_part(self, name: object) -> ThermalNode | None:
+        """A thermal node that is part of an element: "disc.surface"."""
+        whole = self.get(name.rpartition(".")[0]) if isinstance(name, str) else None
+        nodes = take_apart([whole]).thermal if whole is not None and not any(component_problems(whole)) else ()
+        return next((node for node in nodes if node.name == name), None)
 
     def broken(self, name: str) -> bool:
         """Whether an element was read and has mistakes."""

@@ -59,6 +59,11 @@ class Component:
         """
         return ()
 
+    def part(self, name: str) -> Component | ThermalNode:
+        """A part by its name within this component; KeyError when there is none."""
+        named = {part.name: part for part in self.parts()}
+        return named[f"{self.name}.{name}"]
+
     def sums(self) -> tuple[str, ...]:
         """Names of parts whose torque, power, work and heat are added to those of the part with its own name."""
         return ()

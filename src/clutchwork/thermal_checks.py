@@ -41,17 +41,20 @@ def thermal_problems(node: ThermalNode) -> Iterator[Problem]:
         yield from CHECKS["signal"](node.temperature, AROUND, At(path, "temperature", "K"))
 
 
-def port_problems(component: Component, thermal: Sequence[ThermalNode]) -> Iterator[Problem]:
-    """Thermal ports on foreign nodes, or both on one and the same."""
+def port_problems(
+    component: Component, thermal: Sequence[ThermalNode], inner: Sequence[ThermalNode]
+) -> Iterator[Problem]:
+    """Thermal ports on foreign nodes, or both on one and the same; `inner` are nodes of composites."""
     at, joined = At(label(component), ""), thermal_ports(component)
     if not all(isinstance(node, ThermalNode) for node in joined.values()):
         return
-    known = {id(node) for node in thermal}
+    # nodes of composites are made anew each time they are asked for
+    own, parts = {id(other) for other in thermal}, {other.name for other in inner}
     for name, node in joined.items():
-        if id(node) not in known:
-            found = near(node.name, [other.name for other in thermal])
+        if id(node) not in own and node.name not in parts:
+            found = near(node.name, [other.name for other in (*thermal, *inner)])
             yield at.inner(name).problem("is of another driveline", repr(node.name), f"create it in this one{found}")
-    if role(component) is Role.FLOW and len({id(node) for node in joined.values()}) < len(joined):
+    if role(component) is Role.FLOW and len({node.name for node in joined.values()}) < len(joined):
         message = f"{' and '.join(joined)} are both on {next(iter(joined.values())).name!r}"
         yield at.problem(message, remedy="attach them to two thermal nodes")
 

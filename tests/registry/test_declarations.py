@@ -14,7 +14,7 @@ from clutchwork.schema import COMPILED_ROLES, REGISTRY, Role, kinds, schema_hash
 from support import samples
 
 ALL = samples.declared(*Role)
-WITHOUT_UNIT = {"port", "text", "function"}
+WITHOUT_UNIT = {"port", "thermal", "text", "function"}
 
 
 @pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)

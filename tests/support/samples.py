@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import MISSING
 from typing import Any
 
 import clutchwork as cw
 from clutchwork.schema import REGISTRY, Role, Spec, inputs, specs
 
-ELEMENT_ROLES = (Role.TORQUE, Role.CONTACT, Role.GEAR, Role.MOTION)
+ELEMENT_ROLES = tuple(role for role in Role if role not in (Role.LAW, Role.SIGNAL))
 
 
 def declared(*roles: Role) -> list[Any]:
@@ -40,14 +41,19 @@ def number(name: str, spec: Spec) -> Any:
     return value
 
 
-def value(name: str, spec: Spec, nodes: dict[str, cw.Node]) -> Any:
+def value(name: str, spec: Spec, nodes: Mapping[str, Any]) -> Any:
     """A value for one field."""
     if spec.what == "port":
         return nodes[spec.domain or "rotation"] if name not in ("base", "support", "input", "ring") else nodes["other"]
+    if spec.what == "thermal":
+        # first port: plates, second one: air
+        return nodes["air" if name in ("cold", "inlet") else "plates"]
     if spec.what == "law":
         return cw.Coulomb(static=0.2, kinetic=0.1)
     if spec.what == "curve":
         return list(spec.example or [(0.0, 0.1), (10.0, 0.05)])
+    if spec.what == "numbers":
+        return spec.example or (0.1, 0.2)
     if spec.what == "signal":
         return cw.Step(height=2.0, start=0.5)
     if spec.what == "text":
@@ -57,7 +63,7 @@ def value(name: str, spec: Spec, nodes: dict[str, cw.Node]) -> Any:
     return number(name, spec)
 
 
-def fields(cls: type, nodes: dict[str, cw.Node]) -> dict[str, Any]:
+def fields(cls: type, nodes: Mapping[str, Any]) -> dict[str, Any]:
     """Values for all fields that must be given or have an example, alternatives and teeth left out."""
     needed = {names[0] for names, spec in inputs(cls) if spec.otherwise is None}
     made = {
@@ -73,7 +79,8 @@ def fields(cls: type, nodes: dict[str, cw.Node]) -> dict[str, Any]:
 def driveline(cls: type) -> cw.Driveline:
     """A driveline with one element of a class, named "x"."""
     d = cw.Driveline(cls.__name__)
-    nodes = {"rotation": d.shaft("a", inertia=0.3), "other": d.shaft("b", inertia=0.7)}
+    nodes: dict[str, Any] = {"rotation": d.shaft("a", inertia=0.3), "other": d.shaft("b", inertia=0.7)}
+    nodes |= {"plates": d.thermal("plates", capacity=800.0), "air": d.ambient("air", temperature=290.0)}
     third = d.shaft("c", inertia=0.2)
     nodes["translation"] = d.mass("m", mass=2.0)
     values = fields(cls, nodes)
@@ -84,6 +91,7 @@ def driveline(cls: type) -> cw.Driveline:
     return d
 
 
-def nodes() -> dict[str, cw.Node]:
+def nodes() -> dict[str, Any]:
     """Nodes without a driveline."""
-    return {name: cw.Node(name, inertia=1.0) for name in ("rotation", "other", "translation")}
+    thermal = {name: cw.ThermalNode(name, 1.0) for name in ("plates", "air")}
+    return {name: cw.Node(name, inertia=1.0) for name in ("rotation", "other", "translation")} | thermal

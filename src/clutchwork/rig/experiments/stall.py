@@ -83,8 +83,8 @@ class Stall(Experiment):
                 normal_force=Course([(0.0, 0.0), (0.8, 1.0)]),
             )
         )
-        shaft = {"stiffness": self.halfshaft, "damping": self.damping}
-        d.add(SpringDamper("halfshaft", base=gearbox, follower=vehicle, **shaft))
+        stiffness, damping = self.halfshaft, self.damping
+        d.add(SpringDamper("halfshaft", base=gearbox, follower=vehicle, stiffness=stiffness, damping=damping))
         d.add(ResistingTorque("road", shaft=vehicle, torque=self.road, speed=0.5))
         return d
 
