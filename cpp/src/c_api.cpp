@@ -40,6 +40,23 @@ bool signal_fits(const System& s, std::int64_t i) {
   return end - start <= period && start > -1e8 * period && abs(end) < 1e12 * period;
 }
 
+/// Whether a parameter tells where a curve stands: it must stay as it was loaded.
+bool is_curve_range(const System& s, std::int64_t offset) {
+  bool found = false;
+  auto covers = [&](std::int64_t first) {
+    return [&, first](int at) { found = found || (offset >= first + at && offset < first + at + 2); };
+  };
+  auto look = [&](std::int64_t n, auto&& visit) {
+    for (std::int64_t i = 0; i < n && !found; ++i) visit(i);
+  };
+  look(s.elements, [&](std::int64_t i) { visit_torque_curves(s.element_kind[i], covers(s.element_param[i])); });
+  look(s.contacts, [&](std::int64_t i) { visit_contact_curves(s.contact_kind[i], covers(s.contact_param[i])); });
+  look(s.contacts, [&](std::int64_t i) { visit_law_curves(s.contact_law[i], covers(s.contact_law_param[i])); });
+  look(s.flows, [&](std::int64_t i) { visit_flow_curves(s.flow_kind[i], covers(s.flow_param[i])); });
+  look(s.processes, [&](std::int64_t i) { visit_process_curves(s.process_kind[i], covers(s.process_param[i])); });
+  return found;
+}
+
 /// Whether n references from `first` on are to signals and shared states: torques know no rates of others.
 bool plain_inputs(const System& s, std::int64_t first, int n) {
   for (int i = 0; i < n && first + n <= s.n_input_refs; ++i) {
@@ -203,7 +220,7 @@ int cw_set_input(cw_run* run, std::int64_t input, double value) {
 
 int cw_set_param(cw_run* run, std::int64_t offset, double value) {
   Workspace<double>& ws = run->ws;
-  if (offset < 0 || offset >= ws.sys.n_params) return 0;
+  if (offset < 0 || offset >= ws.sys.n_params || is_curve_range(ws.sys, offset)) return 0;
   ws.params[offset] = value;
   ws.input_changed = true;
   return 1;
