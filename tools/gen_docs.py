@@ -135,10 +135,17 @@ def _example(kind: str, cls: type) -> str:
 
 
 def _points(value: Any, brackets: str) -> str:
-    if isinstance(value, tuple):
-        inner = ", ".join(f"{brackets[0]}{x!r}, {y!r}{brackets[1]}" for x, y in value)
-        return f"[{inner}]"
-    return repr(value)
+    """A number, or pairs, numbers and rows of them in the brackets of the language."""
+    if not isinstance(value, tuple):
+        return repr(value)
+    pairs = all(isinstance(item, tuple) and len(item) == 2 for item in value)
+    outer = "[]" if pairs else brackets
+    inner = ", ".join(_points(item, brackets) if not pairs else _pair(item, brackets) for item in value)
+    return f"{outer[0]}{inner}{outer[1]}"
+
+
+def _pair(item: tuple[float, float], brackets: str) -> str:
+    return f"{brackets[0]}{item[0]!r}, {item[1]!r}{brackets[1]}"
 
 
 def _symbols(cls: type) -> str:

@@ -9,11 +9,11 @@ from clutchwork.errors import Problem
 from clutchwork.kinematics import kinematics
 from clutchwork.law_checks import component_advice
 from clutchwork.node import HOUSING, Component, Domain, Node, ThermalNode
-from clutchwork.parts import Parts, take_apart
+from clutchwork.parts import Parts, Sensor, take_apart
 from clutchwork.schema import Spec
 from clutchwork.start import start
 from clutchwork.structure import Model
-from clutchwork.thermal_checks import Known, node_kind, port_problems, reference_problems, thermal_problems
+from clutchwork.thermal_checks import Known, Within, node_kind, port_problems, reference_problems, thermal_problems
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -32,9 +32,9 @@ def model_problems(
     problems = [problem for node in nodes for problem in node_problems(node)]
     problems += [problem for node in thermal for problem in thermal_problems(node)]
     parts, found = _parts(elements, thermal)
-    inner = [node for node in parts.thermal if not any(node is other for other in thermal)]
+    within = Within({node.name for node in parts.thermal}, {e.name for e in elements if found[id(e)]})
     for element in elements:
-        found[id(element)] += [*connection_problems(element, nodes), *port_problems(element, thermal, inner)]
+        found[id(element)] += [*connection_problems(element, nodes), *port_problems(element, thermal, within)]
         problems += found[id(element)]
     broken = [element for element in elements if found[id(element)]]
     sound = take_apart([element for element in elements if not found[id(element)]], thermal)
@@ -43,7 +43,8 @@ def model_problems(
     if not broken and not incomplete:
         known = Known.of(nodes, sound)
         problems += [problem for part in sound.components for problem in reference_problems(part, known)]
-    return problems + structure_problems(nodes, sound.components, [*incomplete, *_touched(broken)])
+    moving = [part for part in sound.components if not isinstance(part, Sensor)]
+    return problems + structure_problems(nodes, moving, [*incomplete, *_touched(broken)])
 
 
 def _parts(elements: Sequence[Component], thermal: Sequence[ThermalNode]) -> tuple[Parts, dict[int, list[Problem]]]:
@@ -98,8 +99,11 @@ def name_problems(nodes: Sequence[Node], elements: Sequence[Component], parts: P
     things = [(f'shaft "{node.name}"', node.name) for node in nodes]
     things += [(f'{node_kind(node)} "{node.name}"', node.name) for node in parts.thermal]
     things += [(label(element), element.name) for element in elements]
-    whole = {element.name for element in elements}
-    things += [(label(part), part.name) for part in parts.components if part.name not in whole]
+    added = {id(element) for element in elements}
+    # one part of a composite may have its name
+    wholes = {element.name for element in elements} - {part.name for part in parts.components if id(part) in added}
+    inner = [part for part in parts.components if id(part) not in added and part.name not in wholes]
+    things += [(label(part), part.name) for part in inner]
     for path, name in things:
         if not isinstance(name, str) or not name or name != name.strip():
             remedy = "give a text without blanks at its ends"

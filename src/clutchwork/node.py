@@ -65,7 +65,7 @@ class Component:
         return named[f"{self.name}.{name}"]
 
     def sums(self) -> tuple[str, ...]:
-        """Names of parts whose torque, power, work and heat are added to those of the part with its own name."""
+        """Names of parts, within it, whose torque, power, work and heat count as those of its own name."""
         return ()
 
 

@@ -33,8 +33,13 @@ def take_apart(components: Sequence[Component], thermal: Sequence[ThermalNode] =
     nodes.sort(key=lambda node: node.capacity is None)
     asked = {node.name: node for element in elements for node in _asked(element)}
     sensors = [Sensor(sensor_name(node), base=HOUSING, follower=node, damping=0.0) for node in asked.values()]
-    sums = {component.name: component.sums() for component in components if component.sums()}
-    return Parts((*elements, *sensors), tuple(nodes), sums)
+    there = {element.name for element in elements}
+    sums = {whole.name: tuple(there.intersection(_full(whole))) for whole in components if whole.name in there}
+    return Parts((*elements, *sensors), tuple(nodes), {name: names for name, names in sums.items() if names})
+
+
+def _full(whole: Component) -> list[str]:
+    return [f"{whole.name}.{name}" for name in whole.sums()]
 
 
 def sensor_name(node: Node) -> str:

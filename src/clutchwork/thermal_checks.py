@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,18 +41,28 @@ def thermal_problems(node: ThermalNode) -> Iterator[Problem]:
         yield from CHECKS["signal"](node.temperature, AROUND, At(path, "temperature", "K"))
 
 
-def port_problems(
-    component: Component, thermal: Sequence[ThermalNode], inner: Sequence[ThermalNode]
-) -> Iterator[Problem]:
-    """Thermal ports on foreign nodes, or both on one and the same; `inner` are nodes of composites."""
+@dataclass(frozen=True)
+class Within:
+    """Thermal nodes that are parts of elements, which are made anew each time they are asked for."""
+
+    names: Collection[str]
+    broken: Collection[str]  # elements with mistakes, whose parts are not known
+
+    def holds(self, node: ThermalNode) -> bool:
+        """Whether a node is such a part, or may be."""
+        return node.name in self.names or any(node.name.startswith(f"{name}.") for name in self.broken)
+
+
+def port_problems(component: Component, thermal: Sequence[ThermalNode], within: Within) -> Iterator[Problem]:
+    """Thermal ports on foreign nodes, or both on one and the same."""
     at, joined = At(label(component), ""), thermal_ports(component)
     if not all(isinstance(node, ThermalNode) for node in joined.values()):
         return
-    # nodes of composites are made anew each time they are asked for
-    own, parts = {id(other) for other in thermal}, {other.name for other in inner}
+    own = {id(other) for other in thermal}
     for name, node in joined.items():
-        if id(node) not in own and node.name not in parts:
-            found = near(node.name, [other.name for other in (*thermal, *inner)])
+        foreign = node.name in {other.name for other in thermal} and id(node) not in own
+        if foreign or (id(node) not in own and not within.holds(node)):
+            found = near(node.name, [other.name for other in thermal])
             yield at.inner(name).problem("is of another driveline", repr(node.name), f"create it in this one{found}")
     if role(component) is Role.FLOW and len({node.name for node in joined.values()}) < len(joined):
         message = f"{' and '.join(joined)} are both on {next(iter(joined.values())).name!r}"

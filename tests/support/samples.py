@@ -54,6 +54,8 @@ def value(name: str, spec: Spec, nodes: Mapping[str, Any]) -> Any:
         return list(spec.example or [(0.0, 0.1), (10.0, 0.05)])
     if spec.what == "numbers":
         return spec.example or (0.1, 0.2)
+    if spec.what == "signal" and spec.unit == "K":
+        return 300.0
     if spec.what == "signal":
         return cw.Step(height=2.0, start=0.5)
     if spec.what == "text":
@@ -69,7 +71,7 @@ def fields(cls: type, nodes: Mapping[str, Any]) -> dict[str, Any]:
     made = {
         item.name: value(item.name, spec, nodes)
         for item, spec in specs(cls)
-        if item.default is MISSING or item.name in needed or item.name == "ratio" or spec.example is not None
+        if item.default is MISSING or item.name in needed | {"ratio", "radius"} or spec.example is not None
     }
     if "ratio" in made:
         made["ratio"] = 2.5
