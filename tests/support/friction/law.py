@@ -31,7 +31,7 @@ class Guard(NamedTuple):
 
 @dataclass(frozen=True)
 class Law:
-    """Coefficient of friction over slip and states, smooth on each branch; the base is a law without states or kinks."""
+    """Coefficient of friction over slip and states, smooth on each branch; as it stands without states or kinks."""
 
     @property
     def size(self) -> int:

@@ -45,7 +45,8 @@ class Leuven(Elements):
     def bending(self, v: float, s: Array, way: int) -> float:
         """dz/dt."""
         along = way * float(np.sum(s)) / self.curve.level(v)
-        return v * (1.0 - copysign(abs(along) ** self.order, along))
+        # no solution goes beyond static/kinetic; iterates of Radau do, and must not overflow
+        return v * (1.0 - copysign(min(abs(along), 5.0) ** self.order, along))
 
     def coefficient(self, v: float, s: Array, branch: Branch) -> float:
         return float(np.sum(s)) + self.damping * self.bending(v, s, branch.way) + self.curve.viscous * v

@@ -44,12 +44,14 @@ OTHERS: dict[str, cw.Law] = {
     "dahl steep": cw.Dahl(kinetic=0.7, stiffness=1e4, exponent=1.5),
     "lugre tustin": cw.LuGre(**BRISTLE | {"damping": 60.0}, shape="tustin"),
     "lugre power": cw.LuGre(**BRISTLE | {"damping": 60.0}, shape="power", exponent=1.4),
-    "elastoplastic lorentz": cw.ElastoPlastic(**BRISTLE | {"damping": 60.0}, elastic=3e-5, plastic=6e-5, shape="lorentz"),
+    "elastoplastic lorentz": cw.ElastoPlastic(
+        **BRISTLE | {"damping": 60.0}, elastic=3e-5, plastic=6e-5, shape="lorentz"
+    ),
     "leuven linear": cw.Leuven(**CURVE, elements=FEW),
-    "leuven square": cw.Leuven(**CURVE, elements=FEW[:2] + ((2e-4, 0.8),), order=2.0, damping=30.0),
+    "leuven square": cw.Leuven(**CURVE, elements=(*FEW[:2], (2e-4, 0.8)), order=2.0, damping=30.0),
     "gms quick": cw.GMS(**CURVE, elements=FEW, attraction=2000.0),
     "mykhalevych narrow": cw.Mykhalevych(**WOUND, range=1.5),
-}  # fmt: skip
+}
 
 ALL = DRIFT | OTHERS
 

@@ -96,6 +96,13 @@ class Solution:
     turns: int  # how often the slip passed through zero
 
 
+def _zero(over: Course, start: float, end: float, first: float) -> float:
+    """Where a function falls through zero; dense output is a little off at the ends of a step."""
+    if first <= 0.0 or over(start) <= 0.0:
+        return start
+    return end if over(end) >= 0.0 else brentq(over, start, end, xtol=1e-15, rtol=1e-14)
+
+
 @dataclass
 class _Run:
     """One integration under way."""
@@ -165,9 +172,7 @@ class _Run:
             if value(solver.t, solver.y) >= 0.0:
                 continue
             over = lambda t, f=value: f(t, dense(t))  # noqa: E731
-            at_once = value(t0, y0) <= 0.0 or over(t0) <= 0.0
-            time = t0 if at_once else brentq(over, t0, solver.t, xtol=1e-15, rtol=1e-14)
-            hits.append(Hit(time, guard, slip(solver.t, solver.y)))
+            hits.append(Hit(_zero(over, t0, solver.t, value(t0, y0)), guard, slip(solver.t, solver.y)))
         return min(hits, key=lambda hit: hit.time, default=None)
 
     def _switch(self, t0: float, y0: Array, hit: Hit) -> None:
