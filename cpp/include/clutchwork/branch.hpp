@@ -36,11 +36,11 @@ inline bool is_compliant_law(int law) {
 
 /// Load of a contact at the given inputs, negative where the clamp is relieved.
 template <class T, class S>
-CLUTCHWORK_INLINE S contact_load(int kind, const T* params, const S* input) {
+CLUTCHWORK_INLINE S contact_load(int kind, const T* params, const S* input, const double* points) {
   return visit_contact(kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(params);
-    return E::load(p, At<S>{S(0), nullptr, input, 0, nullptr});
+    return E::load(p, At<S>{S(0), nullptr, input, 0, points});
   });
 }
 
@@ -74,7 +74,7 @@ T contact_limit(const System& sys, int c, const T* params, const T* u, int direc
   return visit_contact(sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(own);
-    const At<T> at{T(0), nullptr, input, 0, nullptr};
+    const At<T> at{T(0), nullptr, input, 0, sys.points};
     if constexpr (LimitedContact<E>) {
       return larger(E::limit(p, at, hold, direction), T(0));
     } else {
@@ -131,7 +131,7 @@ T held_slope(const Workspace<T>& ws, const Branch<T>& b) {
   using S = Dual<T, 1>;
   S input[most_inputs];
   dual_inputs<1>(b.inputs, b.input, b.input_slope, input);
-  const S load = contact_load<T, S>(b.kind, b.params, input);
+  const S load = contact_load<T, S>(b.kind, b.params, input, ws.sys.points);
   return value(load.v) > 0 ? held_torque(ws, b) * load.d[0] / load.v : T(0);
 }
 
@@ -139,7 +139,7 @@ T held_slope(const Workspace<T>& ws, const Branch<T>& b) {
 template <class T, class S>
 CLUTCHWORK_INLINE S sliding_torque(const Workspace<T>& ws, const Branch<T>& b, const S& rate, const S* input,
                                    const S* law_input) {
-  const S load = larger(contact_load<T, S>(b.kind, b.params, input), S(0));
+  const S load = larger(contact_load<T, S>(b.kind, b.params, input, ws.sys.points), S(0));
   S coefficient = visit_law(b.law, [&](auto tag) {
     using L = typename decltype(tag)::type;
     if constexpr (StickingLaw<L>) {
@@ -157,7 +157,7 @@ CLUTCHWORK_INLINE S sliding_torque(const Workspace<T>& ws, const Branch<T>& b, c
 template <int Room, class T, class S>
 CLUTCHWORK_INLINE S bending_torque(const Workspace<T>& ws, const Branch<T>& b, const S& rate, const S* own,
                                    const S* input, const S* law_input, S* rates) {
-  const S load = larger(contact_load<T, S>(b.kind, b.params, input), S(0));
+  const S load = larger(contact_load<T, S>(b.kind, b.params, input, ws.sys.points), S(0));
   S coefficient = visit_law(b.law, [&](auto tag) {
     using L = typename decltype(tag)::type;
     if constexpr (CompliantLaw<L> && L::states <= Room) {

@@ -78,8 +78,8 @@ bool load_may_turn(const Workspace<T>& ws, int c) {
       low[i] = T(a), high[i] = T(b);
     }
     const T* params = ws.params + sys.contact_param[c];
-    return (contact_load(sys.contact_kind[c], params, &low[0]) < T(0)) !=
-           (contact_load(sys.contact_kind[c], params, &high[0]) < T(0));
+    return (contact_load(sys.contact_kind[c], params, &low[0], sys.points) < T(0)) !=
+           (contact_load(sys.contact_kind[c], params, &high[0], sys.points) < T(0));
   });
 }
 

@@ -22,7 +22,8 @@ struct Manner {
 
   template <class T>
   explicit Manner(const Tabulated<T>& p)
-      : interpolation(int(value(p.interpolation))), extrapolation(int(value(p.extrapolation))) {}
+      : interpolation(Interpolation(int(value(p.interpolation)))),
+        extrapolation(Extrapolation(int(value(p.extrapolation)))) {}
   constexpr Manner(Interpolation between, Extrapolation beyond) : interpolation(between), extrapolation(beyond) {}
   bool smooth() const { return interpolation == Interpolation::smooth; }
   bool kept() const { return extrapolation == Extrapolation::nearest; }

@@ -71,7 +71,7 @@ template <class T>
 T load_of(const Workspace<T>& ws, int c) {
   const System& sys = ws.sys;
   if (ws.fault[c] == cannot_transmit) return T(-1);
-  return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], ws.u + sys.contact_input[c]);
+  return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], ws.u + sys.contact_input[c], sys.points);
 }
 
 /// Static torque of a contact now that resists slip in a direction [N m].
@@ -100,7 +100,7 @@ double fault_trigger(const Workspace<T>& ws, int c) {
     using E = typename decltype(tag)::type;
     if constexpr (FaultyContact<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + ws.sys.contact_param[c]);
-      return value(E::fault(p, At<T>{T(0), nullptr, ws.u + ws.sys.contact_input[c], 0, nullptr}));
+      return value(E::fault(p, At<T>{T(0), nullptr, ws.u + ws.sys.contact_input[c], 0, ws.sys.points}));
     }
     return -1.0;
   });
@@ -137,7 +137,7 @@ T load_slope(const Workspace<T>& ws, int c) {
       input[i] = Dual<T, 1>(ws.u[ref]);
       input[i].d[0] = ws.du[ref] + ws.shared_slope[ref];
     }
-    return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0]).d[0];
+    return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0], sys.points).d[0];
   });
 }
 
