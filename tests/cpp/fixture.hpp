@@ -27,6 +27,12 @@ int contact_kind() {
   while (!visit_contact(kind, [](auto tag) { return std::is_same_v<typename decltype(tag)::type, E>; })) ++kind;
   return kind;
 }
+template <class E>
+int flow_kind() {
+  int kind = 0;
+  while (!visit_flow(kind, [](auto tag) { return std::is_same_v<typename decltype(tag)::type, E>; })) ++kind;
+  return kind;
+}
 template <class L>
 int law_kind() {
   int kind = 0;
@@ -52,6 +58,10 @@ inline Numbers joined(std::initializer_list<Numbers> parts) {
 struct Segment {
   double time, coef[8];
 };
+
+/// A reference to what is no signal: a shared state, the rate or the heat of an element or a contact.
+enum Source : std::int32_t { of_signal, of_shared, of_rate, of_contact_rate, of_heat, of_contact_heat };
+constexpr std::int32_t source(Source what, int number) { return std::int32_t(what) * 1000 + number; }
 
 class Model {
  public:
@@ -98,15 +108,32 @@ class Model {
   /// `state`: where those of the law start, zero if left out; `tolerance`: slip below which it may lock.
   template <class E, class L>
   int contact(int base, int follower, const Numbers& params, const Indices& signals, const Numbers& law,
-              bool locked = false, const Numbers& state = {}, double tolerance = 0) {
+              bool locked = false, const Numbers& state = {}, double tolerance = 0, const Indices& law_signals = {}) {
     contacts_.push_back({base, follower});
     contact_kind_.push_back(contact_kind<E>()), contact_law_.push_back(law_kind<L>());
     contact_param_.push_back(put(params_, params)), contact_law_param_.push_back(put(params_, law));
     Numbers own = state;
     own.resize(std::size_t(law_states<L>(law)));
-    contact_input_.push_back(put(refs_, signals)), contact_state_.push_back(put(state_, own));
+    contact_input_.push_back(put(refs_, signals)), contact_law_input_.push_back(put(refs_, law_signals));
+    contact_state_.push_back(put(state_, own));
     contact_tolerance_.push_back(tolerance), contact_initial_.push_back(locked);
     return int(contacts_.size()) - 1;
+  }
+  /// A state that any component may read as offset + scale * state.
+  int shared(double state, double scale = 1, double offset = 0) {
+    shared_.push_back(state), shared_scale_.push_back(scale), shared_offset_.push_back(offset);
+    return int(shared_.size()) - 1;
+  }
+  /// A flow from one shared state to another, -1: none.
+  template <class E>
+  int flow(int from, int to, const Numbers& params, const Indices& inputs) {
+    flow_from_.push_back(from), flow_to_.push_back(to), flow_kind_.push_back(flow_kind<E>());
+    flow_param_.push_back(put(params_, params)), flow_input_.push_back(put(refs_, inputs));
+    return int(flow_kind_.size()) - 1;
+  }
+  /// The heat of an element, or of a contact, goes to a shared state.
+  void heat(Source what, int number, int to, double share = 1) {
+    heats_.push_back({what, number}), heat_to_.push_back(to), heat_share_.push_back(share);
   }
 
   Bytes bytes() const {
@@ -135,6 +162,21 @@ class Model {
       mass[free_of[i] * nv + free_of[i]] = inertia_[i];
       start.push_back(speed_[i]);
     }
+    const int ne = int(elements_.size()), nd = ne + int(contacts_.size()), nx = int(shared_.size());
+    auto resolve = [&](Indices refs) {
+      // what stands before signals, shared states, rates and heats
+      const int at[] = {0, int(input_first_.size()), nx, ne, nd - ne, ne};
+      for (std::int32_t& ref : refs) {
+        int base = 0;
+        for (int k = 0; k <= ref / 1000; ++k) base += at[k];
+        ref = base + ref % 1000;
+      }
+      return refs;
+    };
+    Indices heat_direction;
+    for (const Pair& h : heats_) heat_direction.push_back(h.base == of_contact_heat ? ne + h.follower : h.follower);
+    Numbers states = state_;
+    states.insert(states.end(), shared_.begin(), shared_.end());
     Bytes out;
     auto add = [&](const auto& items) {
       const auto* from = reinterpret_cast<const unsigned char*>(items.data());
@@ -144,18 +186,20 @@ class Model {
     const std::vector<char> magic{'C', 'L', 'U', 'T', 'C', 'H', 'W', 'K'};
     add(magic);
     auto count = [](const auto& items) { return std::int64_t(items.size()); };
-    add(std::vector<std::int64_t>{schema_hash, n, nv, np, count(elements_), count(contacts_), count(state_),
-                                  count(input_first_), count(segment_time_), count(params_), count(points_) / 3,
-                                  count(refs_)});
+    add(std::vector<std::int64_t>{schema_hash, n, nv, np, count(elements_), count(contacts_), count(states), nx,
+                                  count(flow_kind_), 0, count(heats_), count(input_first_), count(segment_time_),
+                                  count(params_), count(points_) / 3, count(refs_)});
     add(rates(all, free_of, nv)), add(rates(all, given_of, np)), add(inertia_), add(mass), add(none);
     add(Indices(nv));
     add(rates(elements_, free_of, nv)), add(rates(elements_, given_of, np));
     add(element_kind_), add(element_param_), add(element_state_), add(element_input_);
     add(rates(contacts_, free_of, nv)), add(rates(contacts_, given_of, np));
     add(contact_kind_), add(contact_param_), add(contact_input_), add(contact_law_), add(contact_law_param_);
-    add(contact_state_), add(contact_tolerance_), add(contact_initial_);
-    add(given), add(refs_), add(input_first_), add(input_count_), add(input_period_), add(input_value_);
-    add(segment_time_), add(segment_coef_), add(params_), add(points_), add(start), add(angles), add(state_);
+    add(contact_law_input_), add(contact_state_), add(contact_tolerance_), add(contact_initial_);
+    add(flow_kind_), add(flow_param_), add(flow_input_), add(flow_from_), add(flow_to_);
+    add(heat_direction), add(heat_to_), add(heat_share_), add(shared_scale_), add(shared_offset_);
+    add(given), add(resolve(refs_)), add(input_first_), add(input_count_), add(input_period_), add(input_value_);
+    add(segment_time_), add(segment_coef_), add(params_), add(points_), add(start), add(angles), add(states);
     return out;
   }
 
@@ -169,11 +213,11 @@ class Model {
     return std::int32_t(pool.size() - more.size());
   }
   Numbers inertia_, speed_, params_, points_, state_, input_period_, input_value_, segment_time_, segment_coef_;
-  Numbers contact_tolerance_;
+  Numbers contact_tolerance_, shared_, shared_scale_, shared_offset_, heat_share_;
   Indices source_, refs_, input_first_, input_count_, element_kind_, element_param_, element_state_, element_input_;
   Indices contact_kind_, contact_law_, contact_param_, contact_law_param_, contact_input_, contact_state_;
-  Indices contact_initial_;
-  std::vector<Pair> elements_, contacts_;
+  Indices contact_law_input_, contact_initial_, flow_kind_, flow_param_, flow_input_, flow_from_, flow_to_, heat_to_;
+  std::vector<Pair> elements_, contacts_, heats_;
 };
 
 /// A run in memory of exactly the size it asked for.

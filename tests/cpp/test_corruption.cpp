@@ -40,21 +40,25 @@ constexpr double reals[] = {0, -1, 1e300, -1e300, NAN, INFINITY, 1e-300, 1, 2, 7
 
 void corrupt(const Model& model, std::uint64_t seed, int rounds) {
   const Bytes whole = model.bytes();
+  System sys{};
+  bind(sys, whole.data(), std::int64_t(whole.size()));
+  const auto head = std::size_t(reinterpret_cast<const unsigned char*>(sys.basis) - whole.data());
   check::Random g{seed};
-  for (std::size_t n = 0; n < 200; ++n) survive(Bytes(whole.begin(), whole.begin() + std::ptrdiff_t(n)));
+  for (std::size_t n = 0; n < head + 100; ++n) survive(Bytes(whole.begin(), whole.begin() + std::ptrdiff_t(n)));
   constexpr std::int32_t numbers[] = {-1, 1, 2, 3, 4, 5, 8, 12, 40, 1000, 0x7fffffff, -0x7fffffff - 1};
   for (int round = 0; round < rounds; ++round) {
     Bytes bytes = whole;
     const int changes = 1 + g.below(3);
     for (int k = 0; k < changes; ++k) {
       // the counts are hit often, the rest evenly
-      const std::size_t start = g.below(3) == 0 ? 16 : 104, size = start == 16 ? 88 : bytes.size() - 104;
+      const std::size_t start = g.below(3) == 0 ? 16 : head, size = start == 16 ? head - 16 : bytes.size() - head;
       const std::size_t at = start + std::size_t(g.below(int(size / 4))) * 4;
       const int kind = g.below(4);
       if (kind == 0) bytes[at + std::size_t(g.below(4))] = static_cast<unsigned char>(g.below(256));
       if (kind == 1) std::memcpy(&bytes[at], &numbers[g.below(12)], 4);
       if (kind == 2) std::memcpy(&bytes[at / 8 * 8], &reals[g.below(12)], 8);
-      if (kind == 3) std::memcpy(&bytes[at], &bytes[104 + std::size_t(g.below(int(bytes.size() / 4) - 30)) * 4], 4);
+      if (kind == 3)
+        std::memcpy(&bytes[at], &bytes[head + std::size_t(g.below(int((bytes.size() - head) / 4))) * 4], 4);
     }
     if (g.below(10) == 0) bytes.resize(bytes.size() - std::size_t(g.below(100)));
     survive(bytes);

@@ -138,8 +138,11 @@ void torque_kinds_all() {
       auto call = [](const auto& p, const auto& at, auto* out) {
         out[0] = E::torque(p, at);
         E::state_rates(p, at, out + 1);
+        if constexpr (HeatingElement<E>) out[1 + E::states] = E::heat(p, at);
+        int who = turned;
+        if constexpr (SwitchingLaw<E>) out[1 + E::states + HeatingElement<E>] = E::margin(p, at, who);
       };
-      over_arguments<E>(call, fields, E::inputs, E::states, 1 + E::states);
+      over_arguments<E>(call, fields, E::inputs, E::states, 1 + E::states + HeatingElement<E> + SwitchingLaw<E>);
     });
   }
 }
@@ -149,8 +152,41 @@ void contact_kinds_all() {
     visit_contact(kind, [kind](auto tag) {
       using E = typename decltype(tag)::type;
       const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_contact_curves(kind, f); });
-      auto call = [](const auto& p, const auto& at, auto* out) { out[0] = E::load(p, at); };
-      over_arguments<E>(call, fields, E::inputs, E::states, 1);
+      auto call = [](const auto& p, const auto& at, auto* out) {
+        using S = std::remove_cvref_t<decltype(*out)>;
+        *out++ = E::load(p, at);
+        for (int way : {-1, 1}) {
+          // a coefficient; the rate is not used otherwise
+          if constexpr (ShapedContact<E>) *out++ = E::gain(p, S(0.3) + at.rate * S(1e-3), way);
+          if constexpr (LimitedContact<E>) *out++ = E::limit(p, at, S(0.3) + at.rate * S(1e-3), way);
+        }
+        if constexpr (YieldingContact<E>) *out++ = E::holding(p);
+        if constexpr (FaultyContact<E>) *out++ = E::fault(p, at);
+      };
+      constexpr int outputs = 1 + 2 * ShapedContact<E> + 2 * LimitedContact<E> + YieldingContact<E> + FaultyContact<E>;
+      over_arguments<E>(call, fields, E::inputs, E::states, outputs);
+    });
+  }
+}
+
+void flow_kinds_all() {
+  for (int kind = 0; kind < flow_kinds; ++kind) {
+    visit_flow(kind, [kind](auto tag) {
+      using E = typename decltype(tag)::type;
+      const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_flow_curves(kind, f); });
+      auto call = [](const auto& p, const auto& at, auto* out) { out[0] = E::flow(p, at); };
+      over_arguments<E>(call, fields, E::inputs, 0, 1);
+    });
+  }
+}
+
+void process_kinds_all() {
+  for (int kind = 0; kind < process_kinds; ++kind) {
+    visit_process(kind, [kind](auto tag) {
+      using E = typename decltype(tag)::type;
+      const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_process_curves(kind, f); });
+      auto call = [](const auto& p, const auto& at, auto* out) { E::state_rates(p, at, out); };
+      over_arguments<E>(call, fields, E::inputs, E::states, E::states);
     });
   }
 }
@@ -159,7 +195,7 @@ void contact_kinds_all() {
 template <class L, class P, class S>
 int law_values(const P& p, const At<S>& at, S* out) {
   int n = 0;
-  out[n++] = S(L::hold(p));
+  out[n++] = L::hold(p, at);
   if constexpr (StickingLaw<L>) {
     out[n++] = L::slide(p, at);
   } else {
@@ -189,7 +225,8 @@ void law_kinds_all() {
       const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_law_curves(kind, f); });
       auto call = [](const auto& p, const auto& at, auto* out) { law_values<L>(p, at, out); };
       const int states = states_in_use<L>(fields);
-      over_arguments<L>(call, fields, 0, states, (StickingLaw<L> ? 2 : 2 + SwitchingLaw<L>)+states);
+      const int outputs = 2 + states + (CompliantLaw<L> && SwitchingLaw<L>);
+      over_arguments<L>(call, fields, law_inputs<L>(), states, outputs);
     });
   }
 }
@@ -206,7 +243,9 @@ void crosses(Fields fields) {
     for (int round = 0; round < 40; ++round) {
       double ray[most], state[most];
       int who = turned;
-      At<double> at{g.between(-2, 2), state, nullptr, 0, points};
+      double input[most_inputs];
+      for (double& x : input) x = g.between(0.5, 2);
+      At<double> at{g.between(-2, 2), state, input, 0, points};
       for (int i = 0; i < n; ++i) ray[i] = at.rate < 0 ? -g.unit() : g.unit();
       auto margin = [&](double length) {
         for (int i = 0; i < n; ++i) state[i] = length * ray[i];
@@ -240,7 +279,9 @@ void switching_laws() {
   for (int kind = 0; kind < law_kinds; ++kind) {
     visit_law(kind, [kind](auto tag) {
       using L = typename decltype(tag)::type;
-      CHECK(is_switching_law(kind) == SwitchingLaw<L>);
+      Branch<double> b{};
+      b.law = kind;
+      CHECK(is_switching(b) == SwitchingLaw<L>);
       CHECK(is_compliant_law(kind) == CompliantLaw<L>);
       if constexpr (SwitchingLaw<L>) crosses<L>(Fields::of(tag, [kind](auto&& f) { visit_law_curves(kind, f); }));
     });
@@ -250,25 +291,36 @@ void switching_laws() {
 /// A branch and all that it looks at.
 struct Probe {
   Workspace<double> ws;
-  double params[most] = {}, law[most] = {}, input[4], slope[4], state[most], rates[most], moved_rates[most];
+  // parameters of the component, then those of its law
+  double params[2 * most] = {}, *const law = params + most, state[most], rates[most], moved_rates[most];
+  // inputs of the component, then those of its law
+  double input[2 * most_inputs], slope[2 * most_inputs], by_input[2 * most_inputs];
   double f_state[most], g_rate[most], g_time[most], g_state[most * most];
+  std::int32_t zero = 0, law_at = most, law_input = most_inputs, contact_kind = 0, contact_law = 0;
   Branch<double> b{};
 
   Probe(int kind, check::Random& g) {
-    ws.sys.points = points;
-    b.params = params, b.law_params = law, b.input = input, b.input_slope = slope, b.kind = kind, b.law = -1;
-    for (int i = 0; i < 4; ++i) input[i] = g.between(0.5, 2), slope[i] = g.between(-1, 1);
+    b.params = params, b.law_params = law, b.kind = kind, b.law = -1;
+    b.input = input, b.law_input = input + most_inputs, b.input_slope = slope, b.law_input_slope = slope + most_inputs;
+    for (int i = 0; i < 2 * most_inputs; ++i) input[i] = g.between(0.5, 2), slope[i] = g.between(-1, 1);
     for (int i = 0; i < most; ++i) state[i] = g.between(-1, 1);
     const int contact = kind - torque_kinds;
     if (contact < 0) {
       visit_torque(kind, [&](auto tag) { fill(tag, params, [&](auto&& f) { visit_torque_curves(kind, f); }); });
+      b.inputs = element_inputs(kind);
     } else {
       b.kind = contact / law_kinds, b.law = contact % law_kinds;
       visit_contact(b.kind, [&](auto tag) { fill(tag, params, [&](auto&& f) { visit_contact_curves(b.kind, f); }); });
       visit_law(b.law, [&](auto tag) { fill(tag, law, [&](auto&& f) { visit_law_curves(b.law, f); }); });
       b.compliant = is_compliant_law(b.law);
       b.sign = b.compliant || kind % 2 == 0 ? 1 : -1;
+      b.inputs = contact_inputs(b.kind), b.law_inputs = law_inputs_of(b.law), b.shaped = is_shaped(b.kind);
     }
+    // a driveline of this contact alone
+    ws.sys.points = points, ws.params = params, ws.u = input;
+    ws.sys.contact_param = ws.sys.contact_input = &zero, ws.sys.contact_law_input = &law_input;
+    ws.sys.contact_kind = &contact_kind, ws.sys.contact_law = &contact_law, ws.sys.contact_law_param = &law_at;
+    contact_kind = b.kind, contact_law = b.law;
     b.states = states_of<double>(b.kind, b.law, law);
   }
   template <class E, class Curves>
@@ -300,13 +352,38 @@ struct Probe {
       const double keep = state[j];
       compare_along([&](double dx) { return state[j] = keep + dx, rate; }, f_state[j], g_state + j, b.states);
     }
-    double keep[4];
-    for (int i = 0; i < 4; ++i) keep[i] = input[i];
+    double keep[2 * most_inputs];
+    for (int i = 0; i < 2 * most_inputs; ++i) keep[i] = input[i];
     auto in_time = [&](double dt) {
-      for (int i = 0; i < 4; ++i) input[i] = keep[i] + dt * slope[i];
+      for (int i = 0; i < 2 * most_inputs; ++i) input[i] = keep[i] + dt * slope[i];
       return rate + dt * turn;
     };
     compare_along(in_time, p.by_time, g_time, 1);
+    if (!b.held) compare_inputs(rate), compare_heat(rate, p);
+  }
+  /// What shared states do to the torque.
+  void compare_inputs(double rate) {
+    const double h = 1e-6;
+    branch_by_input(ws, b, rate, state, by_input);
+    for (int i = 0; i < b.inputs + b.law_inputs; ++i) {
+      double& x = i < b.inputs ? input[i] : input[most_inputs + i - b.inputs];
+      const double keep = x;
+      x = keep + h;
+      const double up = torque(rate);
+      x = keep - h;
+      const double down = torque(rate);
+      x = keep;
+      CHECK_NEAR(by_input[i], (up - down) / (2 * h), 1e-8 * (1 + abs(by_input[i])));
+    }
+  }
+  /// Heat of the branch and its derivative by the rate.
+  void compare_heat(double rate, const Partial<double>& p) {
+    const double h = 1e-6;
+    Dual<double, 1> f(p.torque);
+    f.d[0] = p.by_rate;
+    const Dual<double, 1> heat = branch_heat(ws, b, rate, state, f);
+    auto at = [&](double r) { return branch_heat(ws, b, r, state, Dual<double, 1>(torque(r))).v; };
+    CHECK_NEAR(heat.d[0], (at(rate + h) - at(rate - h)) / (2 * h), 1e-8 * (1 + abs(heat.d[0])));
   }
 };
 
@@ -324,9 +401,25 @@ void branches() {
       if (!sticks) probe.compare(-0.6);
     }
     probe.b.held = false;
-    if (kind >= torque_kinds && is_switching_law(probe.b.law)) probe.b.piece = 1, probe.compare(0.7);
+    if (is_switching(probe.b)) probe.b.piece = 1, probe.compare(0.7);
   }
   CHECK(compliant > 0 && with_states > 0);
+}
+
+/// A law that could have many states and has one.
+void one_element() {
+  check::Random g{31};
+  for (int law = 0; law < law_kinds; ++law) {
+    visit_law(law, [&](auto tag) {
+      if constexpr (SizedLaw<typename decltype(tag)::type>) {
+        Probe probe(torque_kinds + law, g);
+        visit_law_curves(law, [&](int k) { probe.law[k + 1] = 1; });
+        probe.b.states = states_of<double>(probe.b.kind, law, probe.law);
+        CHECK(probe.b.states == 1);
+        probe.compare(0.8), probe.compare(-0.6);
+      }
+    });
+  }
 }
 
 }  // namespace
@@ -334,8 +427,11 @@ void branches() {
 int main() {
   torque_kinds_all();
   contact_kinds_all();
+  flow_kinds_all();
+  process_kinds_all();
   law_kinds_all();
   switching_laws();
   branches();
+  one_element();
   return check::result();
 }
