@@ -38,27 +38,45 @@ from clutchwork.schema import REGISTRY, schema_hash
 
 if TYPE_CHECKING:
     # what type checkers and editors shall know by name; at run time the registry decides
+    from clutchwork.elements.band_brake import BandBrake as BandBrake
     from clutchwork.elements.bearing_friction import BearingFriction as BearingFriction
     from clutchwork.elements.brake import Brake as Brake
+    from clutchwork.elements.centrifugal_clutch import CentrifugalClutch as CentrifugalClutch
     from clutchwork.elements.clutch import Clutch as Clutch
     from clutchwork.elements.conduction import Conduction as Conduction
+    from clutchwork.elements.cone_clutch import ConeClutch as ConeClutch
     from clutchwork.elements.convection import Convection as Convection
     from clutchwork.elements.damper import Damper as Damper
+    from clutchwork.elements.diaphragm_spring import DiaphragmSpring as DiaphragmSpring
+    from clutchwork.elements.disk_brake import DiskBrake as DiskBrake
+    from clutchwork.elements.disk_clutch import DiskClutch as DiskClutch
+    from clutchwork.elements.dog_clutch import DogClutch as DogClutch
     from clutchwork.elements.double_planetary import DoublePlanetary as DoublePlanetary
+    from clutchwork.elements.double_shoe_brake import DoubleShoeBrake as DoubleShoeBrake
+    from clutchwork.elements.flyweights import Flyweights as Flyweights
+    from clutchwork.elements.fundamental_clutch import FundamentalClutch as FundamentalClutch
     from clutchwork.elements.gear import Gear as Gear
     from clutchwork.elements.linear_torque import LinearTorque as LinearTorque
     from clutchwork.elements.oil_flow import OilFlow as OilFlow
     from clutchwork.elements.one_way_clutch import OneWayClutch as OneWayClutch
     from clutchwork.elements.planetary import Planetary as Planetary
+    from clutchwork.elements.plate_contact import PlateContact as PlateContact
     from clutchwork.elements.prescribed_speed import PrescribedSpeed as PrescribedSpeed
+    from clutchwork.elements.pressure_actuator import PressureActuator as PressureActuator
     from clutchwork.elements.quadratic_torque import QuadraticTorque as QuadraticTorque
     from clutchwork.elements.resisting_torque import ResistingTorque as ResistingTorque
     from clutchwork.elements.rolling_wheel import RollingWheel as RollingWheel
     from clutchwork.elements.speed_torque import SpeedTorque as SpeedTorque
+    from clutchwork.elements.sprag_clutch import SpragClutch as SpragClutch
     from clutchwork.elements.spring import Spring as Spring
     from clutchwork.elements.spring_damper import SpringDamper as SpringDamper
+    from clutchwork.elements.synchroniser import Synchroniser as Synchroniser
     from clutchwork.elements.thermal_plate import ThermalPlate as ThermalPlate
     from clutchwork.elements.torque import Torque as Torque
+    from clutchwork.elements.torque_limiter import TorqueLimiter as TorqueLimiter
+    from clutchwork.elements.wear import Wear as Wear
+    from clutchwork.elements.wet_drag import WetDrag as WetDrag
+    from clutchwork.failure import FaultWarning as FaultWarning
     from clutchwork.failure import SimulationError as SimulationError
     from clutchwork.failure import StoppedEarly as StoppedEarly
     from clutchwork.laws.coefficient_table import CoefficientTable as CoefficientTable
@@ -66,6 +84,8 @@ if TYPE_CHECKING:
     from clutchwork.laws.dahl import Dahl as Dahl
     from clutchwork.laws.elastoplastic import ElastoPlastic as ElastoPlastic
     from clutchwork.laws.exponential import Exponential as Exponential
+    from clutchwork.laws.friction_map import FrictionMap as FrictionMap
+    from clutchwork.laws.friction_table import FrictionTable as FrictionTable
     from clutchwork.laws.gms import GMS as GMS
     from clutchwork.laws.karnopp import Karnopp as Karnopp
     from clutchwork.laws.leuven import Leuven as Leuven
@@ -75,6 +95,7 @@ if TYPE_CHECKING:
     from clutchwork.laws.regularised_stribeck import RegularisedStribeck as RegularisedStribeck
     from clutchwork.laws.stribeck import Stribeck as Stribeck
     from clutchwork.laws.tanh import Tanh as Tanh
+    from clutchwork.laws.temperature_table import TemperatureTable as TemperatureTable
     from clutchwork.options import Options as Options
     from clutchwork.signals.column import Column as Column
     from clutchwork.signals.constant import Constant as Constant
@@ -92,6 +113,7 @@ __version__ = "0.1.0"
 
 # names that are loaded when they are first used, with their module
 _LAZY = {
+    "FaultWarning": "failure",
     "Options": "options",
     "SimulationError": "failure",
     "StoppedEarly": "failure",

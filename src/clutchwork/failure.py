@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import warnings
+from typing import TYPE_CHECKING, Any
 
 from clutchwork.errors import ClutchworkError
 from clutchwork.layout import STATUS
+from clutchwork.schema import specs
 
 if TYPE_CHECKING:
     from clutchwork.trajectory import Trajectory
@@ -30,9 +32,33 @@ class StoppedEarly(RuntimeWarning):
         self.trajectory = trajectory
 
 
-def explain(status: int, element: str, time: float, value: float) -> str:
-    """One line for a status of the core: message, element, value, time, remedy."""
-    _, message, remedy = STATUS[status]
-    where = f" at {element!r}" if element else ""
-    seen = f" (value {value:g})" if element else ""
+class FaultWarning(RuntimeWarning):
+    """Warning that a fault was triggered that its element reports as a warning."""
+
+
+def explain(status: int, component: Any, time: float, value: float) -> str:
+    """One line for a status of the core: message, element, value, what a table covers, time, remedy."""
+    name, message, remedy = STATUS[status]
+    where = f" at {component.name!r}" if component is not None else ""
+    seen = f" (value {value:g}{_covered(component) if name == 'out_of_table' else ''})" if component is not None else ""
     return f"stopped at {time:.9g} s: {message}{where}{seen}: {remedy}"
+
+
+def _covered(component: Any) -> str:
+    """Ranges of the tables of a friction law."""
+    law, axes = getattr(component, "friction", None), dict[str, str]()
+    for item, spec in specs(type(law), "curve", "numbers"):
+        values = [x for x, _ in getattr(law, item.name)] if spec.what == "curve" else getattr(law, item.name)
+        if spec.what == "curve" or spec.rising:
+            axes.setdefault(f"{min(values):g} to {max(values):g} {spec.unit_x or spec.unit}", item.name)
+    return f", the table covers {' and '.join(axes)}" if axes else ""
+
+
+def report_faults(run: Trajectory) -> None:
+    """Warn of the faults of a run whose elements report them as a warning."""
+    contacts: dict[str, Any] = {contact.name: contact for contact in run.system.contacts}
+    for event in run.events:
+        contact = contacts.get(event.element)
+        if event.cause == "fault" and getattr(contact, "report", "") == "warning":
+            what = str(getattr(contact, "fault", "")).replace("_", " ")
+            warnings.warn(FaultWarning(f"{event.element!r} {what} from {event.time:.9g} s on"), stacklevel=3)

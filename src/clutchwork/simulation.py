@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from clutchwork.channels import Channels
 from clutchwork.control import Control, controllers
 from clutchwork.events import from_rows
-from clutchwork.failure import DONE, NAMES, SimulationError, StoppedEarly, explain
+from clutchwork.failure import DONE, NAMES, SimulationError, StoppedEarly, explain, report_faults
 from clutchwork.jumps import jump_times
 from clutchwork.options import Options, end_time
 from clutchwork.record import Progress, Recording, record
@@ -50,14 +50,17 @@ def simulate(
     Parameters: t_end [s]; options, an `Options`, or its fields by name (rtol=, dt=, method= ...); progress, a
     function of (time reached [s], t_end [s]) that is called now and then.
 
-    A run that cannot go on warns with `StoppedEarly` and returns the trajectory so far, with `status` and `message`.
+    A fault that its element reports as a warning is a `FaultWarning`. A run that cannot go on warns with `StoppedEarly`
+    and returns the trajectory so far, with `status` and `message`.
     A controller that raises ends in `SimulationError`, which holds the trajectory so far too.
     """
     t_end = end_time(t_end)
     chosen = (options or Options()).changed(changes)
     system = model if isinstance(model, System) else model.assemble()
     control = Control(controllers(system.inputs), lambda: Channels(wiring(system)))
-    return _trajectory(Job(system, t_end, chosen, control), progress)
+    run = _trajectory(Job(system, t_end, chosen, control), progress)
+    report_faults(run)
+    return run
 
 
 def again(trajectory: Trajectory, times: Any) -> Trajectory:
@@ -138,7 +141,7 @@ def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
     if status != DONE:
         index, at, value = run.detail()
         parts = [*system.elements, *system.contacts]
-        message = explain(status, parts[index].name if 0 <= index < len(parts) else "", at, value)
+        message = explain(status, parts[index] if 0 <= index < len(parts) else None, at, value)
     return Trajectory(
         system=system,
         options=job.options,

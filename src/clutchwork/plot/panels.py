@@ -123,7 +123,7 @@ def busy(run: Trajectory) -> list[str]:
 
 def driven(run: Trajectory) -> dict[str, str]:
     """Contacts that carry torque, with the signal that presses each."""
-    names = [name for name, _ in run.wiring.inputs]
+    names = [*(name for name, _ in run.wiring.inputs), *(link.name for link in run.wiring.links)]
     found = {c: [n for n in names if n in (f"{c}.pressure", f"{c}.normal_force")] for c in busy(run)}
     return {contact: signals[0] for contact, signals in found.items() if signals}
 
