@@ -19,6 +19,17 @@ Model slipping() {
   return m;
 }
 
+/// The same shafts with bristles in the clutch, from rest at the start.
+Model bending() {
+  Model m;
+  const int a = m.shaft(0.4, 8), b = m.shaft(1.1, 2);
+  m.element<elements::QuadraticTorque>(housing, b, {-6, 20, 0});
+  m.element<elements::Damper>(housing, a, {0.05});
+  m.element<elements::Torque>(housing, a, {}, {m.signal({{0, {10, 0, 0, 0, 5, 7, 0, 0}}})});
+  m.contact<elements::Clutch, laws::LuGre>(a, b, {1}, {m.constant(20)}, {1.2, 1.0, 5, 0, 2, 0.01, 4, 0.05});
+  return m;
+}
+
 void settings(Options& o, int method) {
   // steps of one length: the same ones whatever the parameter
   o.rtol = 1e-2, o.atol = 1e-2, o.first_step = o.max_step = 0.0125;
@@ -26,8 +37,8 @@ void settings(Options& o, int method) {
 }
 
 /// Speeds at t in plain numbers with parameter k moved by h.
-void plain(double t, int k, double h, int method, double* v) {
-  Run r(slipping());
+void plain(const Model& model, double t, int k, double h, int method, Numbers& out) {
+  Run r(model);
   cw_set_option(r.run, "rtol", 1e-2), cw_set_option(r.run, "atol", 1e-2);
   cw_set_option(r.run, "first_step", 0.0125), cw_set_option(r.run, "max_step", 0.0125);
   cw_set_option(r.run, "method", method);
@@ -35,25 +46,27 @@ void plain(double t, int k, double h, int method, double* v) {
   CHECK(r.advance(t) == 0);
   CHECK(r.events().empty());
   const Numbers row = r.row();
-  v[0] = row[0], v[1] = row[1];
+  out = {row[0], row[1]};
+  for (int i = 0; i < r.sys.states; ++i) out.push_back(row[r.at.state + i]);
 }
 
-/// d(speed)/d(parameter), two parameters at a time, and the values of the plain run to the last bit.
-void carries(int k, int l, int method) {
-  TypedRun<D> r(slipping());
+/// d(speeds and states)/d(parameter), two parameters at a time, and the values of the plain run.
+void carries(const Model& model, int k, int l, int method) {
+  TypedRun<D> r(model);
   settings(r.ws.options, method);
   r.ws.params[k].d[0] = 1, r.ws.params[l].d[1] = 1;
   CHECK(r.advance(0.6) == Status::done);
   CHECK(r.ws.n_events == 0);
   for (int j = 0; j < 2; ++j) {
     const int number = j == 0 ? k : l;
-    const double h = 1e-4 * (1 + std::fabs(r.ws.sys.params[number]));
-    double up[2], down[2], here[2];
-    plain(0.6, number, h, method, up), plain(0.6, number, -h, method, down), plain(0.6, number, 0, method, here);
-    for (int i = 0; i < 2; ++i) {
+    const double h = 1e-5 * (1 + std::fabs(r.ws.sys.params[number]));
+    Numbers up, down, here;
+    for (auto [out, dx] : {std::pair{&up, h}, {&down, -h}, {&here, 0.0}}) plain(model, 0.6, number, dx, method, *out);
+    for (std::size_t i = 0; i < here.size(); ++i) {
       const double slope = (up[i] - down[i]) / (2 * h);
-      CHECK_NEAR(r.ws.v[i].d[j], slope, 1e-6 * (1e-3 + std::fabs(slope)));
-      CHECK_NEAR(r.ws.v[i].v, here[i], 1e-12 * std::fabs(here[i]));
+      const D& x = i < 2 ? r.ws.v[i] : r.ws.state[i - 2];
+      CHECK_NEAR(x.d[j], slope, 1e-6 * (1e-3 + std::fabs(slope)));
+      CHECK_NEAR(x.v, here[i], 1e-12 * std::fabs(here[i]));
     }
   }
 }
@@ -63,9 +76,13 @@ void carries(int k, int l, int method) {
 int main() {
   for (int method : {1, 2}) {
     // load and damping, gain and law
-    carries(0, 3, method);
-    carries(4, 6, method);
-    carries(7, 8, method);
+    carries(slipping(), 0, 3, method);
+    carries(slipping(), 4, 6, method);
+    carries(slipping(), 7, 8, method);
+    // static and kinetic, speed and viscous, stiffness and damping
+    carries(bending(), 5, 6, method);
+    carries(bending(), 7, 10, method);
+    carries(bending(), 11, 12, method);
   }
   return check::result();
 }

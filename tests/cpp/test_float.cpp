@@ -25,10 +25,35 @@ void lock_and_break(int method) {
   CHECK_NEAR(r.ws.v[1], 40 + 50 * 4.5 / 5 + 25, 1e-2);
 }
 
+/// A disc that LuGre friction slows, then holds elastically, in single precision against double.
+void bristles_hold(int method) {
+  Model m;
+  const int a = m.shaft(0.5, 10);
+  m.shaft(2, 30);
+  m.element<elements::Torque>(housing, a, {}, {m.signal({{0, {0}}, {2, {1.5}}})});
+  m.contact<elements::BearingFriction, laws::LuGre>(housing, a, {20}, {}, {0.2, 0.15, 2, 0, 2, 0.001, 40, 0.3});
+  TypedRun<float> r(m);
+  r.ws.options.rtol = 1e-4, r.ws.options.atol = 1e-5;
+  r.ws.options.method = Method(method);
+  Run exact(m);
+  cw_set_option(exact.run, "rtol", 1e-10), cw_set_option(exact.run, "atol", 1e-12);
+  for (double t : {0.5, 1.5, 2.05, 4.0}) {
+    CHECK(r.advance(t) == Status::done);
+    CHECK(exact.advance(t) == 0);
+    const Numbers row = exact.row();
+    CHECK_NEAR(r.ws.v[0], row[exact.at.speed], 1e-3);
+    CHECK_NEAR(r.ws.state[0], row[exact.at.state], 2e-4);
+  }
+  // 20 * 0.075 = 1.5
+  CHECK_NEAR(r.ws.state[0], 0.075, 2e-4);
+}
+
 }  // namespace
 
 int main() {
   lock_and_break(1);
   lock_and_break(2);
+  bristles_hold(1);
+  bristles_hold(2);
   return check::result();
 }
