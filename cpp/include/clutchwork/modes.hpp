@@ -415,6 +415,16 @@ bool settle_contacts(Workspace<T>& ws, int located) {
   return false;
 }
 
+/// Heat of an impulse goes where the heat of its direction goes.
+template <class T>
+void take_heat(Workspace<T>& ws, int direction, T heat) {
+  const System& sys = ws.sys;
+  T* shared = ws.state + sys.states - sys.shared;
+  for (int h = 0; h < sys.heats; ++h) {
+    if (sys.heat_direction[h] == direction) shared[sys.heat_to[h]] += T(sys.heat_share[h]) * heat;
+  }
+}
+
 /// Apply the impulses of a solved problem over speeds: new speeds, and the work of each contact.
 template <class T>
 void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list) {
@@ -424,7 +434,9 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
   for (int a = 0; a < p.n; ++a) {
     axpy(nv, p.x[a], ws.direction + (ne + list[a]) * nv, x);
     // work of an impulse: impulse times mean slip
-    ws.work[ne + list[a]] += p.x[a] * (p.gradient[a] + p.slope[a]) * T(0.5);
+    const T work = p.x[a] * (p.gradient[a] + p.slope[a]) * T(0.5);
+    ws.work[ne + list[a]] += work;
+    take_heat(ws, ne + list[a], -work);
   }
   backward_solve(nv, ws.factor, nv, x);
   for (int i = 0; i < nv; ++i) ws.v[i] += x[i];

@@ -18,11 +18,16 @@ struct DogClutch {
     T reversed;   ///< [1]
   };
   enum State : int { angle, sleeve };
-  // apart: the sleeve moves freely; blocked: tooth stands on tooth; then in mesh: no flank, one flank, the other
-  enum Piece : int { apart, blocked, loose, ahead, behind };
+  // apart: the sleeve moves freely; fast: it is held back, the slip is too high; blocked: tooth stands on tooth; then
+  // in mesh: no flank, one flank, the other
+  enum Piece : int { apart, fast, blocked, loose, ahead, behind };
   static constexpr int states = 2;
   static constexpr int inputs = 1;
 
+  template <class T>
+  static double pitch(const Params<T>& p) {
+    return 6.283185307179586 / value(p.teeth);
+  }
   /// Where the sleeve is wanted: above `reach` the teeth are to mesh.
   template <class T, class S>
   static S command(const Params<T>& p, const At<S>& at) {
@@ -31,8 +36,7 @@ struct DogClutch {
   /// Angle from the middle of the nearest gap [rad].
   template <class T, class S>
   static S off_centre(const Params<T>& p, const At<S>& at) {
-    const double pitch = 6.283185307179586 / value(p.teeth);
-    return at.state[angle] - S(pitch * std::nearbyint(value(at.state[angle]) / pitch));
+    return at.state[angle] - S(pitch(p) * std::nearbyint(value(at.state[angle]) / pitch(p)));
   }
   /// How deep the flanks are pressed together [rad].
   template <class T, class S>
@@ -63,44 +67,45 @@ struct DogClutch {
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     rates[angle] = at.rate;
     const S wanted = larger(smaller(command(p, at), S(1)), S(0));
-    rates[sleeve] = at.piece == blocked ? S(0) : (wanted - at.state[sleeve]) / p.lag;
+    rates[sleeve] = at.piece == blocked || at.piece == fast ? S(0) : (wanted - at.state[sleeve]) / p.lag;
   }
 
-  /// Below zero: aligned and slow enough to mesh.
+  /// Slip over the one above which teeth do not mesh, less one.
   template <class T, class S>
-  static S misfit(const Params<T>& p, const At<S>& at) {
-    const S fast = abs(at.rate) / p.speed - S(1);
-    if (value(p.pointed) != 0) return fast;
-    return larger(fast, abs(off_centre(p, at)) * T(2) / p.gap - S(1));
+  static S excess(const Params<T>& p, const At<S>& at) {
+    return abs(at.rate) / p.speed - S(1);
+  }
+  /// Way on the tip of the tooth to its nearer end, over half a gap; the tooth that it stands on ends at one pitch.
+  template <class T, class S>
+  static S way_on_tip(const Params<T>& p, const At<S>& at) {
+    const S from = at.state[angle] - S(p.gap / T(2)), to = S(pitch(p)) - S(p.gap / T(2)) - at.state[angle];
+    return smaller(from, to) * T(2) / p.gap;
   }
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
-    who = 0;
+    who = meets;
     if (at.piece == apart) return S(p.reach) - at.state[sleeve];
-    if (at.piece == blocked) {
-      const S leaves = command(p, at) - S(p.reach), fits = misfit(p, at);
-      if (leaves < fits) return who = 1, leaves;
-      return fits;
-    }
-    const S out = at.state[sleeve] - S(p.reach);
-    const S flank = at.piece == loose ? S(1) - abs(off_centre(p, at)) * T(2) / p.gap : depth(p, at) * T(2) / p.gap;
-    if (out < flank) return who = 1, out;
-    return flank;
+    S least = at.piece == fast      ? excess(p, at)
+              : at.piece == blocked ? way_on_tip(p, at)
+              : at.piece == loose   ? S(1) - abs(off_centre(p, at)) * T(2) / p.gap
+                                    : depth(p, at) * T(2) / p.gap;
+    const bool waits = at.piece == fast || at.piece == blocked;
+    const S out = (waits ? command(p, at) : at.state[sleeve]) - S(p.reach);
+    if (out < least) least = out, who = leaves;
+    // a margin above the speed keeps the two from taking turns
+    const S slow = S(0.01) - excess(p, at);
+    if (at.piece == blocked && slow < least) least = slow, who = slips;
+    return least;
   }
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
-    if (at.piece == apart) {
-      if (who == turned || value(misfit(p, at)) > 0) return who == turned ? apart : blocked;
-      return mesh(p, state);
-    }
-    if (at.piece == blocked) {
-      if (who == turned) return blocked;
-      return who == 1 ? apart : mesh(p, state);
-    }
     if (who == turned) return at.piece;
-    if (who == 1) return apart;
-    if (at.piece != loose) return loose;
-    return value(off_centre(p, at)) > 0 ? ahead : behind;
+    if (who == leaves) return apart;
+    if (who == slips) return fast;
+    if (at.piece == blocked) return loose;
+    if (at.piece == apart || at.piece == fast) return meet(p, at, state);
+    if (at.piece == loose) return value(off_centre(p, at)) > 0 ? ahead : behind;
+    return loose;
   }
   template <class T>
   static bool turns(const Params<T>&, int) {
@@ -108,11 +113,16 @@ struct DogClutch {
   }
 
  private:
-  /// Into mesh: pointed teeth find the middle of the gap by themselves.
+  enum Who : int { meets, leaves, slips };
+
+  /// The sleeve at the tips of the teeth: held back, in mesh, or on a tooth. Pointed teeth find the middle of a gap.
   template <class T>
-  static int mesh(const Params<T>& p, T* state) {
-    if (value(p.pointed) != 0) state[angle] = T(0);
-    return loose;
+  static int meet(const Params<T>& p, const At<T>& at, T* state) {
+    if (at.piece == apart && value(excess(p, at)) > 0) return fast;
+    if (value(p.pointed) != 0) return state[angle] = T(0), loose;
+    if (abs(value(off_centre(p, at))) * 2 < value(p.gap)) return loose;
+    state[angle] -= T(pitch(p) * std::floor(value(state[angle]) / pitch(p)));
+    return blocked;
   }
 };
 

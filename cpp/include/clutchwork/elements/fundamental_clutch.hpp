@@ -18,9 +18,10 @@ struct FundamentalClutch {
     const S holding = larger(at.input[upper], S(0)) - smaller(at.input[lower], S(0));
     return larger(at.input[kinetic], S(0)) + T(1e-15) * holding;
   }
+  /// What slips with a torque holds at least as much.
   template <class T>
-  static T limit(const Params<T>&, const At<T>& at, T, int direction) {
-    return direction > 0 ? -at.input[lower] : at.input[upper];
+  static T limit(const Params<T>& p, const At<T>& at, T, int direction) {
+    return larger(direction > 0 ? -at.input[lower] : at.input[upper], load(p, at));
   }
 };
 
