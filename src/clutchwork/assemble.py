@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.checks import ports, thermal_ports
+from clutchwork.checks import ports
 from clutchwork.errors import ModelError
 from clutchwork.inputs import Wires
 from clutchwork.kinematics import apart, kinematics
 from clutchwork.layout import FIELDS
 from clutchwork.model_checks import model_advice
 from clutchwork.parts import take_apart
-from clutchwork.places import Places, places
+from clutchwork.places import places
 from clutchwork.pools import Pools
 from clutchwork.rational import Row, plus
 from clutchwork.schema import Role, kinds
-from clutchwork.shared import Shared, node_of_heat
+from clutchwork.shared import Shared, flow_arrays, heat_arrays
 from clutchwork.start import start
 from clutchwork.structure import Kinematics, Model
 from clutchwork.system import TYPES, Gearing, System, frozen
@@ -59,8 +59,8 @@ def assemble(
     states = list[float]()
     arrays |= _elements(model, pools, wires, states)
     arrays |= _contacts(model, pools, wires, states)
-    arrays |= _flows(model, pools, wires)
-    arrays |= _heats(model, where)
+    arrays |= flow_arrays(model, pools, wires)
+    arrays |= heat_arrays(model, where)
     arrays |= shared.arrays(pools, wires, states)
     arrays |= {"prescribed_input": wires.prescribe(motions)}
     arrays |= wires.arrays()
@@ -180,28 +180,6 @@ def _contacts(model: Model, pools: Pools, wires: Wires, states: list[float]) -> 
         "contact_state": offsets,
         "contact_tolerance": [_tolerance(contact) for contact in contacts],
         "contact_initial": [int(contact.locked) for contact in contacts],
-    }
-
-
-def _flows(model: Model, pools: Pools, wires: Wires) -> dict[str, Any]:
-    flows = model.role(Role.FLOW)
-    ends = [[wires.places.shared[node.name] for node in thermal_ports(flow).values()] for flow in flows]
-    return {
-        "flow_kind": [kinds(Role.FLOW).index(flow.kind) for flow in flows],
-        "flow_param": [pools.add(flow, flow.name) for flow in flows],
-        "flow_input": [wires.connect(flow) for flow in flows],
-        "flow_from": [left for left, _ in ends],
-        "flow_to": [entered for _, entered in ends],
-    }
-
-
-def _heats(model: Model, where: Places) -> dict[str, Any]:
-    """Paths of heat from elements and contacts to thermal nodes."""
-    warm = [(number, component) for number, (component, _) in enumerate(model.acting) if node_of_heat(component)]
-    return {
-        "heat_direction": [number for number, _ in warm],
-        "heat_to": [where.shared[component.heat.name] for _, component in warm],
-        "heat_share": [float(component.heat_share) for _, component in warm],
     }
 
 

@@ -53,8 +53,10 @@ class Channels(Mapping[str, Channel]):
         self._wiring = wiring
         self._left_out = _left_out(angles, work)
         self._channels: dict[str, Channel] = {}
+        # heat of a thermal node is a state, no work integral
+        known = {f"{node.name}.heat" for node in wiring.thermal}
         for name, channel in self._all():
-            if not name.endswith(tuple(self._left_out)):
+            if name in known or not name.endswith(tuple(self._left_out)):
                 # the torque of a load and the signal that sets its size would have the same name
                 self._channels[f"{name}_signal" if name in self._channels else name] = channel
 

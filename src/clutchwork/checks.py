@@ -6,13 +6,15 @@ What concerns the driveline as a whole is in `assemble.py`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import MISSING, dataclass
-from math import isfinite
+from dataclasses import MISSING
 from numbers import Real
 from typing import Any
 
 from clutchwork.errors import Problem, near
 from clutchwork.node import Component, Domain, Law, Node, Signal, ThermalNode, is_reference
+from clutchwork.number_checks import At as At
+from clutchwork.number_checks import curve_problems, list_problems
+from clutchwork.number_checks import number_problems as number_problems
 from clutchwork.schema import REGISTRY, Role, Spec, inputs, specs
 
 
@@ -21,24 +23,6 @@ class Broken:
 
 
 BROKEN = Broken()
-
-
-@dataclass(frozen=True)
-class At:
-    """Place of a value: path of the element, name of the quantity, its SI unit, factor to SI from plain numbers."""
-
-    path: str
-    quantity: str
-    unit: str = ""
-    factor: float = 1.0
-
-    def problem(self, message: str, value: str = "", remedy: str = "") -> Problem:
-        """A problem at this place."""
-        return Problem(self.path, self.quantity, message, value, remedy)
-
-    def inner(self, name: str, unit: str = "") -> At:
-        """The place of a field of the value here."""
-        return At(self.path, f"{self.quantity}.{name}" if self.quantity else name, unit)
 
 
 def label(component: Component) -> str:
@@ -103,24 +87,6 @@ def _choice_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[P
             yield at.inner(names[0]).problem("is missing", remedy=f"give {choice}: {spec.doc} [{spec.unit}]")
 
 
-def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
-    """A finite number within its bounds."""
-    if isinstance(value, bool) or not isinstance(value, Real):
-        yield at.problem(f"must be a number in [{at.unit}]", value=repr(value), remedy="write it without quotes")
-        return
-    number, shown = float(value), f"{value} {at.unit}".strip()
-    if not isfinite(number):
-        yield at.problem("must be finite", value=shown, remedy="give a number")
-    elif not spec.allows(number):
-        yield at.problem(f"must be {spec.bound} {at.unit}".rstrip(), value=shown, remedy=_meaning(spec))
-    elif spec.whole and number != int(number):
-        yield at.problem("must be a whole number", value=shown, remedy=_meaning(spec))
-
-
-def _meaning(spec: Spec) -> str:
-    return f"it is the {spec.doc}" if spec.doc else "correct it"
-
-
 def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if spec.choices:
         if value not in spec.choices:
@@ -149,71 +115,6 @@ def _thermal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
 
 def _shown(value: Any) -> str:
     return repr(value.name if isinstance(value, Node | Component) else value)
-
-
-def _numbers(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
-    """A list of numbers, or of equally long lists of them."""
-    if isinstance(value, str) or not hasattr(value, "__len__") or len(value) == 0:
-        yield at.problem("must be a list of numbers", value=repr(value), remedy=f"write [x, y, ...]: {spec.doc}")
-        return
-    rows = [row if hasattr(row, "__len__") and not isinstance(row, str) else [row] for row in value]
-    if len({len(row) for row in rows}) > 1:
-        lengths = ", ".join(str(len(row)) for row in rows)
-        yield at.problem("has rows of different lengths", value=lengths, remedy="give every row as many numbers")
-        return
-    before = None
-    for number, item in enumerate((item for row in rows for item in row), 1):
-        place = At(at.path, f"{at.quantity}, number {number}", at.unit)
-        found = list(number_problems(item, spec, place))
-        if not found and spec.rising == "strictly" and before is not None and float(item) <= before:
-            fault = "comes after" if float(item) < before else "stands twice, after"
-            message, shown = f"{fault} {before:g} {at.unit}", f"{float(item):g} {at.unit}"
-            found = [place.problem(message, value=shown, remedy="sort the numbers; each must be above the one before")]
-        if found:
-            yield from found
-            return
-        before = float(item)
-
-
-def _curve(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
-    if spec.constant and isinstance(value, Real):
-        yield from number_problems(value, spec, at)
-        return
-    if isinstance(value, str) or not hasattr(value, "__len__") or len(value) == 0:
-        yield at.problem("must be a list of points", value=repr(value), remedy=f"write [[x, y], ...]: {spec.doc}")
-        return
-    before = None
-    for number, point in enumerate(value, 1):
-        place = At(at.path, f"{at.quantity}, point {number}", at.unit)
-        # one mistake is enough: those behind it often follow from it
-        found = list(_point(point, spec, place)) or list(_order(before, point, spec, place))
-        if found:
-            yield from found
-            return
-        before = point
-
-
-def _point(point: Any, spec: Spec, at: At) -> Iterator[Problem]:
-    """A pair of finite numbers."""
-    if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
-        yield at.problem("must be a pair of numbers", value=repr(point), remedy="write [x, y]")
-        return
-    plain, bounded = Spec("param", spec.unit_x, ""), Spec("param", at.unit, "", at_least=spec.at_least)
-    for number, part in zip(point, (plain, bounded), strict=True):
-        yield from number_problems(number, part, At(at.path, at.quantity, part.unit))
-
-
-def _order(before: Any, point: Any, spec: Spec, at: At) -> Iterator[Problem]:
-    """Abscissae that increase, by more than round-off."""
-    if before is None:
-        return
-    (x, y), (x_next, y_next) = ((float(a), float(b)) for a, b in (before, point))
-    shown = f"{x_next:g} {spec.unit_x}"
-    if x_next < x or (x_next == x and spec.rising == "strictly"):
-        fault = "comes after" if x_next < x else "stands twice, after"
-        yield at.problem(f"{fault} {x:g} {spec.unit_x}", value=shown, remedy="sort the points; x must increase")
-    elif x_next > x and not isfinite((y_next - y) / (x_next - x)):
-        yield at.problem(f"is too close to {x:g} {spec.unit_x}", value=shown, remedy="leave one of the points out")
 
 
 def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
@@ -252,8 +153,8 @@ CHECKS: dict[str, Callable[[Any, Spec, At], Iterator[Problem]]] = {
     "option": _param,
     "port": _port,
     "thermal": _thermal,
-    "curve": _curve,
-    "numbers": _numbers,
+    "curve": curve_problems,
+    "numbers": list_problems,
     "signal": _signal,
     "alternative": _signal,
     "law": _law,

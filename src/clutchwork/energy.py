@@ -119,7 +119,8 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
     # where sources prescribe speeds, the change of kinetic energy is not what the contacts lost
     named = 0.0 if wiring.motions else _impulses(events)
     shares = {b.name: _share(b.component) for b in (*wiring.elements, *wiring.contacts) if _share(b.component)}
-    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, named, _thermal(wiring, ends), shares)
+    thermal = _thermal(wiring, ends, lost)
+    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, named, thermal, shares)
 
 
 def _share(component: Any) -> float:
@@ -127,9 +128,11 @@ def _share(component: Any) -> float:
     return 0.0 if getattr(component, "heat", None) is None else float(component.heat_share)
 
 
-def _thermal(wiring: Wiring, ends: NDArray[np.float64]) -> dict[str, float]:
-    start = wiring.columns["state"].start
-    return {node.name: float(np.diff(ends[:, start + node.states[0][2]])[0]) for node in wiring.thermal}
+def _thermal(wiring: Wiring, ends: NDArray[np.float64], lost: float) -> dict[str, float]:
+    """Change of the heat of each node; what impulses of the start brought is in the first row already."""
+    columns = {node.name: wiring.columns["state"].start + node.states[0][2] for node in wiring.thermal}
+    first = np.zeros_like(ends[0]) if lost else ends[0]
+    return {name: float(ends[1, column] - first[column]) for name, column in columns.items()}
 
 
 def is_spring(branch: Branch) -> bool:

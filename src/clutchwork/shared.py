@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.checks import thermal_ports
 from clutchwork.schema import Role, kinds
 
 if TYPE_CHECKING:
     from clutchwork.inputs import Wires
     from clutchwork.node import ThermalNode
+    from clutchwork.places import Places
     from clutchwork.pools import Pools
+    from clutchwork.structure import Model
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,30 @@ class Shared:
         }
 
 
-def node_of_heat(component: Any) -> ThermalNode | None:
+def flow_arrays(model: Model, pools: Pools, wires: Wires) -> dict[str, Any]:
+    """Flows and the thermal nodes at their ends."""
+    flows = model.role(Role.FLOW)
+    ends = [[wires.places.shared[node.name] for node in thermal_ports(flow).values()] for flow in flows]
+    return {
+        "flow_kind": [kinds(Role.FLOW).index(flow.kind) for flow in flows],
+        "flow_param": [pools.add(flow, flow.name) for flow in flows],
+        "flow_input": [wires.connect(flow) for flow in flows],
+        "flow_from": [left for left, _ in ends],
+        "flow_to": [entered for _, entered in ends],
+    }
+
+
+def heat_arrays(model: Model, where: Places) -> dict[str, Any]:
+    """Paths of heat from elements and contacts to thermal nodes."""
+    warm = [(number, component) for number, (component, _) in enumerate(model.acting) if _node_of_heat(component)]
+    return {
+        "heat_direction": [number for number, _ in warm],
+        "heat_to": [where.shared[component.heat.name] for _, component in warm],
+        "heat_share": [float(component.heat_share) for _, component in warm],
+    }
+
+
+def _node_of_heat(component: Any) -> ThermalNode | None:
     """Thermal node that takes the heat of an element."""
     node: ThermalNode | None = getattr(component, "heat", None)
     return node
