@@ -22,6 +22,7 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
 
 def pytest_configure(config: pytest.Config) -> None:
     """Markers of this test tree."""
+    config.addinivalue_line("markers", "feature(name): shows a row of the parity table, tools/parity.py")
     config.addinivalue_line(
         "markers", "slow: takes more than ten seconds; part of `make test`, leave out with -m 'not slow'"
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.geometry import Found
@@ -16,12 +15,6 @@ if TYPE_CHECKING:
 def wants_temperature(friction: Any) -> bool:
     """Whether a law depends on a temperature that it is not given."""
     return hasattr(friction, "temperature") and friction.temperature is None
-
-
-def at_temperature(friction: Law, node: ThermalNode | None) -> Law:
-    """The law with the temperature of a node, where it wants one."""
-    law: Any = friction
-    return replace(law, temperature=node) if node is not None and wants_temperature(friction) else friction
 
 
 def temperature_problems(friction: Law, node: ThermalNode | None) -> Found:

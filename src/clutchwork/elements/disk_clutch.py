@@ -13,7 +13,7 @@ from clutchwork.geometry import Found, derating_when_worn, effective_radius, rin
 from clutchwork.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
 from clutchwork.node import Component, HeatFlow, Law, Node, SignalLike, ThermalNode
-from clutchwork.plates import at_temperature, fault_problems, temperature_problems, trigger
+from clutchwork.plates import fault_problems, temperature_problems, trigger
 from clutchwork.schema import Role, choice, component, law, option, param, port, signal
 
 
@@ -117,7 +117,7 @@ class DiskClutch(Heating):
             self.name,
             base=self.base,
             follower=self.follower,
-            friction=at_temperature(self.friction, heat),
+            friction=self.friction,
             gain=self.gain,
             threshold=self.threshold,
             worn=derating_when_worn(self.outer_diameter, self.inner_diameter),
@@ -137,11 +137,18 @@ class DiskClutch(Heating):
         )
         if wear is not None:
             yield wear
-        ends = {"base": self.base, "follower": self.follower}
+        base, follower = self.base, self.follower
         if self.drag > 0.0:
-            yield Damper(f"{self.name}.drag", **ends, damping=self.drag, heat=heat, heat_share=self.heat_share)
+            yield Damper(
+                f"{self.name}.drag",
+                base=base,
+                follower=follower,
+                damping=self.drag,
+                heat=heat,
+                heat_share=self.heat_share,
+            )
         if self.direction == "unidirectional":
-            yield OneWayClutch(f"{self.name}.freewheel", **ends, tolerance=self.tolerance, locked=self.locked)
+            yield OneWayClutch(f"{self.name}.freewheel", base=base, follower=follower, locked=self.locked)
 
     def _wear(self) -> Wear | None:
         if self.wear_rate is None:

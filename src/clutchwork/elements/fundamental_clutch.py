@@ -16,7 +16,8 @@ class FundamentalClutch(Heating):
 
     Use it where friction is computed elsewhere. It locks when the slip is within the tolerance and the torque that
     it takes lies between `lower` and `upper`; it lets go when that leaves them. Torques are those on the follower: the
-    lower limit resists forward slip, the upper one backward slip. Where all are zero it is open.
+    lower limit resists forward slip, the upper one backward slip; a limit below the kinetic torque counts as that.
+    Where all are zero it is open.
     """
 
     friction: ClassVar[Law] = Coulomb(static=1.0, kinetic=1.0)

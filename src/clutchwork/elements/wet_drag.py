@@ -14,7 +14,8 @@ class WetDrag(Heating):
     Use it beside the clutch of a wet pack: at low slip the oil film is sheared, beyond the peak air enters and the
     film breaks up. Give `scale` as a signal where the drag changes with the oil flow or the temperature.
 
-    Source of the shape: Y. Kitabayashi, C. Y. Li, H. Hiraki 2003, doi:10.4271/2003-01-1973.
+    Source of the course over speed: the review of L. Pointner-Gabriel, K. Voelkel, K. Stahl 2025,
+    doi:10.3390/lubricants13010027.
     """
 
     base: Node = port("side that the slip is counted from")
