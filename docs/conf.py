@@ -11,9 +11,11 @@ sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures")]
 
 import experiments  # noqa: E402
 import gen_docs  # noqa: E402
+import parity  # noqa: E402
 
 gen_docs.write(HERE / "reference")
 experiments.write(HERE / "reference" / "rig")
+parity.write(HERE / "reference")
 
 _project = tomllib.loads((HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 project = _project["name"]
