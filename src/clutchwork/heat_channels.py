@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from clutchwork.shared import state_scales
+
 if TYPE_CHECKING:
     from clutchwork.wiring import Wiring
 
@@ -21,8 +23,8 @@ def affine(wiring: Wiring) -> Iterator[tuple[str, str, Affine]]:
         if node.component.capacity is not None:
             yield f"{node.name}.temperature", "K", _temperature(wiring, node.name)
     for process in wiring.processes:
-        for name, unit, index in process.states:
-            yield f"{process.name}.{name}", unit, (state + index, 1.0, 0.0)
+        for (name, unit, index), scale in zip(process.states, state_scales(process.component), strict=True):
+            yield f"{process.name}.{name}", unit, (state + index, scale, 0.0)
     if "flow" in wiring.columns:
         for number, flow in enumerate(wiring.flows):
             yield f"{flow}.heat_flow", "W", (wiring.columns["flow"].start + number, 1.0, 0.0)
@@ -46,6 +48,7 @@ def _temperature(wiring: Wiring, name: str) -> Affine:
 def _links(wiring: Wiring) -> Iterator[tuple[str, str, Affine]]:
     first = len(wiring.thermal)
     states = [state for process in wiring.processes for state in process.states]
+    scales = [scale for process in wiring.processes for scale in state_scales(process.component)]
     for link in wiring.links:
         if link.sort == "input":
             yield link.name, link.unit, (wiring.columns["input"].start + link.number, 1.0, 0.0)
@@ -53,4 +56,4 @@ def _links(wiring: Wiring) -> Iterator[tuple[str, str, Affine]]:
             yield link.name, link.unit, _temperature(wiring, wiring.thermal[link.number].name)
         else:
             column = wiring.columns["state"].start + states[link.number - first][2]
-            yield link.name, link.unit, (column, 1.0, 0.0)
+            yield link.name, link.unit, (column, scales[link.number - first], 0.0)

@@ -64,6 +64,13 @@ class Component:
         named = {part.name: part for part in self.parts()}
         return named[f"{self.name}.{name}"]
 
+    def state_scales(self) -> tuple[float, ...]:
+        """Of a process: what one unit of each of its states in the solver is worth, 1 where nothing is said.
+
+        The tolerances of a run are absolute too, so a state should not be small against 1.
+        """
+        return ()
+
     def sums(self) -> tuple[str, ...]:
         """Names of parts, within it, whose torque, power, work and heat count as those of its own name."""
         return ()

@@ -36,10 +36,10 @@ class Shared:
             offset.append(0.0 if node.capacity is None else float(node.temperature))  # type: ignore[arg-type]
         first = list[int]()
         for process in self.processes:
-            own = process.initial_states()
+            own = state_scales(process)
             first.append(len(states))
-            states += own
-            scale += [1.0] * len(own)
+            states += [start / unit for start, unit in zip(process.initial_states(), own, strict=True)]
+            scale += own
             offset += [0.0] * len(own)
         return {
             "process_kind": [kinds(Role.PROCESS).index(process.kind) for process in self.processes],
@@ -50,6 +50,11 @@ class Shared:
             "shared_offset": offset,
             "initial_state": states,
         }
+
+
+def state_scales(process: Any) -> tuple[float, ...]:
+    """What one unit of each state of a process is worth."""
+    return process.state_scales() or (1.0,) * len(process.states)
 
 
 def flow_arrays(model: Model, pools: Pools, wires: Wires) -> dict[str, Any]:
