@@ -22,6 +22,7 @@ def _heater(d, node, power, speed=10.0):
 
 def _idle(d, speed=0.0):
     return d.shaft("idle", inertia=1.0, speed=speed)
+@pytest.mark.feature("thermal: slip power heats the thermal mass")
 
 
 def test_engagement_heats_a_mass_by_its_energy_over_its_capacity():
@@ -104,6 +105,7 @@ def test_ambient_temperature_over_time():
     assert run["air.temperature"][-1] - run["mass.temperature"][-1] == pytest.approx(0.2 * 20.0 / 4.0, abs=1e-6)
 
 
+@pytest.mark.feature("thermal: convection that depends on a speed")
 @pytest.mark.parametrize("speed", [0.0, 40.0, -40.0, 100.0, 250.0])
 def test_convection_follows_its_table_over_the_speed_of_a_shaft(speed):
     d = cw.Driveline()
@@ -118,6 +120,7 @@ def test_convection_follows_its_table_over_the_speed_of_a_shaft(speed):
     np.testing.assert_allclose(run["drum.temperature"], expected, atol=1e-6)
     # the sensor on the shaft is no element of the user
     assert not [name for name in run.names if "sensor" in name]
+@pytest.mark.feature("thermal: convection that depends on a speed")
 
 
 def test_convection_over_a_changing_speed():
@@ -142,6 +145,7 @@ def test_convection_with_a_number_is_conduction():
         d.add(kind("x", hot=hot, cold=cold, conductance=5.0))
         ends.append(d.simulate(1.0, **FINE)["hot.temperature"][-1])
     assert ends[0] == pytest.approx(ends[1], rel=1e-9)
+@pytest.mark.feature("thermal: oil flow")
 
 
 def test_oil_carries_heat_away_while_it_flows():
@@ -175,6 +179,7 @@ def _series(values, power, time, place):
     fading = np.sum((-1.0) ** n / n**2 * np.exp(-decay * time) * np.cos(n * np.pi * place), axis=0)
     steady = (3.0 * place**2 - 1.0) / 6.0 - 2.0 / np.pi**2 * fading
     return power / values["area"] * (time / per_area + length / conductivity * steady)
+@pytest.mark.feature("thermal: plates with a gradient")
 
 
 def test_plate_with_a_gradient_follows_the_series():
