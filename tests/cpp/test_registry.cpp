@@ -11,8 +11,21 @@ namespace {
 // arguments of a function: rate, states, inputs, parameters
 constexpr int most = 24;
 using D = Dual<double, most>;
-constexpr double points[8 * 3] = {0, 1, 0.5,  1, 1.5, -0.2, 2, 1.3, -0.1, 3, 1.2, 0,
-                                  4, 1, -0.3, 5, 0.7, 0.1,  6, 0.8, 0.2,  7, 1,   0.3};
+constexpr int longest = 6;
+
+/// A pool of points: x rises by one; y goes up and down; enough for a map over two curves.
+struct Points {
+  static constexpr int count = 2 + longest * longest;
+  double pool[3 * count];
+  constexpr Points() : pool{} {
+    constexpr double y[] = {1, 1.5, 1.3, 1.2, 1, 0.7, 0.8};
+    for (int i = 0; i < count; ++i) {
+      pool[3 * i] = i, pool[3 * i + 1] = y[i % 7], pool[3 * i + 2] = y[(i + 1) % 7] - y[i % 7];
+    }
+  }
+};
+constexpr Points pool;
+constexpr const double* points = pool.pool;
 // sizes of states: those of ElastoPlastic come to lie below the elastic limit, beyond it, and beyond the plastic one
 constexpr double sizes[4][2] = {{0.1, 0.9}, {1, 3}, {11.9, 12.7}, {13, 20}};
 
@@ -30,7 +43,7 @@ struct Fields {
     f.count = int(sizeof(P) / sizeof(double));
     for (int k = 0; k < f.count; ++k) f.start[k] = 1.35 + 0.3 * k;
     curves([&](int k) {
-      f.start[k] = 1, f.start[k + 1] = 6;
+      f.start[k] = 1, f.start[k + 1] = longest;
       f.fixed[k] = f.fixed[k + 1] = true;
     });
     P p{};
@@ -38,9 +51,17 @@ struct Fields {
       const auto k = &field - reinterpret_cast<const double*>(&p);
       f.words[k] = values, f.start[k] = 0, f.fixed[k] = true;
     };
+    // counts, whose derivatives nobody asks for
+    if constexpr (requires { p.teeth; }) f.fixed[&p.teeth - reinterpret_cast<const double*>(&p)] = true;
     if constexpr (requires { p.shape; }) word(p.shape, 4);
     if constexpr (requires { p.reset; }) word(p.reset, 3);
     if constexpr (requires { p.passive; }) word(p.passive, 2);
+    if constexpr (requires { p.interpolation; }) word(p.interpolation, 2);
+    if constexpr (requires { p.extrapolation; }) word(p.extrapolation, 3);
+    if constexpr (requires { p.fault; }) word(p.fault, 3);
+    if constexpr (requires { p.report; }) word(p.report, 2);
+    if constexpr (requires { p.pointed; }) word(p.pointed, 2);
+    if constexpr (requires { p.reversed; }) word(p.reversed, 2);
     return f;
   }
   /// The next combination of words; false: all were there.
@@ -88,6 +109,9 @@ void over_pieces(const P& p, check::Random& g, F&& visit) {
     const int all = (1 << count) - 1;
     visit(0), visit(all);
     if (count > 1) visit(g.below(all));
+    if constexpr (requires { E::behind; }) {
+      for (int piece = 2; piece <= E::behind; ++piece) visit(piece);
+    }
   } else {
     visit(0);
   }
@@ -120,7 +144,7 @@ void over_arguments(F&& call, Fields fields, int inputs, int states, int outputs
       for (int size = 0; size < (states > 0 ? 4 : 1); ++size) {
         x[0] = rate;
         for (int i = 1; i <= states; ++i) x[i] = (g.below(2) * 2 - 1) * g.between(sizes[size][0], sizes[size][1]);
-        for (int i = 1 + states; i < 1 + states + inputs; ++i) x[i] = g.between(-2, 2);
+        for (int i = 1 + states; i < 1 + states + inputs; ++i) x[i] = g.between(-2, longest + 2);
         compare(-1);
         for (int zero = 0; zero < np && size == 0; ++zero) {
           if (!fields.fixed[zero]) compare(zero);
@@ -358,8 +382,14 @@ struct Probe {
       for (int i = 0; i < 2 * most_inputs; ++i) input[i] = keep[i] + dt * slope[i];
       return rate + dt * turn;
     };
-    compare_along(in_time, p.by_time, g_time, 1);
+    // the static coefficient of a held contact counts as constant
+    if (!b.held || plain_hold()) compare_along(in_time, p.by_time, g_time, 1);
     if (!b.held) compare_inputs(rate), compare_heat(rate, p);
+  }
+  /// Whether the static torque follows the load alone.
+  bool plain_hold() const {
+    const bool limited = visit_contact(b.kind, [](auto tag) { return LimitedContact<typename decltype(tag)::type>; });
+    return !limited && b.law_inputs == 0;
   }
   /// What shared states do to the torque.
   void compare_inputs(double rate) {
