@@ -1,28 +1,15 @@
-"""What elements with friction plates have in common: temperature of the law, triggers of faults."""
+"""Faults of elements with friction plates: what triggers them."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from clutchwork.geometry import Found
 from clutchwork.signals.constant import Constant
 from clutchwork.signals.step import Step
 
 if TYPE_CHECKING:
-    from clutchwork.node import Law, Signal, SignalLike, ThermalNode
-
-
-def wants_temperature(friction: Any) -> bool:
-    """Whether a law depends on a temperature that it is not given."""
-    return hasattr(friction, "temperature") and friction.temperature is None
-
-
-def temperature_problems(friction: Law, node: ThermalNode | None) -> Found:
-    """A law that depends on the temperature of a contact that has none."""
-    if node is not None or not wants_temperature(friction):
-        return []
-    remedy = "give the contact a thermal_mass or a node at `heat`, or give friction.temperature"
-    return [("friction", "depends on the temperature, and there is none", remedy)]
+    from clutchwork.node import Signal, SignalLike
 
 
 def trigger(time: float | None) -> Signal | None:

@@ -397,6 +397,32 @@ def test_smooth_tables_have_a_continuous_slope_and_no_overshoot() -> None:
         assert left == pytest.approx(right, abs=1e-7)
 
 
+@feature("tables: smooth interpolation")
+@feature("friction model: over temperature and speed")
+def test_a_smooth_map_has_continuous_slopes_both_ways_and_stays_between_its_corners() -> None:
+    """Also where the coefficient turns over the temperature at one slip and not at another."""
+    kelvin, slips = [300.0, 350.0, 380.0, 450.0], [0.0, 20.0, 60.0, 100.0]
+    rows = [[0.3, 0.25, 0.2, 0.19], [0.34, 0.24, 0.22, 0.16], [0.32, 0.26, 0.15, 0.15], [0.2, 0.19, 0.18, 0.1]]
+    given = {"temperatures": kelvin, "speeds": slips, "static": [0.4, 0.4, 0.4, 0.3], "kinetic": rows}
+
+    def at(temperature: float, slip: float) -> float:
+        return coefficient(cw.FrictionMap(**given, interpolation="smooth", temperature=temperature), slip)
+
+    for i, j in ((0, 0), (1, 1), (2, 2), (1, 0)):
+        corners = [rows[i][j], rows[i + 1][j], rows[i][j + 1], rows[i + 1][j + 1]]
+        for x, y in ((0.2, 0.7), (0.5, 0.5), (0.8, 0.1)):
+            inside = at(kelvin[i] + x * (kelvin[i + 1] - kelvin[i]), slips[j] + y * (slips[j + 1] - slips[j]))
+            assert min(corners) - 1e-12 <= inside <= max(corners) + 1e-12
+    step = 1e-4
+    for temperature, slip in ((350.0, 33.0), (380.0, 71.0), (333.0, 20.0), (410.0, 60.0)):
+        middle = at(temperature, slip)
+        over_temperature = [(at(temperature + s * step, slip) - middle) / (s * step) for s in (-1, 1)]
+        over_slip = [(at(temperature, slip + s * step) - middle) / (s * step) for s in (-1, 1)]
+        # second derivatives are some 1e-3
+        assert over_temperature[0] == pytest.approx(over_temperature[1], abs=1e-6)
+        assert over_slip[0] == pytest.approx(over_slip[1], abs=1e-6)
+
+
 @feature("tables: extrapolation linear")
 @pytest.mark.parametrize("interpolation", ["linear", "smooth"])
 def test_extrapolation_linear(interpolation: str) -> None:
@@ -552,6 +578,26 @@ def test_a_clutch_that_fails_by_a_signal_stays_so_when_the_signal_is_gone() -> N
     failed = next(e for e in run.events if e.cause == "fault")
     assert failed.time == pytest.approx(0.25, abs=EXACT)
     assert at_end(run, "c1.torque") == 0.0
+
+
+@feature("faults: triggered at a time")
+@feature("faults: triggered by a signal")
+def test_time_and_signal_together_trigger_at_the_earlier_instant() -> None:
+    for time, expected in ((0.1, 0.1), (0.4, 0.3)):
+        signal = cw.Step(height=1.0, start=0.3)
+        run = faulty(fault="cannot_transmit", fault_time=time, fault_signal=signal).simulate(0.5)
+        assert [e.time for e in run.events if e.cause == "fault"] == [expected]
+
+
+@feature("faults: cannot unlock")
+def test_a_clutch_that_cannot_unlock_slips_until_it_locks_for_good() -> None:
+    """It fails while it slips, locks as it would, and then holds with its pressure gone."""
+    pressure = cw.Table([(0.0, 2e5), (1.0, 2e5), (1.0, 0.0), (2.0, 0.0)])
+    d = faulty(fault="cannot_unlock", fault_time=0.2, pressure=pressure)
+    d.add(cw.Torque("pull", shaft=d.nodes[1], torque=cw.Table([(0.0, 0.0), (1.2, 0.0), (1.3, 90.0), (2.0, 90.0)])))
+    run = d.simulate(1.6, **TIGHT)
+    assert_switches(run, [(REDUCED * W0 / (0.3 * GAIN * 2e5), "c1", "forward", "locked")])
+    assert at_end(run, "c1.torque") == pytest.approx(-90.0 * J2 / (J1 + J2), rel=1e-9)
 
 
 @feature("faults: cannot unlock")

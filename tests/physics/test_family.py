@@ -331,6 +331,11 @@ def test_dog_clutch_lets_go_when_the_sleeve_is_pulled() -> None:
 
 def test_a_gap_as_wide_as_the_pitch_is_named() -> None:
     assert any("not below the pitch" in str(problem) for problem in dogs(gap=0.6).check())
+    d = cw.Driveline("sleeve")
+    hub, gear = d.shaft("hub", inertia=1.0), d.shaft("gear", inertia=1.0)
+    cone = {"friction": LINING, "force": 1.0, "radius": 0.1, "half_angle": 0.1}
+    d.add(cw.Synchroniser("s", hub=hub, forward=gear, **cone, gap=0.5, command=1.0))
+    assert any("not below the pitch" in str(problem) for problem in d.check())
 
 
 @feature("family: synchroniser")

@@ -13,7 +13,7 @@ from clutchwork.geometry import Found, derating_when_worn, effective_radius, rin
 from clutchwork.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
 from clutchwork.node import Component, HeatFlow, Law, Node, SignalLike, ThermalNode
-from clutchwork.plates import fault_problems, temperature_problems, trigger
+from clutchwork.plates import fault_problems, trigger
 from clutchwork.schema import Role, choice, component, law, option, param, port, signal
 
 
@@ -87,7 +87,7 @@ class DiskClutch(Heating):
             found.append(
                 ("heat", "is given beside thermal_mass", "give one of them; `plates` is the node of the own mass")
             )
-        return found + temperature_problems(self.friction, self.plates or self.heat)
+        return found
 
     @cached_property
     def plates(self) -> ThermalNode | None:

@@ -45,11 +45,16 @@ class DogClutch(Heating):
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
-        pitch = tau / self.teeth
-        if self.gap < pitch:
-            return []
-        return [("gap", f"is {self.gap:g} rad, not below the pitch {pitch:g} rad", "a tooth needs room beside its gap")]
+        return gap_problems(self.gap, self.teeth)
 
     def initial_states(self) -> tuple[float, ...]:
         """Angle [rad] and place of the sleeve at the start."""
         return (self.initial_angle, 1.0 if self.engaged else 0.0)
+
+
+def gap_problems(gap: float, teeth: int) -> Found:
+    """A gap that leaves no room for a tooth."""
+    pitch = tau / teeth
+    if gap < pitch:
+        return []
+    return [("gap", f"is {gap:g} rad, not below the pitch {pitch:g} rad", "a tooth needs room beside its gap")]

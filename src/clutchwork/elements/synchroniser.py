@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import pi, sin
 
-from clutchwork.elements.dog_clutch import DogClutch
+from clutchwork.elements.dog_clutch import DogClutch, gap_problems
 from clutchwork.elements.plate_contact import PlateContact
+from clutchwork.geometry import Found
 from clutchwork.heating import Heating
 from clutchwork.node import Component, Law, Node, SignalLike, ThermalNode
 from clutchwork.schema import Role, component, law, param, port, signal
@@ -39,6 +40,10 @@ class Synchroniser(Heating):
     speed: float = param("rad/s", "slip above which the sleeve is held back", default=1.0, above=0.0)
     lag: float = param("s", "time constant of the sleeve", default=0.02, above=0.0)
     command: SignalLike = signal("1", "where the sleeve is wanted: 1 forward, 0 neutral, -1 backward")
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        return gap_problems(self.gap, self.teeth)
 
     def parts(self) -> Iterable[Component | ThermalNode]:
         """A cone and a dog clutch for each gear."""
