@@ -3,7 +3,7 @@
 
 namespace clutchwork::elements {
 
-/// Depth of wear by the energy of sliding. docs/theory/clutches.md
+/// Wear by the energy of sliding, which is the state [J]; a joule is worth rate/area of depth. docs/theory/clutches.md (8)
 struct Wear {
   template <class T>
   struct Params {
@@ -15,8 +15,8 @@ struct Wear {
   static constexpr int inputs = 1;
 
   template <class T, class S>
-  static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
-    rates[0] = p.rate / p.area * larger(at.input[0], S(0));
+  static void state_rates(const Params<T>&, const At<S>& at, S* rates) {
+    rates[0] = larger(at.input[0], S(0));
   }
 };
 
