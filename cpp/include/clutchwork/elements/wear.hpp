@@ -3,7 +3,8 @@
 
 namespace clutchwork::elements {
 
-/// Wear by the energy of sliding, which is the state [J]; a joule is worth rate/area of depth. docs/theory/clutches.md (8)
+/// Wear by the energy of sliding, which is the state [J]; a joule is worth rate/area of depth. docs/theory/clutches.md
+/// (8)
 struct Wear {
   template <class T>
   struct Params {
