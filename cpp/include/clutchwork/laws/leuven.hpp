@@ -15,6 +15,9 @@ struct Leuven {
   // an element has left its limit when it is so far inside; the Stribeck level may push it back and forth
   static constexpr double slack = 1e-7;
 
+  /// Whether an element slides against the slip, where the level fell below the hysteresis.
+  static bool slides_back(int piece, int i) { return element_slides(piece, most_elements + i); }
+
   template <class T>
   static int count(const Params<T>& p) {
     return element_count(p.elements);
@@ -32,12 +35,12 @@ struct Leuven {
   }
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
-    const S bending = at.rate * share(p, at);
+    const S left = share(p, at), bending = at.rate * left;
     for (int i = 0; i < count(p); ++i) {
       const T stiffness =
           p.static_ * T(element_share(p.elements, at.points, i) / element_deflection(p.elements, at.points, i));
-      // one that slides stays at its limit, or leaves it inward
-      const bool inward = (value(bending) < 0) != (value(at.state[i]) < 0);
+      // one that slides stays at its limit until the slip turns, or leaves it where the deflection runs back
+      const bool inward = (value(left) < 0) != slides_back(at.piece, i);
       rates[i] = element_slides(at.piece, i) && !inward ? S(0) : stiffness * bending;
     }
   }
@@ -63,10 +66,11 @@ struct Leuven {
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
     if (who == turned) return 0;
-    if (element_slides(at.piece, who)) return at.piece & ~(1 << who);
+    const int against = 1 << (most_elements + who);
+    if (element_slides(at.piece, who)) return at.piece & ~(1 << who | against);
     const T side = T(value(state[who]) < 0 ? -1 : 1);
     state[who] = side * p.static_ * T(element_share(p.elements, at.points, who));
-    return at.piece | 1 << who;
+    return at.piece | 1 << who | ((value(at.rate) < 0) != (value(side) < 0) ? against : 0);
   }
   template <class T>
   static bool turns(const Params<T>&, int piece) {
