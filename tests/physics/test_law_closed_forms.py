@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import quad
 
 import clutchwork as cw
-from clutchwork.schema import REGISTRY, Role
+from support import samples
 from support.runs import EXACT, TIGHT
 
 STATIC, KINETIC, SPEED, VISCOUS, BAND = 1.0, 0.7, 0.5, 0.2, 0.02
@@ -87,7 +87,7 @@ def changes(run: Any, after: str) -> list[float]:
 
 
 def test_every_law_that_sticks_is_here() -> None:
-    assert {type(law).kind for law in LAWS.values()} == {k for k, cls in REGISTRY[Role.LAW].items() if cls.sticks}
+    assert {type(law).kind for law in LAWS.values()} == {k for k, cls in samples.over_slip().items() if cls.sticks}
     assert TO_REST.keys() == LAWS.keys()
 
 

@@ -44,7 +44,7 @@ def simulate(d: cw.Driveline, **options: Any) -> Any:
         return d.simulate(1.0, rtol=1e-9, atol=1e-11, **options)
 
 
-@pytest.mark.parametrize("kind", sorted(REGISTRY[Role.CONTACT]))
+@pytest.mark.parametrize("kind", samples.pressed_contacts())
 @pytest.mark.parametrize("domain", ["rotation", "translation"])
 @pytest.mark.parametrize("law", LAWS)
 def test_every_law_works_in_every_contact(law: str, domain: str, kind: str) -> None:
@@ -59,7 +59,8 @@ def test_every_law_works_in_every_contact(law: str, domain: str, kind: str) -> N
     assert np.max(run["c.slip"]) > 0.1
     if kind == "one_way_clutch":
         assert np.min(run["c.slip"]) >= -1e-9
-    else:
+    elif law in samples.over_slip():
+        # the samples of the tables over temperature hold 14 N m and more, which 12 N m never push back
         assert np.min(run["c.slip"]) < -0.1
 
 

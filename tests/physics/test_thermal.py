@@ -1,4 +1,4 @@
-"""Thermal nodes against closed forms: rise of a mass, masses that exchange heat, a plate with a gradient, the balance."""
+"""Thermal nodes against closed forms: rise of a mass, exchange of heat, a plate with a gradient, the balance."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def _heater(d, node, power, speed=10.0):
 
 def _idle(d, speed=0.0):
     return d.shaft("idle", inertia=1.0, speed=speed)
+
+
 @pytest.mark.feature("thermal: slip power heats the thermal mass")
-
-
 def test_engagement_heats_a_mass_by_its_energy_over_its_capacity():
     """Two inertias that a clutch brings together lose E = 1/2 Jred w0^2."""
     d = cw.Driveline()
@@ -120,11 +120,11 @@ def test_convection_follows_its_table_over_the_speed_of_a_shaft(speed):
     np.testing.assert_allclose(run["drum.temperature"], expected, atol=1e-6)
     # the sensor on the shaft is no element of the user
     assert not [name for name in run.names if "sensor" in name]
+
+
 @pytest.mark.feature("thermal: convection that depends on a speed")
-
-
 def test_convection_over_a_changing_speed():
-    """While a shaft slows down linearly the exponent is the integral of the conductance, kinks of the table included."""
+    """While a shaft slows down linearly the exponent is the integral of the conductance, kinks included."""
     d = cw.Driveline()
     drum, air = d.thermal("drum", capacity=30.0, temperature=400.0), d.ambient("air", temperature=300.0)
     shaft = d.shaft("shaft", inertia=1.0)
@@ -145,9 +145,9 @@ def test_convection_with_a_number_is_conduction():
         d.add(kind("x", hot=hot, cold=cold, conductance=5.0))
         ends.append(d.simulate(1.0, **FINE)["hot.temperature"][-1])
     assert ends[0] == pytest.approx(ends[1], rel=1e-9)
+
+
 @pytest.mark.feature("thermal: oil flow")
-
-
 def test_oil_carries_heat_away_while_it_flows():
     d = cw.Driveline()
     _idle(d)
@@ -171,7 +171,7 @@ def _plate(nodes, end):
 
 
 def _series(values, power, time, place):
-    """Temperature rise at a share of the thickness, counted from the insulated back. Carslaw and Jaeger, section 3.8."""
+    """Temperature rise at a share of the thickness, from the insulated back on. Carslaw and Jaeger, section 3.8."""
     length, conductivity = values["thickness"], values["conductivity"]
     per_area = values["density"] * values["specific_heat"] * length
     n = np.arange(1, 400)[:, None]
@@ -179,9 +179,9 @@ def _series(values, power, time, place):
     fading = np.sum((-1.0) ** n / n**2 * np.exp(-decay * time) * np.cos(n * np.pi * place), axis=0)
     steady = (3.0 * place**2 - 1.0) / 6.0 - 2.0 / np.pi**2 * fading
     return power / values["area"] * (time / per_area + length / conductivity * steady)
+
+
 @pytest.mark.feature("thermal: plates with a gradient")
-
-
 def test_plate_with_a_gradient_follows_the_series():
     """Half of the time that heat needs to cross the plate: 4 mm of steel, 0.66 s."""
     run, values = _plate(41, end=0.66)

@@ -21,12 +21,7 @@ CHATTERS = {"naive_sign"}
 SOUND = [cls for cls in LAWS if cls.kind not in CHATTERS]
 
 
-# contacts whose load is a torque of its own, or gain times pressure
-CONTACTS = sorted(
-    kind
-    for kind, cls in REGISTRY[Role.CONTACT].items()
-    if {"friction", "gain"} <= {item.name for item, _ in fields_of(cls)} or kind == "bearing_friction"
-)
+CONTACTS = samples.pressed_contacts()
 
 
 def _name(value):

@@ -8,6 +8,7 @@ from typing import Any
 
 import clutchwork as cw
 from clutchwork.schema import REGISTRY, Role, Spec, inputs, specs
+from clutchwork.tables import Tabulated
 
 ELEMENT_ROLES = tuple(role for role in Role if role not in (Role.LAW, Role.SIGNAL))
 
@@ -15,6 +16,17 @@ ELEMENT_ROLES = tuple(role for role in Role if role not in (Role.LAW, Role.SIGNA
 def declared(*roles: Role) -> list[Any]:
     """All declared classes of the given roles."""
     return [cls for role in roles for cls in REGISTRY[role].values()]
+
+
+def pressed_contacts() -> list[str]:
+    """Kinds of contacts that any friction law fits and whose load is a torque, or gain times pressure."""
+    known = {kind: {item.name for item, _ in specs(cls)} for kind, cls in REGISTRY[Role.CONTACT].items()}
+    return sorted(kind for kind, names in known.items() if {"friction", "gain"} <= names or kind == "bearing_friction")
+
+
+def over_slip() -> dict[str, Any]:
+    """Friction laws by kind, without those with tables over more than the slip, which have tests of their own."""
+    return {kind: cls for kind, cls in REGISTRY[Role.LAW].items() if not issubclass(cls, Tabulated)}
 
 
 def law(cls: Any) -> cw.Law:
