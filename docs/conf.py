@@ -10,11 +10,14 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures")]
 
 import experiments  # noqa: E402
+import launches  # noqa: E402
+
 import gen_docs  # noqa: E402
 import parity  # noqa: E402
 
 gen_docs.write(HERE / "reference")
 experiments.write(HERE / "reference" / "rig")
+launches.write(HERE / "reference" / "car")
 parity.write(HERE / "reference")
 
 _project = tomllib.loads((HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
