@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from clutchwork.trajectory import Trajectory
 
 MOST_LINES = 40
+# signals whose last value is told
+FINAL = (".speed", ".temperature")
 
 
 def run_text(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] | None) -> str:
@@ -80,7 +82,7 @@ def run_data(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
         "ratio_of": list(shafts) if shafts else None,
         "phases": [_finite(asdict(phase)) for phase in phases],
         "energy": run.energy.as_dict() if run.options.work and len(run) else None,
-        "final": {name: float(run[name][-1]) for name in run.names if name.endswith(".speed") and len(run)},
+        "final": {name: float(run[name][-1]) for name in run.names if name.endswith(FINAL) and len(run)},
         "statistics": dict(run.statistics),
     }
 
@@ -108,14 +110,16 @@ def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]
 def sizes(system: System) -> dict[str, int]:
     """How much of what a model has."""
     parts = wiring(system)
+    more = {"thermal nodes": parts.thermal, "heat flows": parts.flows, "processes": parts.processes}
     return {
         "shafts and masses": len(parts.nodes),
         "independent speeds": int(system.basis.shape[1]),
         "gear rows": len(parts.gears),
-        "torque elements": len(parts.elements),
+        "torque elements": sum(not branch.hidden for branch in parts.elements),
         "contacts": len(parts.contacts),
         "prescribed speeds": len(parts.motions),
         "inputs": len(parts.inputs),
+        **{name: len(things) for name, things in more.items() if things},
     }
 
 
