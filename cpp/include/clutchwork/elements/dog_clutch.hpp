@@ -81,21 +81,31 @@ struct DogClutch {
     const S from = at.state[angle] - S(p.gap / T(2)), to = S(pitch(p)) - S(p.gap / T(2)) - at.state[angle];
     return smaller(from, to) * T(2) / p.gap;
   }
+  /// The least of what keeps the piece. Its time derivative is that of all of them, for each may be the next to end it.
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
-    who = meets;
-    if (at.piece == apart) return S(p.reach) - at.state[sleeve];
-    S least = at.piece == fast      ? excess(p, at)
-              : at.piece == blocked ? way_on_tip(p, at)
-              : at.piece == loose   ? S(1) - abs(off_centre(p, at)) * T(2) / p.gap
-                                    : depth(p, at) * T(2) / p.gap;
-    const bool waits = at.piece == fast || at.piece == blocked;
-    const S out = (waits ? command(p, at) : at.state[sleeve]) - S(p.reach);
-    if (out < least) least = out, who = leaves;
-    // a margin above the speed keeps the two from taking turns
-    const S slow = S(0.01) - excess(p, at);
-    if (at.piece == blocked && slow < least) least = slow, who = slips;
-    return least;
+    double least = 1e300;
+    S change = S(0);
+    auto watch = [&](const S& guard, int number) {
+      change += guard - S(value(guard));
+      if (value(guard) < least) least = value(guard), who = number;
+    };
+    const S reach = S(p.reach);
+    if (at.piece == apart) {
+      watch(reach - at.state[sleeve], meets);
+    } else if (at.piece == fast) {
+      watch(excess(p, at), meets);
+      watch(command(p, at) - reach, leaves);
+    } else if (at.piece == blocked) {
+      watch(way_on_tip(p, at), meets);
+      watch(command(p, at) - reach, leaves);
+      // a margin above the speed keeps the two from taking turns
+      watch(S(0.01) - excess(p, at), slips);
+    } else {
+      watch(at.piece == loose ? S(1) - abs(off_centre(p, at)) * T(2) / p.gap : depth(p, at) * T(2) / p.gap, meets);
+      watch(at.state[sleeve] - reach, leaves);
+    }
+    return S(least) + change;
   }
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
