@@ -51,7 +51,7 @@ def test_missing_header(copy: Path, stem: str) -> None:
     refused_by_generator(copy, f"src/clutchwork/{stem}.py", f"{HEADERS}/{stem}.hpp")
 
 
-@pytest.mark.parametrize("stem", ["elements/damper", "laws/exponential"])
+@pytest.mark.parametrize("stem", ["elements/quadratic_torque", "laws/exponential"])
 def test_missing_declaration(copy: Path, stem: str) -> None:
     (copy / f"src/clutchwork/{stem}.py").unlink()
     refused_by_generator(copy, f"{HEADERS}/{stem}.hpp", f"src/clutchwork/{stem}.py")
