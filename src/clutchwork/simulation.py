@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import time
 import warnings
 from dataclasses import dataclass
@@ -57,7 +58,7 @@ def simulate(
     t_end = end_time(t_end)
     chosen = (options or Options()).changed(changes)
     system = model if isinstance(model, System) else model.assemble()
-    control = Control(controllers(system.inputs), lambda: Channels(wiring(system)))
+    control = Control(controllers(system.inputs), functools.cache(lambda: Channels(wiring(system))))
     run = _trajectory(Job(system, t_end, chosen, control), progress)
     report_faults(run)
     return run
