@@ -134,6 +134,14 @@ void chatter() {
   }
 }
 
+/// A slip that passes zero again and again, as it is driven to, is no chatter.
+void swings() {
+  Model m;
+  driven<laws::NaiveSign>(m, {{0, {0, 0, 0, 0, 3, 40, 0, 0}}}, 50, stribeck_curve(0.15, 0.1, 1));
+  Run r(m);
+  CHECK(r.advance(20) == 0);
+}
+
 /// Clutches that stick and laws that do not on one driveline: what goes in by work is what the inertias hold.
 void energy() {
   Model m;
@@ -169,6 +177,7 @@ int main() {
   relaxes<laws::GMS>(true, {5});
   relaxes<laws::Leuven>(true, {1, 0});
   chatter();
+  swings();
   energy();
   return check::result();
 }

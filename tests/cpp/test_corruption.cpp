@@ -87,6 +87,11 @@ void odd_parameters(const Model& model) {
       CHECK(put(first + 1, 1) && put(first + 1, 3) && put(first, 0));
       for (double x : {0.0, -3.0, 4.5, 5.0, 9.0, 10.0, 11.0, 1e9}) CHECK(!put(first + 1, x));
       for (double x : {0.5, 1.0, 3.0, 4.0, -1.0, 1e9}) CHECK(!put(first, x));
+      Run r(whole);
+      for (std::int64_t k = first; k < first + 2; ++k) {
+        for (double x : {-1.0, 9.0, 1e9, double(NAN)}) CHECK(cw_set_param(r.run, k, x) == 0);
+      }
+      CHECK(cw_set_param(r.run, sys.contact_law_param[c], 0.3) == 1);
     });
   }
 }

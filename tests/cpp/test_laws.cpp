@@ -321,9 +321,11 @@ int main() {
   springs();
   dahl();
   drift();
-  remembers<laws::GMS>({100}, false);
-  // so sharp that it yields only where it slides
-  for (bool jumps : {false, true}) remembers<laws::Leuven>({300, 0}, jumps);
+  for (bool jumps : {false, true}) {
+    remembers<laws::GMS>({100}, jumps);
+    // so sharp that it yields only where it slides
+    remembers<laws::Leuven>({300, 0}, jumps);
+  }
   winds_up();
   karnopp();
   return check::result();
