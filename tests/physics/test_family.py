@@ -464,8 +464,25 @@ def test_pedal_over_a_diaphragm_spring() -> None:
             )
         )
         run = d.simulate(0.1, **TIGHT)
-        assert at_end(run, "spring.clamp_force") == pytest.approx(expected, rel=1e-9, abs=1e-6)
+        # it starts where the pedal is
+        np.testing.assert_allclose(run["spring.clamp_force"], expected, rtol=1e-9, atol=1e-6)
         assert at_end(run, "c.torque") == pytest.approx(-0.3 * 2 * 0.1 * expected, rel=1e-9, abs=1e-6)
+
+
+def test_a_piston_that_presses_at_the_start() -> None:
+    run = piston(3e5, 0.1, filled=True, initial_pressure=3e5)
+    np.testing.assert_allclose(run["p.pressure"], 3e5, rtol=1e-12)
+    d, _ = wheel()
+    d.add(cw.PressureActuator("p", command=0.0, lag=0.1, initial_pressure=1.0))
+    assert any("not filled" in str(problem) for problem in d.check())
+
+
+def test_a_diaphragm_spring_starts_at_the_travel_that_is_given() -> None:
+    given: dict[str, Any] = {"force": [(0.0, 4000.0), (5e-3, 0.0)], "interpolation": "linear"}
+    assert cw.DiaphragmSpring("s", travel=cw.Table([(0.0, 2e-3), (1.0, 0.0)]), **given).initial_states() == (2400.0,)
+    controlled = cw.Sampled(lambda time, readings: 0.0, 0.01)
+    assert cw.DiaphragmSpring("s", travel=controlled, **given).initial_states() == (4000.0,)
+    assert cw.DiaphragmSpring("s", travel=controlled, initial_travel=1.0, **given).initial_states() == (0.0,)
 
 
 # ---------------------------------------------------------------- wear on its own

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Points, SignalLike
-from clutchwork.schema import Role, State, choice, component, curve, param, signal
+from itertools import pairwise
+
+from clutchwork.node import Component, Points, Signal, SignalLike
+from clutchwork.schema import Role, State, choice, component, curve, option, param, signal
 from clutchwork.tables import Found, few_points
+from clutchwork.waveform import value
 
 
 @component(Role.PROCESS, states=(State("clamp_force", "N", "force on the linings"),))
@@ -34,11 +37,26 @@ class DiaphragmSpring(Component):
     )
     travel: SignalLike = signal("m", "travel of the bearing, or of the pedal")
     wear: SignalLike | None = signal("m", "depth of wear, none by default", default=None, otherwise=0.0)
+    initial_travel: float | None = option(
+        "m", "travel at the start, by default that of the signal, 0 where that is set in the run", default=None
+    )
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return few_points("force", len(self.force), self.interpolation)
 
     def initial_states(self) -> tuple[float, ...]:
-        """Clamp force at the start [N]: of a bearing that does not press."""
-        return (float(self.force[0][1]),)
+        """Clamp force at the travel of the start [N], straight between the points."""
+        travel = self.initial_travel
+        if travel is None:
+            travel = value(self.travel, 0.0) if isinstance(self.travel, Signal) else as_number(self.travel)
+        pressed = max(self.ratio * travel - self.free_travel, 0.0)
+        for (x, y), (x_next, y_next) in pairwise(self.force):
+            if pressed < x_next:
+                return (y + max(pressed - x, 0.0) * (y_next - y) / (x_next - x),)
+        return (float(self.force[-1][1]),)
+
+
+def as_number(travel: SignalLike) -> float:
+    """A number, 0 for what another element gives."""
+    return float(travel) if isinstance(travel, int | float) else 0.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from clutchwork.geometry import Found
 from clutchwork.node import Component, SignalLike
 from clutchwork.schema import Role, State, component, option, param, signal
 
@@ -26,7 +27,15 @@ class PressureActuator(Component):
     rise: float = param("Pa/s", "fastest rise of the pressure, no limit by default", default=1e15, above=0.0)
     fall: float = param("Pa/s", "fastest fall of the pressure, no limit by default", default=1e15, above=0.0)
     filled: bool = option("1", "filled at the start", default=False, flag=True)
+    initial_pressure: float = option("Pa", "pressure at the start, of a filled one", default=0.0, at_least=0.0)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        if self.filled or self.initial_pressure == 0.0:
+            return []
+        fault = f"is {self.initial_pressure:g} Pa, and the piston is not filled"
+        return [("initial_pressure", fault, "give filled = true")]
 
     def initial_states(self) -> tuple[float, ...]:
-        """Pressure at the start [Pa]: none, less what an empty piston has to fill."""
-        return (0.0 if self.filled else -self.fill_time * self.fill_pressure / self.lag,)
+        """Pressure at the start [Pa]; of an empty piston less than none by what it has to fill."""
+        return (self.initial_pressure if self.filled else -self.fill_time * self.fill_pressure / self.lag,)
