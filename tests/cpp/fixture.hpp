@@ -33,6 +33,12 @@ int flow_kind() {
   while (!visit_flow(kind, [](auto tag) { return std::is_same_v<typename decltype(tag)::type, E>; })) ++kind;
   return kind;
 }
+template <class E>
+int process_kind() {
+  int kind = 0;
+  while (!visit_process(kind, [](auto tag) { return std::is_same_v<typename decltype(tag)::type, E>; })) ++kind;
+  return kind;
+}
 template <class L>
 int law_kind() {
   int kind = 0;
@@ -131,6 +137,14 @@ class Model {
     flow_param_.push_back(put(params_, params)), flow_input_.push_back(put(refs_, inputs));
     return int(flow_kind_.size()) - 1;
   }
+  /// A component of shared states alone; returns the first.
+  template <class E>
+  int process(const Numbers& params, const Indices& inputs, const Numbers& state) {
+    process_kind_.push_back(fixture::process_kind<E>()), process_state_.push_back(std::int32_t(shared_.size()));
+    process_param_.push_back(put(params_, params)), process_input_.push_back(put(refs_, inputs));
+    for (double x : state) shared(x);
+    return process_state_.back();
+  }
   /// The heat of an element, or of a contact, goes to a shared state.
   void heat(Source what, int number, int to, double share = 1) {
     heats_.push_back({what, number}), heat_to_.push_back(to), heat_share_.push_back(share);
@@ -175,6 +189,8 @@ class Model {
     };
     Indices heat_direction;
     for (const Pair& h : heats_) heat_direction.push_back(h.base == of_contact_heat ? ne + h.follower : h.follower);
+    Indices process_state = process_state_;
+    for (std::int32_t& k : process_state) k += std::int32_t(state_.size());
     Numbers states = state_;
     states.insert(states.end(), shared_.begin(), shared_.end());
     Bytes out;
@@ -187,8 +203,8 @@ class Model {
     add(magic);
     auto count = [](const auto& items) { return std::int64_t(items.size()); };
     add(std::vector<std::int64_t>{schema_hash, n, nv, np, count(elements_), count(contacts_), count(states), nx,
-                                  count(flow_kind_), 0, count(heats_), count(input_first_), count(segment_time_),
-                                  count(params_), count(points_) / 3, count(refs_)});
+                                  count(flow_kind_), count(process_kind_), count(heats_), count(input_first_),
+                                  count(segment_time_), count(params_), count(points_) / 3, count(refs_)});
     add(rates(all, free_of, nv)), add(rates(all, given_of, np)), add(inertia_), add(mass), add(none);
     add(Indices(nv));
     add(rates(elements_, free_of, nv)), add(rates(elements_, given_of, np));
@@ -197,6 +213,7 @@ class Model {
     add(contact_kind_), add(contact_param_), add(contact_input_), add(contact_law_), add(contact_law_param_);
     add(contact_law_input_), add(contact_state_), add(contact_tolerance_), add(contact_initial_);
     add(flow_kind_), add(flow_param_), add(flow_input_), add(flow_from_), add(flow_to_);
+    add(process_kind_), add(process_param_), add(process_input_), add(process_state);
     add(heat_direction), add(heat_to_), add(heat_share_), add(shared_scale_), add(shared_offset_);
     add(given), add(resolve(refs_)), add(input_first_), add(input_count_), add(input_period_), add(input_value_);
     add(segment_time_), add(segment_coef_), add(params_), add(points_), add(start), add(angles), add(states);
@@ -217,6 +234,7 @@ class Model {
   Indices source_, refs_, input_first_, input_count_, element_kind_, element_param_, element_state_, element_input_;
   Indices contact_kind_, contact_law_, contact_param_, contact_law_param_, contact_input_, contact_state_;
   Indices contact_law_input_, contact_initial_, flow_kind_, flow_param_, flow_input_, flow_from_, flow_to_, heat_to_;
+  Indices process_kind_, process_param_, process_input_, process_state_;
   std::vector<Pair> elements_, contacts_, heats_;
 };
 
