@@ -14,9 +14,6 @@ from support.friction.law import Array, Branch, Guard, Law
 
 Course = Callable[[float], float]
 
-# short enough [s] that no Stribeck fall begins and ends within a step
-LARGEST_STEP = 0.01
-
 
 class System(Protocol):
     """A law with what moves it; the states of the law are the last of y."""
@@ -111,6 +108,7 @@ class _Run:
     times: Array
     rtol: float
     atol: float
+    step: float
 
     def __post_init__(self) -> None:
         self.t, self.y, self.branch = 0.0, self.system.start(), self.system.law.start()
@@ -126,7 +124,7 @@ class _Run:
     def _radau(self, t: float, y: Array, stop: float, first_step: float) -> Radau:
         return Radau(
             self.slope, t, y, stop, rtol=self.rtol, atol=self.atol, jac=self.jacobian, first_step=first_step,
-            max_step=LARGEST_STEP,
+            max_step=self.step,
         )  # fmt: skip
 
     def jacobian(self, t: float, y: Array) -> Array:
@@ -210,13 +208,20 @@ class _Run:
 
 
 def solve(
-    system: Moved | Pushed, times: Iterable[float], *, knots: Iterable[float] = (), rtol: float = 1e-10,
+    system: Moved | Pushed,
+    times: Iterable[float],
+    *,
+    knots: Iterable[float] = (),
+    rtol: float = 1e-10,
     atol: float = 1e-12,
-    max_step: float = 0.01,
-) -> Solution:  # fmt: skip
-    """Samples at rising times from rest at 0; the forcing is smooth between the knots."""
+    step: float = 0.01,
+) -> Solution:
+    """Samples at rising times from rest at 0; the forcing is smooth between the knots.
+
+    No step is longer than `step` [s]: an equilibrium that the error estimate sees no end of may end within it.
+    """
     samples = np.asarray(list(times), dtype=float)
-    run = _Run(system, samples, rtol, atol)
+    run = _Run(system, samples, rtol, atol, step)
     end = float(samples[-1])
     for stop in [*sorted(k for k in set(knots) if 0.0 < k < end), end]:
         run.advance(stop)
