@@ -37,4 +37,4 @@ def test_random_load_agrees_with_the_independent_integration(name: str, forces: 
         return
     expected = solve(Pushed(counterpart(law), force, mass=mass), times, knots=force.knots, atol=1e-11)
     run = core.run(core.pushed(law, cw.Table(list(force.points)), mass=mass), times)
-    assert_agree(run, expected)
+    assert_agree(law, run, expected)

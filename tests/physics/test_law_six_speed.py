@@ -20,7 +20,7 @@ FOURTH = 1.83021
 # the coefficient of the example without its step at rest: 0.065 + 0.075 exp(-slip/12.56)
 CURVE: dict[str, Any] = {"static": 0.14, "kinetic": 0.065, "speed": 12.555180016171073, "shape": "tustin"}
 # deflection at break-away 1e-4 rad
-BRISTLE = CURVE | {"stiffness": 1400.0, "damping": 0.01}
+BRISTLE = CURVE | {"stiffness": 1400.0, "damping": 0.05}
 ELEMENTS = [[2e-5, 0.1], [5e-5, 0.2], [1e-4, 0.3], [2e-4, 0.4]]
 FRICTION: dict[str, dict[str, Any]] = {
     "exponential": {"static": 0.16, "slow": 0.14, "fast": 0.065, "speed": CURVE["speed"]},
