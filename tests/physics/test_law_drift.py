@@ -13,7 +13,8 @@ from support.friction import core, sets
 from support.friction.build import COUNTERPARTS, counterpart
 from support.friction.compare import assert_agree
 from support.friction.histories import FIRST, SECOND, Drift
-from support.friction.solve import Pushed, solve
+from support.friction.solve import solve
+from support.friction.systems import Pushed
 
 # what the specification asks of a creep against its figures
 FIGURE = 0.05

@@ -12,7 +12,8 @@ from support.friction import core, sets
 from support.friction.build import counterpart
 from support.friction.compare import assert_agree
 from support.friction.histories import Corners
-from support.friction.solve import Pushed, solve
+from support.friction.solve import solve
+from support.friction.systems import Pushed
 
 # friction holds 1 N: forces of both sides, of rest and of sliding
 FORCES = st.lists(st.floats(-1.6, 1.6).map(lambda f: round(f, 3)), min_size=3, max_size=5)
