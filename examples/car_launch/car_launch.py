@@ -97,7 +97,7 @@ def picture(run: cw.Trajectory, path: Path) -> None:
     torques = {
         "engine": (drive, BLUE),
         "clutch": (run["clutch.torque"], RED),
-        "static capacity": (np.minimum(run["clutch.capacity"], 1.3 * run["clutch.torque"].max()), GREY),
+        "static capacity": (run["clutch.capacity"], GREY),
     }
     powers = {
         "engine": (1e-3 * power, BLUE),

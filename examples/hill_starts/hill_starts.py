@@ -26,17 +26,17 @@ GRADE = 0.2
 SAMPLE = 0.02  # s, in which the driver acts
 PERIOD = 9.0  # s from one start to the next
 
-# what the driver does in one start: time since it began [s] over pedal travel [m] and shares of throttle and brake
+# what the driver does in one start: time since it began [s] over pedal [m], throttle and force of the brake [N]
 PEDAL = ((0.5, 0.75, 2.6, 3.2, 5.0, 5.3), (0.12, 0.099, 0.069, 0.0, 0.0, 0.12))
 THROTTLE = ((0.3, 0.8, 2.4, 4.9, 5.0), (0.0, 0.7, 0.9, 0.9, 0.0))
-BRAKE = ((0.9, 1.1, 5.2, 5.4), (0.6, 0.0, 0.0, 0.6))
+BRAKE = ((0.9, 1.1, 5.2, 5.4), (4500.0, 0.0, 0.0, 4500.0))
 
 
 class ClutchTooHotWarning(UserWarning):
     """A clutch is above its limit; `time` [s] and `value` [K] say when and how far."""
 
     def __init__(self, time: float, value: float, limit: float) -> None:
-        super().__init__(f"clutch at {value:.1f} K above its limit of {limit:.1f} K, {time:.2f} s: let it cool")
+        super().__init__(f"clutch at {value:.2f} K above its limit of {limit:.2f} K, {time:.2f} s: let it cool")
         self.time, self.value = time, value
 
 
@@ -58,7 +58,7 @@ class Driver:
         return float(np.interp(self._since(time, readings), *PEDAL))
 
     def brake(self, time: float, readings: Readings) -> float:
-        """Share of the force of the brake."""
+        """Force on each pad of the brake [N]."""
         return float(np.interp(self._since(time, readings), *BRAKE))
 
     def _since(self, time: float, readings: Readings) -> float:
@@ -88,7 +88,7 @@ def starts(driver: Driver, t_end: float = 110.0) -> cw.Trajectory:
         clutch={"initial_temperature": WARM},
         flywheel={"temperature": WARM},
         air={"temperature": WARM - 20.0},
-        spring={"lag": SAMPLE},
+        spring={"lag": SAMPLE, "initial_travel": PEDAL[1][0]},
         slope={"torque": -1300.0 * 9.81 * sin(atan(GRADE))},
     )
     return model.simulate(t_end, dt=0.05, angles=False)
@@ -108,9 +108,9 @@ def table(run: cw.Trajectory) -> list[Start]:
     """Every start in which the clutch locked."""
     found = []
     for event in run.events.of("clutch"):
-        begun = PERIOD * (event.time // PERIOD)
-        if event.after != "locked" or event.time - begun < PEDAL[0][0]:
+        if event.after != "locked":
             continue
+        begun = PERIOD * (event.time // PERIOD)
         span = (run.time >= begun) & (run.time <= begun + PERIOD)
         hot, heat = run["clutch.temperature"][span], run["clutch.heat"][span]
         found.append(Start(event.time - begun, heat[-1] - heat[0], hot[0], hot.max()))

@@ -71,6 +71,8 @@ def test_the_temperature_of_the_plates_is_the_balance_of_its_flows(launch: cw.Tr
     plates = launch["clutch.temperature"]
     to_air = np.interp(launch["engine.speed"], (0.0, 100.0, 400.0), (1.0, 4.0, 12.0))
     lost = 80.0 * (plates - launch["flywheel.temperature"]) + to_air * (plates - launch["air.temperature"])
+    shown = launch["conduction.heat_flow"] + launch["plates_to_air.heat_flow"]
+    assert shown == pytest.approx(lost, rel=1e-9, abs=1e-9)
     held = launch["clutch.heat"][-1] - integral(lost, launch.time)
     # 1500 J/K; flows change slowly, trapezia are good to 1e-5
     assert 1500.0 * (plates[-1] - plates[0]) == pytest.approx(held, rel=1e-4)
@@ -110,11 +112,11 @@ def test_hill_starts_warn_with_time_and_value(hill: tuple[cw.Trajectory, object,
     run, driver, warned = hill
     example("hill_starts").check(run, driver)
     assert len(warned) == 1
-    words = re.fullmatch(r"clutch at ([\d.]+) K above its limit of 473.0 K, ([\d.]+) s: .*", str(warned[0].message))
+    words = re.fullmatch(r"clutch at ([\d.]+) K above its limit of 473.00 K, ([\d.]+) s: .*", str(warned[0].message))
     assert words
     value, time = map(float, words.groups())
-    # shown with one and two digits
-    assert run.at([time])["clutch.temperature"][-1] == pytest.approx(value, abs=0.3)
+    # shown with two digits
+    assert run.at([time])["clutch.temperature"][-1] == pytest.approx(value, abs=0.006)
 
 
 def test_the_table_of_the_readme_is_that_of_the_hill_starts(
