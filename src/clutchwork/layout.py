@@ -101,6 +101,7 @@ ROW = (
     ("contact_work", "contacts"),
     ("contact_mode", "contacts"),
     ("contact_capacity", "contacts"),
+    ("flow", "flows"),
     ("prescribed_work", "prescribed"),
     ("input", "inputs"),
 )

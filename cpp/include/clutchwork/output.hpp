@@ -219,6 +219,10 @@ void fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row)
     row[at.contact_capacity + c] =
         value(static_torque(ws, c, value(ws.output_torque[ne + c]) > 0 ? backward : forward));
   }
+  if (sys.flows > 0) {
+    shared_rates(ws, shot.rate, ws.torque, shot.y + form.nz(), shot.d + form.nz());
+    for (int f = 0; f < sys.flows; ++f) row[at.flow + f] = value(flow_value(ws, f));
+  }
   for (int p = 0; p < np; ++p) {
     row[at.prescribed_work + p] =
         value(ws.prescribed_work[p] + (fitted ? fitted_work(ws, nd + p, x, s_end * step.h) : T(0)));
