@@ -57,6 +57,17 @@ bool is_curve_range(const System& s, std::int64_t offset) {
   return found;
 }
 
+/// Whether the tables of the law of a contact fit each other.
+bool tables_fit(const System& s, std::int64_t contact) {
+  return visit_law(s.contact_law[contact], [&](auto tag) {
+    using L = typename decltype(tag)::type;
+    const auto& p =
+        *reinterpret_cast<const typename L::template Params<double>*>(s.params + s.contact_law_param[contact]);
+    if constexpr (requires { L::fits(p); }) return L::fits(p);
+    return true;
+  });
+}
+
 /// Whether n references from `first` on are to signals and shared states: torques know no rates of others.
 bool plain_inputs(const System& s, std::int64_t first, int n) {
   for (int i = 0; i < n && first + n <= s.n_input_refs; ++i) {
@@ -142,7 +153,7 @@ bool in_range(const System& s) {
              s.contact_law_input[i] + inputs <= s.n_input_refs && plain_inputs(s, s.contact_law_input[i], inputs);
     });
     visit_law_curves(s.contact_law[i], [&](int at) { good = good && curve_fits(s, s.contact_law_param[i] + at); });
-    if (!good) return false;
+    if (!good || !tables_fit(s, i)) return false;
     const int own = states_of(s.contact_kind[i], s.contact_law[i], s.params + s.contact_law_param[i]);
     good = s.contact_state[i] + own <= s.states - s.shared;
     states += own;
@@ -299,6 +310,8 @@ int cw_restore(cw_run* run, const void* bytes, std::int64_t n) {
     moved(ws.branch[k].law_params, old_arrays, mine);
     moved(ws.branch[k].input, old_arrays, mine);
     moved(ws.branch[k].input_slope, old_arrays, mine);
+    moved(ws.branch[k].law_input, old_arrays, mine);
+    moved(ws.branch[k].law_input_slope, old_arrays, mine);
   }
   for (std::int64_t i = 0; i < ws.sys.inputs; ++i) moved(ws.signal[i].coef, old_system, system);
   return 1;

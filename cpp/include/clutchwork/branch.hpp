@@ -15,6 +15,11 @@ int states_of(int kind, int law, const T* law_params) {
   });
 }
 
+/// Most states of a law.
+inline int most_law_states(int law) {
+  return visit_law(law, [](auto tag) { return int(decltype(tag)::type::states); });
+}
+
 /// Inputs of a torque element, a contact or a law.
 inline int element_inputs(int kind) {
   return visit_torque(kind, [](auto tag) { return int(decltype(tag)::type::inputs); });
@@ -67,10 +72,9 @@ CLUTCHWORK_INLINE T law_hold(int law, const T* params, const T* input, const dou
 
 /// Static torque of a contact that resists slip in a direction, not negative.
 template <class T>
-T contact_limit(const System& sys, int c, const T* params, const T* u, int direction) {
-  const T *own = params + sys.contact_param[c], *input = u + sys.contact_input[c];
-  const T hold =
-      law_hold(sys.contact_law[c], params + sys.contact_law_param[c], u + sys.contact_law_input[c], sys.points);
+T contact_limit(const System& sys, int c, const T* params, const T* input, const T* law_input, int direction) {
+  const T* own = params + sys.contact_param[c];
+  const T hold = law_hold(sys.contact_law[c], params + sys.contact_law_param[c], law_input, sys.points);
   return visit_contact(sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(own);
@@ -118,21 +122,21 @@ CLUTCHWORK_INLINE void dual_inputs(int count, const T* input, const T* slope, S*
   }
 }
 
-/// Torque of a held contact: what it can resist in the direction in which it is pulled.
+/// Torque of a held contact after `ahead` seconds: what it can resist in the direction in which it is pulled.
 template <class T>
-T held_torque(const Workspace<T>& ws, const Branch<T>& b) {
+T held_torque(const Workspace<T>& ws, const Branch<T>& b, double ahead = 0) {
+  T input[most_inputs], law_input[most_inputs];
+  for (int i = 0; i < b.inputs; ++i) input[i] = b.input[i] + T(ahead) * b.input_slope[i];
+  for (int i = 0; i < b.law_inputs; ++i) law_input[i] = b.law_input[i] + T(ahead) * b.law_input_slope[i];
   const int c = b.direction - int(ws.sys.elements);
-  return T(b.sign) * contact_limit(ws.sys, c, ws.params, ws.u, -b.sign);
+  return T(b.sign) * contact_limit(ws.sys, c, ws.params, input, law_input, -b.sign);
 }
 
-/// Its time derivative through the load; the static coefficient counts as constant.
+/// Its time derivative: limits are close to linear in their inputs.
 template <class T>
 T held_slope(const Workspace<T>& ws, const Branch<T>& b) {
-  using S = Dual<T, 1>;
-  S input[most_inputs];
-  dual_inputs<1>(b.inputs, b.input, b.input_slope, input);
-  const S load = contact_load<T, S>(b.kind, b.params, input, ws.sys.points);
-  return value(load.v) > 0 ? held_torque(ws, b) * load.d[0] / load.v : T(0);
+  constexpr double h = 1e-5;
+  return (held_torque(ws, b, h) - held_torque(ws, b, -h)) / T(2 * h);
 }
 
 /// Torque of a sliding contact with a law that sticks, on its follower.
@@ -241,7 +245,7 @@ template <class T>
     const S f = bending_torque<n, T, S>(ws, b, x, own.at, input.at, law_input.at, own_rates.at);
     return take_partials(b, f, own_rates.at, b.states, rates, out);
   };
-  if (b.states <= 1) return with(std::integral_constant<int, 1>{});
+  if (most_law_states(b.law) <= 1) return with(std::integral_constant<int, 1>{});
   return with(std::integral_constant<int, most_own_states>{});
 }
 

@@ -142,7 +142,10 @@ Status switch_modes(Workspace<T>& ws) {
     for (int c = 0; c < nc; ++c) ws.impulse[c] = ws.mode[c] == locked && ws.mode_before[c] != locked;
   }
   if (!settle_contacts(ws, ws.located)) return Status::no_mode;
-  if (!stop_within_tolerance(ws, ws.located)) return Status::no_mode;
+  if (stops_short(ws, ws.located)) {
+    // its impulse may bring others to rest
+    if (!stop_within_tolerance(ws) || !settle_contacts(ws, -1)) return Status::no_mode;
+  }
   for (int d = 0; d < ne; ++d) {
     if (edge_count(ws, d) > 0) ws.piece[d] = piece_of(ws, d, value(rate_of(ws, d)));
   }

@@ -77,7 +77,9 @@ T load_of(const Workspace<T>& ws, int c) {
 /// Static torque of a contact now that resists slip in a direction [N m].
 template <class T>
 T static_torque(const Workspace<T>& ws, int c, int direction) {
-  return ws.fault[c] == cannot_transmit ? T(0) : contact_limit(ws.sys, c, ws.params, ws.u, direction);
+  return ws.fault[c] == cannot_transmit ? T(0)
+                                        : contact_limit(ws.sys, c, ws.params, ws.u + ws.sys.contact_input[c],
+                                                        ws.u + ws.sys.contact_law_input[c], direction);
 }
 
 /// What a contact can hold now against slip in a direction [N m]: nothing where its law never sticks.
@@ -490,11 +492,16 @@ bool settle_impulses(Workspace<T>& ws, bool at_start) {
   return true;
 }
 
+/// Whether a contact has locked while it still slips within its own tolerance.
+template <class T>
+bool stops_short(const Workspace<T>& ws, int located) {
+  return located >= 0 && ws.mode[located] == locked && ws.sys.contact_tolerance[located] > 0;
+}
+
 /// A contact that may lock below a slip of its own is stopped by an impulse; the others that are locked stay so.
 template <class T>
-bool stop_within_tolerance(Workspace<T>& ws, int located) {
+bool stop_within_tolerance(Workspace<T>& ws) {
   const System& sys = ws.sys;
-  if (located < 0 || ws.mode[located] != locked || sys.contact_tolerance[located] == 0) return true;
   const int nc = int(sys.contacts), ne = int(sys.elements);
   int* list = ws.iscratch;
   int n = 0;

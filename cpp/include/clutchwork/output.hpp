@@ -90,6 +90,8 @@ T source_torque(const Workspace<T>& ws, const Snapshot<T>& shot, int p) {
 /// Nodes of the Gauss rule on [0, 1] and the coefficients of its Lagrange polynomials.
 struct Gauss {
   static constexpr double node[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
+  static constexpr double weight[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
+                                       0.17392742256872693};
   double coef[4][4];
   constexpr Gauss() : coef{} {
     for (int i = 0; i < 4; ++i) {

@@ -310,6 +310,34 @@ double signal_step(const Workspace<T>& ws) {
   return fastest > 0 ? (ws.options.work ? 0.5 : 1.5) / fastest : infinity;
 }
 
+/// Error of the work over a step in units of the tolerance, by halving. Where speeds are prescribed no state may feel
+/// the torque, so nothing else keeps the steps short enough for the quadrature.
+template <class Form, class Integrator>
+double work_error(Form& form, Step<Form>& step) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  Integrator::prepare_dense(form, step);
+  T *whole = ws.power, *halves = ws.power + ws.n_directions;
+  for (int k = 0; k < ws.n_branches; ++k) whole[k] = halves[k] = T(0);
+  auto add = [&](double start, double width, T* sum) {
+    for (int g = 0; g < 4; ++g) {
+      const double s = start + width * gauss.node[g];
+      interpolate(form, step, s, step.point());
+      observe(form, step.t + s * step.h, step.point(), step.slope(), ws.scratch, ws.torque);
+      for (int k = 0; k < ws.n_branches; ++k)
+        sum[k] += T(width * step.h * gauss.weight[g]) * ws.torque[k] * ws.scratch[k];
+    }
+  };
+  add(0, 1, whole), add(0, 0.5, halves), add(0.5, 0.5, halves);
+  double error = 0;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const double done = value(ws.work[ws.branch[k].direction]);
+    const double tolerance = ws.options.atol + ws.options.rtol * (abs(done) + abs(value(halves[k])));
+    error = larger(error, abs(value(whole[k] - halves[k])) / tolerance);
+  }
+  return error;
+}
+
 /// Integrate until an event, the end time, or a full buffer. `running`: an event is waiting to be settled.
 template <class Form, class Integrator>
 Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink) {
@@ -359,7 +387,9 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
     const bool cut = ws.time + 1.0001 * reach >= stop;
     if (cut) reach = stop - ws.time;
     step.t = ws.time;
-    const double error = Integrator::advance(form, step, reach);
+    double error = Integrator::advance(form, step, reach);
+    if (error <= 1 && ws.options.work && rates_bend(ws))
+      error = larger(error, work_error<Form, Integrator>(form, step));
     if (!(error <= 1)) {
       ++ws.statistics.rejected;
       h = reach * (error < 1e300 ? larger(0.2, 0.9 * pow(error, -0.2)) : 0.1);

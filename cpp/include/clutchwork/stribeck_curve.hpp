@@ -45,6 +45,22 @@ CLUTCHWORK_INLINE S stribeck_share(const StribeckCurve<T>& c, S x) {
   }
 }
 
+/// Slip beyond which nothing of the static excess is left that counts: a step that starts there must not run over it.
+template <class T>
+CLUTCHWORK_INLINE double stribeck_reach(const StribeckCurve<T>& c) {
+  const double speed = value(c.speed);
+  switch (Shape(int(value(c.shape)))) {
+    case Shape::tustin:
+      return 12 * speed;
+    case Shape::lorentz:
+      return 10 * speed;
+    case Shape::power:
+      return pow(12, 1 / value(c.exponent)) * speed;
+    default:
+      return 3.5 * speed;
+  }
+}
+
 /// Coefficient over a slip in the direction of sliding, without the viscous part; smooth across zero.
 template <class T, class S>
 CLUTCHWORK_INLINE S stribeck_forward(const StribeckCurve<T>& c, S slip) {

@@ -15,6 +15,12 @@ struct FrictionMap {
   static constexpr int states = 0;
   static constexpr int inputs = 1;
 
+  /// Whether the sizes of the tables belong together.
+  template <class T>
+  static bool fits(const Params<T>& p) {
+    const double rows = value(p.temperatures.count), columns = value(p.speeds.count);
+    return rows >= 2 && columns >= 2 && value(p.static_.count) == rows && value(p.kinetic.count) == rows * columns;
+  }
   template <class T>
   static Manner manner(const Params<T>& p) {
     return Manner(p);

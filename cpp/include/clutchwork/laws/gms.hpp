@@ -12,6 +12,11 @@ struct GMS {
     T attraction;       ///< [1/s]
   };
   static constexpr int states = most_elements;
+  // an element on its way back is below its limit when it is so far inside
+  static constexpr double slack = 1e-7;
+
+  /// Whether an element sticks beyond the limit, which fell below it, and is on its way back.
+  static bool returns(int piece, int i) { return element_slides(piece, most_elements + i); }
 
   template <class T>
   static int count(const Params<T>& p) {
@@ -39,21 +44,28 @@ struct GMS {
     return p.static_;
   }
 
+  /// How far an element is from the coefficient at which it slides, over that coefficient.
+  template <class T, class S>
+  static S room(const Params<T>& p, const At<S>& at, int i) {
+    return S(1) - abs(at.state[i]) / (T(element_share(p.elements, at.points, i)) * sliding_level(p, at.rate));
+  }
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
     S least = S(1);
-    const S level = sliding_level(p, at.rate);
-    const T along = T(value(at.rate) < 0 ? -1 : 1);
     for (int i = 0; i < count(p); ++i) {
       if (element_slides(at.piece, i)) continue;
-      const S room = S(1) - along * at.state[i] / (T(element_share(p.elements, at.points, i)) * level);
-      if (room < least) least = room, who = i;
+      const S left = returns(at.piece, i) ? S(slack) - room(p, at, i) : room(p, at, i);
+      if (left < least) least = left, who = i;
     }
     return least;
   }
   template <class T>
-  static int cross(const Params<T>&, const At<T>& at, int who, T*) {
-    return who == turned ? 0 : at.piece | 1 << who;
+  static int cross(const Params<T>&, const At<T>& at, int who, T* state) {
+    if (who == turned) return 0;
+    const int back = 1 << (most_elements + who);
+    if (returns(at.piece, who)) return at.piece & ~back;
+    // only the slip toward its limit breaks an element loose
+    return at.piece | ((value(at.rate) < 0) == (value(state[who]) < 0) ? 1 << who : back);
   }
   template <class T>
   static bool turns(const Params<T>&, int piece) {

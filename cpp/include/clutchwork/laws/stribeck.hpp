@@ -17,6 +17,14 @@ struct Stribeck {
   static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
+  template <class T>
+  static int edges(const Params<T>&) {
+    return 1;
+  }
+  template <class T>
+  static double edge(const Params<T>& p, const double*, int) {
+    return stribeck_reach(p);
+  }
 };
 
 }  // namespace clutchwork::laws
