@@ -143,8 +143,9 @@ Status switch_modes(Workspace<T>& ws) {
   }
   if (!settle_contacts(ws, ws.located)) return Status::no_mode;
   if (stops_short(ws, ws.located)) {
+    if (!stop_within_tolerance(ws)) return Status::no_mode;
     // its impulse may bring others to rest
-    if (!stop_within_tolerance(ws) || !settle_contacts(ws, -1)) return Status::no_mode;
+    if (others_rest(ws, ws.located) && !settle_contacts(ws, -1)) return Status::no_mode;
   }
   for (int d = 0; d < ne; ++d) {
     if (edge_count(ws, d) > 0) ws.piece[d] = piece_of(ws, d, value(rate_of(ws, d)));

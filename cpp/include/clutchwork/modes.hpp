@@ -498,6 +498,16 @@ bool stops_short(const Workspace<T>& ws, int located) {
   return located >= 0 && ws.mode[located] == locked && ws.sys.contact_tolerance[located] > 0;
 }
 
+/// Whether contacts that count as slipping are at rest, apart from one.
+template <class T>
+bool others_rest(const Workspace<T>& ws, int located) {
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (c == located || !ws.loaded[c] || ws.mode[c] == locked || !may_stick(ws, c) || is_rigid(ws, c)) continue;
+    if (abs(value(rate_of(ws, int(ws.sys.elements) + c))) <= slip_tolerance(ws)) return true;
+  }
+  return false;
+}
+
 /// A contact that may lock below a slip of its own is stopped by an impulse; the others that are locked stay so.
 template <class T>
 bool stop_within_tolerance(Workspace<T>& ws) {
