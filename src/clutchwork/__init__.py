@@ -38,6 +38,8 @@ from clutchwork.schema import REGISTRY, schema_hash
 
 if TYPE_CHECKING:
     # what type checkers and editors shall know by name; at run time the registry decides
+    from clutchwork import fit as fit
+    from clutchwork import rig as rig
     from clutchwork.elements.band_brake import BandBrake as BandBrake
     from clutchwork.elements.bearing_friction import BearingFriction as BearingFriction
     from clutchwork.elements.brake import Brake as Brake
@@ -122,6 +124,9 @@ _LAZY = {
     "simulate": "simulation",
 }
 
+# packages that are imported when they are first used
+_PACKAGES = ("fit", "rig")
+
 _DECLARED = {cls.__name__: cls for kinds in REGISTRY.values() for cls in kinds.values()}
 globals().update(_DECLARED)
 
@@ -147,6 +152,8 @@ def __getattr__(name: str) -> Any:
         value = getattr(import_module(f"clutchwork.{_LAZY[name]}"), name)
         globals()[name] = value
         return value
+    if name in _PACKAGES:
+        return import_module(f"clutchwork.{name}")
     raise AttributeError(f"clutchwork has no {name!r}{near(name, __all__)}")
 
 

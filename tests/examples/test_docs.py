@@ -108,7 +108,8 @@ def test_every_option_is_explained() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "concept", "arguments"), [("laws", "FrictionLaw", "Lorentzian"), ("elements", "TorqueElement", "EddyBrake")]
+    ("kind", "concept", "arguments"),
+    [("laws", "FrictionLaw", "Lorentzian"), ("elements", "TorqueElement", "EddyBrake")],
 )
 def test_the_component_of_the_extension_page_fits_the_core(
     kind: str, concept: str, arguments: str, tmp_path: Path

@@ -47,7 +47,9 @@ def gearbox(
         given = pressures[name]
         pressure = cw.Table([(float(t), float(p)) for t, p in given]) if isinstance(given, Sequence) else given
         friction = law or cw.Exponential(**LAW)
-        d.add(cw.Clutch(name, base=w[base], follower=w[follower], friction=friction, gain=GAIN[name], pressure=pressure))
+        d.add(
+            cw.Clutch(name, base=w[base], follower=w[follower], friction=friction, gain=GAIN[name], pressure=pressure)
+        )
     d.add(cw.SpeedTorque("engine", shaft=w["w1"], torque=ENGINE))
     d.add(cw.ResistingTorque("load", shaft=w["w8"], torque=4000.0, speed=0.5))
     return d
