@@ -139,10 +139,10 @@ class Model {
   }
   /// A component of shared states alone; returns the first.
   template <class E>
-  int process(const Numbers& params, const Indices& inputs, const Numbers& state) {
+  int process(const Numbers& params, const Indices& inputs, const Numbers& state, double scale = 1, double offset = 0) {
     process_kind_.push_back(fixture::process_kind<E>()), process_state_.push_back(std::int32_t(shared_.size()));
     process_param_.push_back(put(params_, params)), process_input_.push_back(put(refs_, inputs));
-    for (double x : state) shared(x);
+    for (double x : state) shared(x, scale, offset);
     return process_state_.back();
   }
   /// The heat of an element, or of a contact, goes to a shared state.

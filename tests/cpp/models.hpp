@@ -74,4 +74,37 @@ inline Model hysteresis() {
   return m;
 }
 
+/// Shafts whose plates warm up and wear, pressed by a piston; they fail late. Oil, air, a map of friction, a freewheel
+/// that rolls over, teeth that mesh. Sparse form.
+inline Model warm() {
+  Model m;
+  const int in = m.shaft(0.4, 60), out = m.shaft(1.1), side = m.shaft(0.3, 4), last = m.shaft(0.6);
+  const int plates = m.shared(0, 1 / 300.0, 300), hub = m.shared(0, 1 / 900.0, 310);
+  const int command = m.signal({{0, {50}}, {1.2, {10, -20}}, {1.6, {60}}}), none = m.constant(0);
+  const int push = m.signal({{0, {12}}, {1.0, {15, 0, 0, 0, 20, 9, 0, 0}}, {1.7, {-60}}}),
+            fails = m.signal({{0, {0, 0.21}}});
+  const int piston = m.process<elements::PressureActuator>({0.05, 0.02, 5, 2, 900, 900}, {command}, {-2});
+  const int wear = m.process<elements::Wear>({1e-9, 0.02, 0}, {source(of_contact_heat, 0)}, {0}, 5e-8);
+  m.element<elements::Torque>(housing, in, {}, {push});
+  m.element<elements::SpringDamper>(out, side, {80, 0.4, 0});
+  m.element<elements::DogClutch>(side, last, {8, 0.1, 600, 0.01, 15, 0.5, 0.05, 0, 0},
+                                 {m.signal({{0, {0}}, {0.6, {1}}})}, {0.02, 0});
+  const Numbers map = joined({{0, 0},
+                              m.curve({300, 350, 400}, {0, 0, 0}),
+                              m.curve({0, 10, 60}, {0, 0, 0}),
+                              m.curve({0.34, 0.33, 0.31}, {0, 0, 0}),
+                              m.curve({0.33, 0.31, 0.29, 0.32, 0.29, 0.26, 0.3, 0.26, 0.22}, Numbers(9))});
+  m.contact<elements::PlateContact, laws::FrictionMap>(
+      in, out, {3, 1, 0.8, 1e-4, 1e4, 0, 1, 1}, {source(of_shared, piston), source(of_shared, wear), none, fails}, map,
+      false, {}, 0, {source(of_shared, plates)});
+  m.contact<elements::SpragClutch, laws::Coulomb>(housing, out, {6, 0.5}, {}, {1, 1});
+  m.contact<elements::BearingFriction, laws::LuGre>(housing, last, {4}, {}, {0.2, 0.15, 3, 0, 2, 0.001, 40, 0.05});
+  m.flow<elements::Conduction>(plates, hub, {15}, {source(of_shared, plates), source(of_shared, hub)});
+  m.flow<elements::OilFlow>(plates, -1, {2000}, {source(of_shared, plates), m.constant(300), m.constant(0.01)});
+  m.flow<elements::Convection>(hub, -1, m.curve({0, 20, 90}, {2, 8, 20}),
+                               {source(of_shared, hub), m.constant(295), source(of_contact_rate, 1)});
+  m.heat(of_contact_heat, 0, plates, 0.9), m.heat(of_contact_heat, 2, hub), m.heat(of_heat, 1, hub);
+  return m;
+}
+
 }  // namespace fixture

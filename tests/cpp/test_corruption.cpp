@@ -65,7 +65,7 @@ void corrupt(const Model& model, std::uint64_t seed, int rounds) {
   }
 }
 
-/// Every parameter of every law takes odd values, its curves and their counts among them.
+/// Every parameter takes odd values, the curves of laws and their counts among them.
 void odd_parameters(const Model& model) {
   const Bytes whole = model.bytes();
   System sys{};
@@ -83,10 +83,10 @@ void odd_parameters(const Model& model) {
   for (std::int64_t c = 0; c < sys.contacts; ++c) {
     visit_law_curves(sys.contact_law[c], [&](int at) {
       const std::int64_t first = sys.contact_law_param[c] + at;
-      // as many as there are points, or states
-      CHECK(put(first + 1, 1) && put(first + 1, 3) && put(first, 0));
-      for (double x : {0.0, -3.0, 4.5, 5.0, 9.0, 10.0, 11.0, 1e9}) CHECK(!put(first + 1, x));
-      for (double x : {0.5, 1.0, 3.0, 4.0, -1.0, 1e9}) CHECK(!put(first, x));
+      const double n = double(sys.n_points), from = sys.params[first], count = sys.params[first + 1];
+      for (double x : {0.0, -3.0, n - from + 0.5, n - from + 1, 1e9, double(NAN)}) CHECK(!put(first + 1, x));
+      for (double x : {-1.0, n - count + 0.5, n - count + 1, n, 1e9, double(NAN)}) CHECK(!put(first, x));
+      for (double x : {1.0, 2.0, 3.0}) put(first + 1, x), put(first, x);
       Run r(whole);
       for (std::int64_t k = first; k < first + 2; ++k) {
         for (double x : {-1.0, 9.0, 1e9, double(NAN)}) CHECK(cw_set_param(r.run, k, x) == 0);
@@ -162,8 +162,10 @@ int main() {
   corrupt(chain(), 4, 1500);
   corrupt(bristles(), 5, 800);
   corrupt(hysteresis(), 6, 600);
+  corrupt(warm(), 7, 600);
   odd_parameters(bristles());
   odd_parameters(hysteresis());
+  odd_parameters(warm());
   few_states();
   CHECK(refused > 500 && ran > 500);
   std::printf("%d refused, %d ran\n", refused, ran);

@@ -82,5 +82,6 @@ int main() {
   silent(bristles(), 3.0, 1);
   silent(hysteresis(), 3.0, 1);
   silent(hysteresis(), 3.0, 2);
+  silent(warm(), 3.0, 1);
   return check::result();
 }

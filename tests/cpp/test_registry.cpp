@@ -108,7 +108,8 @@ void over_pieces(const P& p, check::Random& g, F&& visit) {
     if constexpr (SizedLaw<E>) count = E::count(p);
     const int all = (1 << count) - 1;
     visit(0), visit(all);
-    if (count > 1) visit(g.below(all));
+    // elements that slide, and some that are on their way back
+    if (count > 1) visit(g.below(all)), visit(g.below(all) | all << most_elements);
     if constexpr (requires { E::behind; }) {
       for (int piece = 2; piece <= E::behind; ++piece) visit(piece);
     }
@@ -163,10 +164,8 @@ void torque_kinds_all() {
         out[0] = E::torque(p, at);
         E::state_rates(p, at, out + 1);
         if constexpr (HeatingElement<E>) out[1 + E::states] = E::heat(p, at);
-        int who = turned;
-        if constexpr (SwitchingLaw<E>) out[1 + E::states + HeatingElement<E>] = E::margin(p, at, who);
       };
-      over_arguments<E>(call, fields, E::inputs, E::states, 1 + E::states + HeatingElement<E> + SwitchingLaw<E>);
+      over_arguments<E>(call, fields, E::inputs, E::states, 1 + E::states + HeatingElement<E>);
     });
   }
 }
@@ -382,14 +381,8 @@ struct Probe {
       for (int i = 0; i < 2 * most_inputs; ++i) input[i] = keep[i] + dt * slope[i];
       return rate + dt * turn;
     };
-    // the static coefficient of a held contact counts as constant
-    if (!b.held || plain_hold()) compare_along(in_time, p.by_time, g_time, 1);
+    compare_along(in_time, p.by_time, g_time, 1);
     if (!b.held) compare_inputs(rate), compare_heat(rate, p);
-  }
-  /// Whether the static torque follows the load alone.
-  bool plain_hold() const {
-    const bool limited = visit_contact(b.kind, [](auto tag) { return LimitedContact<typename decltype(tag)::type>; });
-    return !limited && b.law_inputs == 0;
   }
   /// What shared states do to the torque.
   void compare_inputs(double rate) {

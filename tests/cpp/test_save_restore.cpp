@@ -56,5 +56,6 @@ int main() {
   for (double middle : {0.0, 0.1, 0.35, 0.5, 0.77, 1.3}) continues(chain(), middle, 2.0);
   for (double middle : {0.0, 0.4, 0.8, 1.21, 1.6, 1.9, 2.5}) continues(bristles(), middle, 3.0);
   for (double middle : {0.0, 0.2, 0.7, 1.05, 1.3, 1.61, 2.1}) continues(hysteresis(), middle, 2.5);
+  for (double middle : {0.0, 0.3, 0.67, 1.3, 2.3, 2.4, 2.7}) continues(warm(), middle, 3.0);
   return check::result();
 }

@@ -88,7 +88,7 @@ void processes() {
   Model m;
   const int a = m.shaft(2, 30);
   const int piston = m.process<elements::PressureActuator>({lag, 0, 0, 0, 1e9, 1e9}, {m.constant(wanted)}, {0});
-  const int depth = m.process<elements::Wear>({rate, area, 0}, {source(of_contact_heat, 0)}, {1e-6});
+  const int depth = m.process<elements::Wear>({rate, area, 0}, {source(of_contact_heat, 0)}, {0}, rate / area);
   m.contact<elements::Clutch, laws::Coulomb>(housing, a, {1}, {source(of_shared, piston)}, {0.5, 0.4});
   TightRun r(m);
   r.grid(2, 100, [&](double t, const double* row) {
@@ -96,7 +96,7 @@ void processes() {
     // the impulse of the brake
     const double impulse = 0.4 * wanted * (t - lag * (1 - std::exp(-t / lag)));
     CHECK_NEAR(row[r.at.speed], 30 - 0.5 * impulse, 1e-7);
-    CHECK_NEAR(row[r.at.state + depth], 1e-6 - rate / area * row[r.at.contact_work], 1e-13);
+    CHECK_NEAR(row[r.at.state + depth], -row[r.at.contact_work], 1e-6);
   });
 }
 
