@@ -71,6 +71,28 @@ def test_start_values_of_all_sorts() -> None:
     assert law_from_text("mykhalevych", "static=0.2,kinetic=0.1,elastic=1e-4,speed=1,viscous=1,passive=true").passive  # type: ignore[attr-defined]
 
 
+def test_start_values_of_tables() -> None:
+    start = "temperatures=280/400,speeds=0/50/1e2,static=.3/.25,kinetic=0.2/0.19/0.18//0.15/0.14/0.13"
+    law = law_from_text("friction_map", start)
+    assert [tuple(row) for row in law.kinetic] == [(0.2, 0.19, 0.18), (0.15, 0.14, 0.13)]  # type: ignore[attr-defined]
+    assert tuple(law.speeds) == (0.0, 50.0, 100.0)  # type: ignore[attr-defined]
+    assert law.temperature is None  # type: ignore[attr-defined]
+    with pytest.raises(ValueError, match="'e' is no number"):
+        law_from_text("friction_map", "speeds=0/e")
+
+
+def test_a_temperature(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    start = "static=280:0.2/400:0.15,kinetic=280:0.12/400:0.1"
+    line = ["fit", FILE, "--law", "temperature_table", *COLUMNS, "--start", start]
+    assert main(line) == 2
+    assert "temperature is missing" in capsys.readouterr().err
+    assert main([*line, "--temperature", "280", "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert [p["name"] for p in told["parameters"] if p["determined"]] == ["kinetic[1]"]
+    head = (tmp_path / "out" / "fit" / "samples.csv").read_text().splitlines()[0]
+    assert head.endswith(",temperature [K]")
+
+
 @pytest.mark.parametrize(
     ("changes", "code", "words"),
     [

@@ -57,11 +57,34 @@ def test_units_of_translation(tmp_path: Path) -> None:
     assert found["speed"].value == pytest.approx(2.0, rel=0.01)
 
 
+@pytest.mark.parametrize("head", ["theta [K]", "theta"])
+def test_a_column_of_temperature(head: str, tmp_path: Path) -> None:
+    law = rig_data.true_law(cw.TemperatureTable)
+    data = rig_data.measured(law)
+    path = tmp_path / "warm.csv"
+    np.savetxt(
+        path,
+        np.column_stack([*data.arguments.values()]),
+        delimiter=",",
+        header=f"{SI},{head}",
+        comments="",
+        fmt="%.17g",
+    )
+    found = fit_csv(path, law, slip="slip", torque="torque", load="load", temperature="theta", time="time")
+    wanted = fit_law(law, **data.arguments)
+    for a, b in zip(found.parameters, wanted.parameters, strict=True):
+        assert a.value == pytest.approx(b.value, rel=1e-9)
+    held = fit_csv(path, law, slip="slip", torque="torque", load="load", temperature=300.0)
+    assert set(held.samples.temperature) == {300.0}  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize(
     ("head", "names", "words"),
     [
         (SI, {"slip": "slipp", "torque": "torque"}, "did you mean 'slip"),
         (SI, {"slip": "slip", "torque": "torque", "time": "t"}, "no column 't'"),
+        (SI, {"slip": "slip", "torque": "torque", "temperature": "theta"}, "no column 'theta'"),
+        ("time,slip,torque,T [degC]", {"slip": "slip", "torque": "torque", "temperature": "T"}, r"give it in \[K\]"),
         ("time,slip [s],torque,load", {"slip": "slip", "torque": "torque"}, "does not fit"),
         ("time,slip [rads],torque,load", {"slip": "slip", "torque": "torque"}, "unknown unit"),
         ("time,slip [m/s],torque [N m],load", {"slip": "slip", "torque": "torque"}, "mix rotation and translation"),

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import clutchwork as cw
-import clutchwork.fit
+import clutchwork.fit.temperature
 from clutchwork.fit import FitError, fit_law
+from clutchwork.schema import Spec
 from support import rig_data
 
 LAW = cw.Stribeck(static=0.15, kinetic=0.1, speed=2.0)
+
+
+MAP = rig_data.true_law(cw.FrictionMap)
 
 
 def good() -> dict[str, Any]:
@@ -79,6 +84,43 @@ def test_laws() -> None:
         fit_law("stribeck", **good())  # type: ignore[arg-type]
     with pytest.raises(FitError, match=r"start values that do not fit.*static"):
         fit_law(cw.Stribeck(static=0.1, kinetic=0.2, speed=2.0), **good())
+
+
+@pytest.mark.parametrize(
+    ("law", "temperature", "words"),
+    [
+        (LAW, 300.0, "temperature is given, and Stribeck does not depend on it; leave it out"),
+        (replace(MAP, temperature=None), None, "temperature is missing, and FrictionMap depends on it"),
+        (replace(MAP, temperature=cw.Step(height=50.0, start=0.5)), None, "a fit runs no signals; give the measured"),
+        (MAP, "warm", "temperature is 'warm'; give a number in .K"),
+        (MAP, [300.0] * 3, "temperature has 3 values, time has 960"),
+        (MAP, float("nan"), "temperature is nan at sample 0"),
+        (MAP, -20.0, "temperature is -20 at sample 0; give it in kelvin"),
+        (replace(MAP, extrapolation="error"), 270.0, "temperature is 270 to 270 K, the table of the law 280 to 500"),
+        (replace(MAP, extrapolation="error", speeds=(0.0, 1.0, 2.0)), 300.0, "slip is 0 to 12 rad/s, the table"),
+    ],
+    ids=lambda value: "" if not isinstance(value, str) else value,
+)
+def test_temperatures(law: Any, temperature: Any, words: str) -> None:
+    with pytest.raises(FitError, match=words):
+        fit_law(law, **good(), temperature=temperature)
+
+
+def test_experiments_stay_inside_a_table_that_must_not_be_left() -> None:
+    law = replace(rig_data.true_law(cw.FrictionTable), extrapolation="error")
+    slow = {name: row[:400] for name, row in rig_data.measured(law).arguments.items()}
+    slow["slip"] = np.minimum(np.abs(slow["slip"]), 40.0) * np.sign(slow["slip"])
+    result = fit_law(law, **slow, free=["kinetic"])
+    assert result["kinetic[3]"].reason == "no sample depends on it"
+    asked = float(result["kinetic[3]"].experiment.partition("slip near ")[2].partition(" rad/s")[0])
+    assert 50.0 / 1.5 < asked < 100.0 / 1.5
+
+
+def test_inputs_that_no_fit_can_give(monkeypatch: pytest.MonkeyPatch) -> None:
+    wet = [(["wetness"], Spec("signal", "1", "wetness of the lining"))]
+    monkeypatch.setattr(clutchwork.fit.temperature, "inputs", lambda cls: iter(wet))
+    with pytest.raises(FitError, match="wetness drives Stribeck, and a fit knows no signals but the temperature"):
+        fit_law(LAW, **good())
 
 
 def test_bounds_are_kept() -> None:

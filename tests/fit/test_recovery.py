@@ -11,10 +11,11 @@ import pytest
 import clutchwork as cw
 from clutchwork.fit import fit_law
 from clutchwork.fit.adjustable import default_free
+from clutchwork.fit.ordinates import ordinates
 from clutchwork.schema import Role
 from support import rig_data, samples
 
-# so rarely does a right interval miss: 1 in 1000, over some 60 parameters with fixed noise
+# so rarely does a right interval miss: 1 in 1000, over some 80 parameters with fixed noise
 SURE = 0.999
 # the band in which a Karnopp law locks leaves no trace in the torque over a measured slip
 TRACELESS = {"band"}
@@ -22,9 +23,8 @@ TRACELESS = {"band"}
 
 def value(law: Any, name: str) -> float:
     """A parameter, or the ordinate behind a name such as `kinetic[2]`."""
-    field, _, place = name.partition("[")
-    found = getattr(law, field)
-    return float(found[int(place[:-1]) - 1][1]) if place else float(found)
+    field = name.partition("[")[0]
+    return float(getattr(law, field)) if field == name else ordinates(law, field)[name]
 
 
 @pytest.mark.parametrize("cls", samples.declared(Role.LAW), ids=lambda cls: cls.__name__)
@@ -96,6 +96,54 @@ def test_the_torque_of_a_trajectory_can_be_fitted() -> None:
     # the solver's tolerance of 1e-6
     assert result["speed"].value == pytest.approx(20.0, rel=1e-4)
     assert result["slow"].value == pytest.approx(0.15, rel=1e-4)
+
+
+@pytest.mark.parametrize("cls", [cw.FrictionTable, cw.TemperatureTable, cw.FrictionMap])
+@pytest.mark.parametrize("settings", [{"interpolation": "smooth"}, {"extrapolation": "nearest"}], ids=str)
+def test_tables_of_all_sorts_are_found_again(cls: Any, settings: dict[str, str]) -> None:
+    law = replace(rig_data.true_law(cls), **settings)
+    result = fit_law(rig_data.start_law(law, []), **rig_data.measured(law).arguments, confidence=SURE)
+    assert result.determined, result.message
+    assert [p for p in result.parameters if not p.lower <= value(law, p.name) <= p.upper] == []
+
+
+def test_one_temperature_determines_what_belongs_to_it() -> None:
+    law = replace(rig_data.true_law(cw.FrictionMap), temperature=400.0)
+    time, slip, torque, load = slid_at(law, 400.0)
+    result = fit_law(rig_data.start_law(law, []), time, slip, torque, load)
+    names = {p.name for p in result.parameters if p.determined}
+    assert names == {"static[2]", "kinetic[2][1]", "kinetic[2][2]", "kinetic[2][3]"}
+    assert all(result[name].lower <= value(law, name) <= result[name].upper for name in names)
+    assert result["kinetic[3][2]"].reason == "no sample depends on it"
+    assert "at 500 K (no samples within a factor 2 and 10 K of that)" in result["kinetic[3][2]"].experiment
+    assert "from rest at 280 K until it slides" in result["static[1]"].experiment
+    # the argument stands in for what the law holds
+    again = fit_law(rig_data.start_law(replace(law, temperature=None), []), time, slip, torque, load, temperature=400.0)
+    assert [p.value for p in again.parameters] == [p.value for p in result.parameters]
+
+
+def slid_at(law: Any, temperature: float) -> tuple[Any, Any, Any, Any]:
+    """A record at one temperature: time, slip, torque, load."""
+    data = rig_data.rested(law, temperatures=[temperature, temperature])
+    noise = rig_data.NOISE * np.random.default_rng(4).standard_normal(len(data.time))
+    return data.time, data.slip, data.torque + noise, data.load
+
+
+def test_static_coefficients_of_tables_stay_above_the_kinetic_ones() -> None:
+    law = rig_data.true_law(cw.FrictionTable)
+    data = rig_data.measured(law)
+    slides = data.slip != 0.0
+    # a static coefficient that breaks away too low
+    torque = np.where(slides, data.torque, 0.8 * data.torque)
+    result = fit_law(law, data.time, data.slip, torque, data.load)
+    kinetic = [y for _, y in result.law.kinetic]  # type: ignore[attr-defined]
+    assert result.law.static > max(kinetic)  # type: ignore[attr-defined]
+    assert result.faults == ()
+    # nor does a kinetic one rise above a static one that is held
+    low = replace(law, static=0.301)
+    held = fit_law(low, data.time, data.slip, 1.1 * data.torque, data.load, free=["kinetic"])
+    assert max(y for _, y in held.law.kinetic) < 0.301  # type: ignore[attr-defined]
+    assert held.faults == ()
 
 
 def test_translation_has_its_units() -> None:

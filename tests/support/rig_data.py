@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -12,8 +13,9 @@ from numpy.typing import NDArray
 import clutchwork as cw
 from clutchwork.errors import ModelWarning
 from clutchwork.fit.adjustable import faults
+from clutchwork.fit.ordinates import axis, ordinates, tables, with_ordinates
 from clutchwork.fit.sliding import coefficients
-from clutchwork.schema import specs
+from clutchwork.tables import Tabulated
 from support import samples
 
 Array = NDArray[np.float64]
@@ -41,11 +43,13 @@ class Data:
     slip: Array
     torque: Array
     load: Array
+    temperature: Array | None = None
 
     @property
-    def arguments(self) -> dict[str, Array]:
+    def arguments(self) -> dict[str, Any]:
         """As `fit_law` takes them."""
-        return {name: getattr(self, name) for name in ("time", "slip", "torque", "load")}
+        made = {name: getattr(self, name) for name in ("time", "slip", "torque", "load")}
+        return made if self.temperature is None else made | {"temperature": self.temperature}
 
 
 def true_law(cls: Any) -> Any:
@@ -58,10 +62,12 @@ def true_law(cls: Any) -> Any:
 def start_law(law: Any, names: list[str]) -> Any:
     """The law with some parameters off by a factor, the coefficients by the same one."""
     made = replace(law, **{name: OFF.get(name, 1.4) * getattr(law, name) for name in names})
-    curves = {item.name: [(x, 0.8 * y) for x, y in getattr(law, item.name)] for item, _ in specs(type(law), "curve")}
-    return replace(
-        made, **{name: points for name, points in curves.items() if not faults(replace(made, **{name: points}))}
-    )
+    moved = {
+        name: with_ordinates(law, name, [0.8 * y for y in ordinates(law, name).values()]) for name in tables(type(law))
+    }
+    if not faults(replace(made, **moved)):
+        return replace(made, **moved)
+    return replace(made, **{name: rows for name, rows in moved.items() if not faults(replace(made, **{name: rows}))})
 
 
 def excitation() -> tuple[Array, Array]:
@@ -108,15 +114,23 @@ def run(law: Any, times: Array, slips: Array) -> Data:
     return Data(times, slips, -made["c.torque"], load)
 
 
-def rested(law: Any, repeats: int = 12) -> Data:
-    """Break-aways under a slow ramp of the torque, each followed by a sweep of the slip, to both sides in turn."""
-    torque, slip = [], []
-    static = float(law.static)
+def rested(law: Any, repeats: int = 12, temperatures: Sequence[float] = ()) -> Data:
+    """Break-aways under a slow ramp of the torque, each followed by a sweep of the slip, to both sides in turn.
+
+    Along a table the sweep reaches its end, and the repeats pass from the first of its temperatures to the last.
+    """
+    torque, slip, warm = [], [], []
+    known = temperatures or axis(law, "K")
+    fastest = max(axis(law, "rad/s"), default=12.0) if isinstance(law, Tabulated) else 12.0
     for number in range(repeats):
         side = 1.0 if number % 2 == 0 else -1.0
+        sweep = np.geomspace(fastest / 600.0, fastest, 40)
+        at = np.full(40, np.linspace(known[0], known[-1], repeats)[number]) if known else None
+        static = coefficients(law, np.zeros(1), None if at is None else at[:1])[1][0]
         ramp = np.linspace(0.0, 1.0, 40) * static * LOAD
-        sweep = np.geomspace(0.02, 12.0, 40)
-        torque += [*(side * ramp), *(side * LOAD * coefficients(law, sweep)[0])]
+        torque += [*(side * ramp), *(side * LOAD * coefficients(law, sweep, at)[0])]
         slip += [*np.zeros(40), *(side * sweep)]
+        warm += [] if at is None else [*at, *at]
     time = 0.01 * np.arange(len(slip))
-    return Data(time, np.array(slip), np.array(torque), np.full(len(slip), LOAD))
+    temperature = np.array(warm) if known else None
+    return Data(time, np.array(slip), np.array(torque), np.full(len(slip), LOAD), temperature)

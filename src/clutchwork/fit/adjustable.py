@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.checks import CHECKS, At
+from clutchwork.fit.ordinates import ABOVE, STATIC, ordinates, rivals, tables, with_ordinates
 from clutchwork.fit.sliding import coefficients
 from clutchwork.schema import Spec, specs
+from clutchwork.tables import Tabulated
 
 if TYPE_CHECKING:
     from clutchwork.node import Law
 
-STATIC = "static"
 _TINY = 1e-9
 
 
@@ -24,9 +25,12 @@ def faults(law: Law) -> list[str]:
 
 
 def adjustable(cls: type) -> dict[str, Spec]:
-    """Parameters that are real numbers, and curves."""
+    """Parameters that are real numbers, and tables."""
+    known = tables(cls)
     return {
-        item.name: spec for item, spec in specs(cls, "param", "curve") if not (spec.flag or spec.whole or spec.choices)
+        item.name: spec
+        for item, spec in specs(cls, "param", "curve", "numbers")
+        if item.name in known or (spec.what == "param" and not (spec.flag or spec.whole or spec.choices))
     }
 
 
@@ -35,7 +39,7 @@ def default_free(law: Law) -> list[str]:
     names = []
     for name, spec in adjustable(type(law)).items():
         value = getattr(law, name)
-        if value is not None and (spec.what == "curve" or value != 0.0) and not fixed(law, name):
+        if value is not None and (spec.what != "param" or value != 0.0) and not fixed(law, name):
             names.append(name)
     return names
 
@@ -50,12 +54,18 @@ def fixed(law: Law, name: str) -> str:
 
 
 def sum_is_held(law: Law, name: str) -> bool:
-    """Whether the law refuses ordinates of a smaller sum."""
-    return bool(faults(replace(law, **{name: [(x, 0.999 * y) for x, y in getattr(law, name)]})))
+    """Whether the law refuses ordinates of a smaller sum, as of shares; coefficients are no shares."""
+    less = with_ordinates(law, name, [0.999 * value for value in ordinates(law, name).values()])
+    return not isinstance(law, Tabulated) and bool(faults(replace(law, **{name: less})))
 
 
-def kinetic(law: Law) -> float:
-    """What the static coefficient must not be below: the largest kinetic one that does not follow from it."""
+def kinetic(law: Law, point: int | None = None) -> float:
+    """What the static coefficient must not be below: the largest kinetic one that does not follow from it.
+
+    Parameters: point, place of the static coefficient where there is a table of them.
+    """
+    if isinstance(law, Tabulated):
+        return ABOVE * max(rivals(law, point or 0))
     if not hasattr(law, STATIC):
         return 0.0
     given = getattr(law, "kinetic", 0.0)

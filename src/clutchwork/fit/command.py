@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from clutchwork.node import Law
 
 DETERMINED, OPEN = 0, 1
+_LISTS = re.compile(r"[-+.\de]+(//?[-+.\de]+)+", re.IGNORECASE)
 _POINTS = re.compile(r"[^:/]+:[^:/]+(/[^:/]+:[^:/]+)*")
 
 
@@ -35,9 +36,13 @@ def add_command(subparsers: Any) -> None:
     fit.add_argument(
         "--load", default="1", metavar="COL", help="column or value of the torque per coefficient, default 1"
     )
+    fit.add_argument("--temperature", metavar="COL", help="column or value [K], for a law that depends on it")
     fit.add_argument("--time", default="time", metavar="COL", help="column of the time [s], default time")
     fit.add_argument(
-        "--start", required=True, metavar="NAME=VALUE,...", help="start values, points of a curve as x:y/x:y"
+        "--start",
+        required=True,
+        metavar="NAME=VALUE,...",
+        help="start values, points of a curve as x:y/x:y, lists as y/y, rows of lists as y/y//y/y",
     )
     fit.add_argument(
         "--free", metavar="NAME,...", help="what is searched for; default: all that does not start at zero"
@@ -60,6 +65,7 @@ def fit_command(asked: argparse.Namespace) -> int:
         torque=asked.torque,
         time=asked.time,
         load=_number_or_name(asked.load),
+        temperature=None if asked.temperature is None else _number_or_name(asked.temperature),
         free=None if asked.free is None else [name.strip() for name in asked.free.split(",") if name.strip()],
         bounds=_bounds(asked.bounds),
         rest=asked.rest,
@@ -82,8 +88,11 @@ def law_from_text(kind: str, text: str) -> Law:
 
     values = {name: _value(value) for name, value in _pairs("--start", text)}
     shaft = {"name": "shaft", "inertia": 1.0}
-    element = {"name": "--start", "type": "bearing_friction", "shaft": "shaft", "torque": 1.0}
-    data = {"name": "--law and --start", "shaft": [shaft], "element": [element | {"friction": {"type": kind} | values}]}
+    # a law without a temperature of its own takes that of a thermal node
+    thermal = {"name": "lining", "capacity": 1.0}
+    element = {"name": "--start", "type": "bearing_friction", "shaft": "shaft", "torque": 1.0, "heat": "lining"}
+    element |= {"friction": {"type": kind} | values}
+    data = {"name": "--law and --start", "shaft": [shaft], "thermal": [thermal], "element": [element]}
     with warnings.catch_warnings():
         # the fitted values count, not those at the start
         warnings.simplefilter("ignore", ModelWarning)
@@ -129,9 +138,12 @@ def _pairs(option: str, text: str) -> Iterator[tuple[str, str]]:
 
 
 def _value(text: str) -> Any:
-    """A number, points, true or false, or a word, which may be a number with a unit."""
+    """A number, points, lists, true or false, or a word, which may be a number with a unit."""
     if _POINTS.fullmatch(text):
         return [[_number("--start", number) for number in pair.split(":")] for pair in text.split("/")]
+    if _LISTS.fullmatch(text):
+        rows = [[_number("--start", number) for number in row.split("/")] for row in text.split("//")]
+        return rows if len(rows) > 1 else rows[0]
     if text in ("true", "false"):
         return text == "true"
     return _number_or_name(text)
@@ -174,7 +186,10 @@ def _write(result: FitResult, data: dict[str, Any], folder: Path) -> Iterator[Pa
     path, samples = folder / "samples.csv", result.samples
     force, speed = ("N", "m/s") if samples.translation else ("N m", "rad/s")
     head = f"time [s],slip [{speed}],load [{force}],measured [{force}],fitted [{force}],equation"
-    table = np.column_stack([samples.time, samples.slip, samples.load, samples.torque, result.fitted, result.equations])
+    columns = [samples.time, samples.slip, samples.load, samples.torque, result.fitted, result.equations]
+    if samples.temperature is not None:
+        head, columns = f"{head},temperature [K]", [*columns, samples.temperature]
+    table = np.column_stack(columns)
     np.savetxt(path, table, delimiter=",", header=head, comments="", fmt="%.10g")
     yield path
     result.plot(folder / "fit.png")

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.fit.information import information
+from clutchwork.fit.information import Information, information
+from clutchwork.fit.intervals import spread_of
 from clutchwork.fit.measurement import Measurement
 from clutchwork.fit.model import model_of
+from clutchwork.fit.ordinates import axis, is_outside
 from clutchwork.fit.search import Search, derivatives
 from clutchwork.fit.sliding import coefficients
 
@@ -24,6 +26,8 @@ Array = NDArray[np.float64]
 SAMPLES = 60
 # an experiment that leaves more than this relative uncertainty determines nothing
 ENOUGH = 0.2
+# K, within which samples count as measured at a temperature
+NEAR = 10.0
 
 
 @dataclass(frozen=True)
@@ -49,15 +53,17 @@ def advice(search: Search, u: Array, deviation: float, places: list[int]) -> dic
     counts = search.model.equations
     before = search.jacobian(u)[counts]
     candidates = list(_candidates(search, u))
-    made = {}
+    size, exact = search.measured.size, search.model.exact
+    after = [information(np.vstack([before, c.jacobian]), size, exact) for c in candidates]
+    spread, made = spread_of(search, u), {}
     for place in places:
         column = _column(unknowns, place)
-        left = [_left(np.vstack([before, c.jacobian]), search, column) * noise for c in candidates]
-        size = 1.0 if unknowns.items[place].is_log else abs(unknowns.codes(u)[place]) or search.scales[column]
+        left = [_left(known, spread[place]) * noise for known in after]
+        scale = 1.0 if unknowns.items[place].is_log else abs(unknowns.codes(u)[place]) or search.scales[column]
         best = min(left, default=np.inf)
         # the first that is nearly as good is the simplest
         chosen = next((c for c, value in zip(candidates, left, strict=True) if value <= 1.25 * best), None)
-        if chosen is None or best > ENOUGH * float(size):
+        if chosen is None or best > ENOUGH * float(scale):
             made[place] = "hold it at a known value: no experiment that was tried would determine it"
         else:
             made[place] = f"to determine it, {chosen.words}"
@@ -69,18 +75,19 @@ def _column(unknowns: Unknowns, place: int) -> int:
     return unknowns.searched.index(place) if place in unknowns.searched else unknowns.searched.index(place - 1)
 
 
-def _left(jacobian: Array, search: Search, column: int) -> float:
-    """Uncertainty of one code per deviation of the samples."""
-    known = information(jacobian, search.measured.size, search.model.exact)
-    if known.silent[column] or np.any(np.abs(known.directions[known.lost, column]) > 1e-3):
+def _left(known: Information, change: Array) -> float:
+    """Uncertainty of one parameter per deviation of the samples; change, its derivatives by what is searched for."""
+    scaled = change / known.size
+    if np.any(np.abs(known.directions[known.lost] @ scaled) > 1e-3 * np.linalg.norm(scaled)):
         return float(np.inf)
-    return float(np.sqrt(known.inverse[column, column]))
+    return float(np.sqrt(known.covariance(change[np.newaxis])[0, 0]))
 
 
 def _candidates(search: Search, u: Array) -> Iterator[Experiment]:
-    yield from _steady(search, u)
-    if search.unknowns.law.sticks:
-        yield _break_away(search, u)
+    for temperature in _temperatures(search):
+        yield from _steady(search, u, temperature)
+        if search.unknowns.law.sticks:
+            yield _break_away(search, u, temperature)
     if search.unknowns.law.own_states():
         yield from _swings(search, u)
 
@@ -94,19 +101,40 @@ def _load(search: Search) -> float:
     return float(np.median(load[load > 0.0]))
 
 
-def _steady(search: Search, u: Array) -> Iterator[Experiment]:
-    """Steady slip, from a thousandth of the smallest measured one to a hundred times the largest."""
+def _temperatures(search: Search) -> list[float | None]:
+    """Where to measure [K]: at that of the samples, then at those of the tables; None where the law knows none."""
+    measured = search.measured.temperature
+    if measured is None:
+        return [None]
+    middle = float(np.median(measured))
+    return [middle, *(value for value in axis(search.unknowns.law, "K") if abs(value - middle) > NEAR)]
+
+
+def _at(temperature: float | None) -> str:
+    return "" if temperature is None else f" at {temperature:.4g} K"
+
+
+def _steady(search: Search, u: Array, temperature: float | None) -> Iterator[Experiment]:
+    """Steady slip, from a thousandth of the smallest measured one to a hundred times the largest, near ones first."""
     slip = np.abs(search.measured.slip)
     moving = slip[slip > search.model.rest]
     # a law with a band of slip in which it sticks says nothing there
     band = float(getattr(search.unknowns.law_at(u), "band", 0.0))
     low, high = max(float(np.min(moving)) * 1e-3, 2.0 * band), max(float(np.max(moving)), 2.0 * band)
-    for centre in np.geomspace(low, 100.0 * high, 31):
-        near = int(np.sum((slip > centre / 2.0) & (slip < centre * 2.0)))
-        seen = f"{near or 'no'} sample{'' if near == 1 else 's'} within a factor 2 of that"
-        words = f"measure steady slip near {centre:.2g} {_units(search)[0]} ({seen})"
+    warm = search.measured.temperature
+    there = np.ones(len(slip), dtype=bool)
+    if warm is not None and temperature is not None:
+        there = np.abs(warm - temperature) < NEAR
+    middle = np.log(np.median(moving))
+    for centre in sorted(np.geomspace(low, 100.0 * high, 31), key=lambda slip: abs(np.log(slip) - middle)):
         sweep = np.geomspace(centre / 1.5, centre * 1.5, SAMPLES)
-        yield _planned(search, u, words, np.linspace(0.0, 1.0, SAMPLES), sweep)
+        if is_outside(search.unknowns.law, "rad/s", sweep):
+            continue
+        near = int(np.sum((slip > centre / 2.0) & (slip < centre * 2.0) & there))
+        seen = f"{near or 'no'} sample{'' if near == 1 else 's'} within a factor 2"
+        seen += " of that" if warm is None else f" and {NEAR:g} K of that"
+        words = f"measure steady slip near {centre:.2g} {_units(search)[0]}{_at(temperature)} ({seen})"
+        yield _planned(search, u, words, np.linspace(0.0, 1.0, SAMPLES), sweep, temperature)
 
 
 def _swings(search: Search, u: Array) -> Iterator[Experiment]:
@@ -119,22 +147,26 @@ def _swings(search: Search, u: Array) -> Iterator[Experiment]:
             yield _planned(search, u, words, time, amplitude * speed * np.sin(speed * time))
 
 
-def _planned(search: Search, u: Array, words: str, time: Array, slip: Array) -> Experiment:
+def _planned(
+    search: Search, u: Array, words: str, time: Array, slip: Array, temperature: float | None = None
+) -> Experiment:
     """What the fitted law would show there."""
     full = np.full(SAMPLES, _load(search))
-    plan = Measurement(time, slip, np.zeros(SAMPLES), full, search.measured.translation, turned=False)
+    warm = None if temperature is None else np.full(SAMPLES, temperature)
+    plan = Measurement(time, slip, np.zeros(SAMPLES), full, search.measured.translation, False, warm)
     law = search.unknowns.law_at(u)
     # steps are those of the samples: a plan has no torque to judge them by
     return Experiment(words, Search(model_of(plan, law, 0.0), search.unknowns, search.scales).jacobian(u))
 
 
-def _break_away(search: Search, u: Array) -> Experiment:
+def _break_away(search: Search, u: Array, temperature: float | None) -> Experiment:
     """Static coefficients of a few torque ramps from rest."""
     load, repeats = _load(search), 10
-    slips = np.zeros(1)
+    slips, warm = np.zeros(1), None if temperature is None else np.array([temperature])
 
     def torques(at: Array) -> Array:
-        return np.full(repeats, load * coefficients(search.unknowns.law_at(at), slips)[1])
+        return np.full(repeats, load * coefficients(search.unknowns.law_at(at), slips, warm)[1][0])
 
-    words = "raise the torque slowly from rest until it slides, ten times, sampled finely at break-away"
+    words = f"raise the torque slowly from rest{_at(temperature)} until it slides, ten times"
+    words += ", sampled finely at break-away"
     return Experiment(words, derivatives(torques, u, search))

@@ -27,11 +27,13 @@ class Information:
     silent: NDArray[np.bool_]  # columns without effect
     lost: NDArray[np.bool_]  # directions that the samples cannot tell
 
-    @property
-    def inverse(self) -> Array:
-        """Covariance of the codes per variance of the samples; what is lost counts as hardly known."""
-        scaled = self.directions.T / np.maximum(self.singular, FLOOR)
-        return np.asarray(scaled @ scaled.T / np.outer(self.size, self.size))
+    def covariance(self, changes: Array) -> Array:
+        """Covariance per variance of the samples of what changes with the codes by these derivatives, one row each.
+
+        What is lost counts as hardly known. It is a product of roots, so that two large numbers are never subtracted.
+        """
+        root = (changes / self.size) @ self.directions.T / np.maximum(self.singular, FLOOR)
+        return np.asarray(root @ root.T)
 
 
 def information(jacobian: Array, size: float, exact: bool) -> Information:

@@ -44,8 +44,8 @@ def estimate(search: Search, u: Array, confidence: float) -> Estimate:
     freedom = max(len(residuals) - int(np.sum(~known.lost)), 1)
     alike = _alike(residuals)
     variance = float(np.sum(residuals**2)) / freedom * (1.0 + alike) / (1.0 - alike)
-    spread = _spread(search, u)
-    covariance = variance * (spread @ known.inverse @ spread.T)
+    spread = spread_of(search, u)
+    covariance = variance * known.covariance(spread)
     t = float(scipy("stats").t.ppf(0.5 + 0.5 * confidence, freedom))
     items, ends = search.unknowns.items, search.unknowns.ends(u)
     codes, halves = search.unknowns.codes(u).tolist(), (t * np.sqrt(np.diag(covariance))).tolist()
@@ -65,8 +65,8 @@ def limits_at(search: Search, u: Array, tolerance: float, places: Array) -> list
     """Intervals at some codes when only those at some places are unknown."""
     jacobian = search.jacobian(u)[search.model.equations]
     known = information(jacobian[:, places], search.measured.size, search.model.exact)
-    spread = _spread(search, u)[:, places]
-    halves = np.sqrt(tolerance * np.diag(spread @ known.inverse @ spread.T)).tolist()
+    spread = spread_of(search, u)[:, places]
+    halves = np.sqrt(tolerance * np.diag(known.covariance(spread))).tolist()
     rows = zip(search.unknowns.items, search.unknowns.codes(u).tolist(), halves, search.unknowns.ends(u), strict=True)
     return [_interval(*row) for row in rows]
 
@@ -79,7 +79,7 @@ def _alike(residuals: Array) -> float:
     return min(found, 0.99) if found > 2.0 / sqrt(len(residuals)) else 0.0
 
 
-def _spread(search: Search, u: Array) -> Array:
+def spread_of(search: Search, u: Array) -> Array:
     """Derivatives of the codes of all parameters by those that are searched for."""
     unknowns, step = search.unknowns, 1e-6
     columns = []

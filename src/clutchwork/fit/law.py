@@ -16,8 +16,10 @@ from clutchwork.fit.failure import FitError
 from clutchwork.fit.intervals import Estimate, estimate
 from clutchwork.fit.measurement import Measurement, measurement
 from clutchwork.fit.model import model_of
+from clutchwork.fit.ordinates import check_inside
 from clutchwork.fit.result import FitResult, Parameter
 from clutchwork.fit.search import Search, Solution
+from clutchwork.fit.temperature import at_temperature
 from clutchwork.fit.unknown import Bounds
 from clutchwork.fit.unknowns import Unknowns
 from clutchwork.node import Law as LawBase
@@ -33,6 +35,7 @@ def fit_law(
     torque: Any,
     load: Any = 1.0,
     *,
+    temperature: Any = None,
     free: Sequence[str] | None = None,
     bounds: Bounds | None = None,
     rest: float | None = None,
@@ -42,14 +45,16 @@ def fit_law(
     """Bounded least squares of measured friction torque; see docs/guide/fit.md.
 
     Parameters: law, with the start values, and the values of what is not free; time [s], slip [rad/s], torque [N m],
-    rows of the same length; load [N m], the torque per unit of coefficient, a number or a row; free, names of the
-    parameters that are searched for, by default all that do not start at zero; bounds, {name: (lower, upper)} within
+    rows of the same length; load [N m], the torque per unit of coefficient, a number or a row; temperature [K] for a
+    law that depends on it, a number or a row, by default the number that the law holds; free, names of the parameters
+    that are searched for, by default all that do not start at zero; bounds, {name: (lower, upper)} within
     those of the declaration; rest, abs(slip) [rad/s] below which a sample counts as at rest, by default 1e-3 of the
     largest; confidence of the intervals; translation, slip in m/s, torque and load in N.
 
     Samples that do not determine a parameter are no error: the result says so. FitError tells what is wrong with input.
     """
-    return _fit(measurement(time, slip, torque, load, translation=translation), law, free, bounds, rest, confidence)
+    samples = measurement(time, slip, torque, load, temperature=temperature, translation=translation)
+    return _fit(samples, law, free, bounds, rest, confidence)
 
 
 def fit_csv(
@@ -60,6 +65,7 @@ def fit_csv(
     torque: str,
     time: str = "time",
     load: str | float = 1.0,
+    temperature: str | float | None = None,
     free: Sequence[str] | None = None,
     bounds: Bounds | None = None,
     rest: float | None = None,
@@ -67,10 +73,11 @@ def fit_csv(
 ) -> FitResult:
     """As `fit_law`, from columns of a CSV file.
 
-    Parameters: time, slip, torque and load are the heads of columns, with or without the unit in brackets; a column
-    such as `slip [rpm]` is converted. The load may be a number in SI.
+    Parameters: time, slip, torque, load and temperature are the heads of columns, with or without the unit in brackets;
+    a column such as `slip [rpm]` is converted. Load and temperature may be numbers in SI.
     """
-    samples = table.read(path, {"time": time, "slip": slip, "torque": torque, "load": load})
+    columns = {"time": time, "slip": slip, "torque": torque, "load": load}
+    samples = table.read(path, columns if temperature is None else columns | {"temperature": temperature})
     return _fit(samples, law, free, bounds, rest, confidence)
 
 
@@ -83,6 +90,8 @@ def _fit(
     confidence: float,
 ) -> FitResult:
     _check(law, rest, confidence)
+    samples = at_temperature(samples, law)
+    check_inside(samples, law)
     model = model_of(samples, law, rest)
     search = Search(model, Unknowns(law, free, bounds, translation=samples.translation))
     count, equations = len(search.unknowns.searched), int(np.sum(model.equations))

@@ -25,6 +25,7 @@ class Measurement:
     load: Array  # N m or N, torque per unit of coefficient
     translation: bool  # m/s and N in place of rad/s and N m
     turned: bool  # whether the torque was given as it acts on the follower, against the slip
+    temperature: Array | None = None  # K
 
     @property
     def size(self) -> float:
@@ -32,15 +33,19 @@ class Measurement:
         return float(np.sqrt(np.mean(self.torque**2)))
 
 
-def measurement(time: Any, slip: Any, torque: Any, load: Any, *, translation: bool = False) -> Measurement:
+def measurement(
+    time: Any, slip: Any, torque: Any, load: Any, *, temperature: Any = None, translation: bool = False
+) -> Measurement:
     """Check samples and bring them into one form; FitError says what is wrong and where.
 
     Parameters: time [s], rising; slip [rad/s or m/s]; torque [N m or N], positive with the slip or against it; load
-    [N m or N], one number or one for each sample.
+    [N m or N] and temperature [K], one number or one for each sample.
     """
     rows = {"time": _row("time", time), "slip": _row("slip", slip), "torque": _row("torque", torque)}
     count = len(rows["time"])
-    rows["load"] = np.full(count, _number(load)) if np.ndim(load) == 0 else _row("load", load)
+    for name, value, unit in (("load", load, "N m"), ("temperature", temperature, "K")):
+        if name == "load" or value is not None:
+            rows[name] = np.full(count, _number(name, value, unit)) if np.ndim(value) == 0 else _row(name, value)
     for name, row in rows.items():
         if len(row) != count:
             raise FitError(name, f"has {len(row)} values, time has {count}", "give one value for each instant")
@@ -49,7 +54,8 @@ def measurement(time: Any, slip: Any, torque: Any, load: Any, *, translation: bo
     # friction dissipates: the sign of the work tells on whom the torque was measured
     turned = float(rows["torque"] @ rows["slip"]) < 0.0
     torque = -rows["torque"] if turned else rows["torque"]
-    return Measurement(rows["time"] - rows["time"][0], rows["slip"], torque, rows["load"], translation, turned)
+    time, slip, load = rows["time"] - rows["time"][0], rows["slip"], rows["load"]
+    return Measurement(time, slip, torque, load, translation, turned, rows.get("temperature"))
 
 
 def _row(name: str, values: Any) -> Array:
@@ -62,11 +68,11 @@ def _row(name: str, values: Any) -> Array:
     return row
 
 
-def _number(value: Any) -> float:
+def _number(name: str, value: Any, unit: str) -> float:
     try:
         return float(value)
     except (TypeError, ValueError):
-        raise FitError("load", f"is {value!r}", "give a number in [N m], or one for each instant") from None
+        raise FitError(name, f"is {value!r}", f"give a number in [{unit}], or one for each instant") from None
 
 
 def _finite(name: str, row: Array) -> None:
@@ -77,7 +83,10 @@ def _finite(name: str, row: Array) -> None:
 
 def _sensible(rows: dict[str, Array]) -> None:
     """Refuse what cannot be a measurement of friction."""
-    time, slip, torque, load = rows.values()
+    time, slip, torque, load = (rows[name] for name in ("time", "slip", "torque", "load"))
+    if "temperature" in rows and np.any(rows["temperature"] <= 0.0):
+        at = int(np.argmin(rows["temperature"]))
+        raise FitError("temperature", f"is {rows['temperature'][at]:g} at sample {at}", "give it in kelvin")
     if len(time) < FEWEST:
         raise FitError("time", f"has {len(time)} values", f"give at least {FEWEST} samples")
     back = np.flatnonzero(np.diff(time) <= 0.0)

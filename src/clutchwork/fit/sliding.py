@@ -24,18 +24,20 @@ DOUBT = 3.0
 REST = 1e-3
 
 
-def coefficients(law: Law, slips: Array) -> tuple[Array, float]:
-    """Kinetic coefficients of a law without states at slips [rad/s], and the static one, by the compiled core.
+def coefficients(law: Law, slips: Array, temperatures: Array | None = None) -> tuple[Array, Array]:
+    """Kinetic and static coefficients of a law without states at slips [rad/s], by the compiled core.
 
-    Slips of a law that sticks are >= 0.
+    Slips of a law that sticks are >= 0. A law that depends on the temperature needs one [K] for each slip.
     """
     core: Any = import_module("clutchwork._core")
     pools = Pools()
     pools.add(law, "law")
     number = kinds(Role.LAW).index(type(law).kind)  # type: ignore[attr-defined]
     params, points = np.array(pools.params, dtype=float), np.array(pools.points, dtype=float).reshape(-1, 3)
-    kinetic = np.array([core.law(number, params, points, slip)[0] for slip in slips.tolist()])
-    return kinetic, float(core.law(number, params, points, 0.0)[1])
+    rows = [[]] * len(slips) if temperatures is None else temperatures.reshape(-1, 1).tolist()
+    places = zip(slips.tolist(), rows, strict=True)
+    found = np.array([core.law(number, params, points, slip, inputs=row) for slip, row in places]).reshape(-1, 2)
+    return found[:, 0], found[:, 1]
 
 
 class Sliding:
@@ -66,7 +68,10 @@ class Sliding:
     def torque(self, law: Law) -> Array:
         """Fitted torque of every sample [N m]; at rest the measured one, as far as the law can hold it."""
         measured = self.measured
-        kinetic, static = coefficients(law, np.abs(measured.slip[self.slides]))
+        warm = measured.temperature
+        kinetic, _ = coefficients(law, np.abs(measured.slip[self.slides]), None if warm is None else warm[self.slides])
+        # without a temperature the static coefficient is one
+        _, static = coefficients(law, np.zeros(1 if warm is None else len(warm)), warm)
         capacity = static * measured.load
         made = np.clip(measured.torque, -capacity, capacity)
         made[self.breaks] = np.sign(measured.torque[self.breaks]) * capacity[self.breaks]
@@ -89,7 +94,7 @@ class Smooth:
 
     def torque(self, law: Law) -> Array:
         """Torque of every sample [N m]."""
-        return coefficients(law, self.measured.slip)[0] * self.measured.load
+        return coefficients(law, self.measured.slip, self.measured.temperature)[0] * self.measured.load
 
 
 def at_rest(measured: Measurement, rest: float | None) -> float:

@@ -19,7 +19,7 @@ from clutchwork.units import parse
 
 Array = NDArray[np.float64]
 
-UNITS = {"time": ("s",), "slip": ("rad/s", "m/s"), "torque": ("N m", "N"), "load": ("N m", "N")}
+UNITS = {"time": ("s",), "slip": ("rad/s", "m/s"), "torque": ("N m", "N"), "load": ("N m", "N"), "temperature": ("K",)}
 _HEAD = re.compile(r"(.*?)\s*\[(.*)\]")
 
 
@@ -35,8 +35,9 @@ class Head:
 def read(path: str | Path, columns: dict[str, str | float]) -> Measurement:
     """Samples from a CSV file.
 
-    Parameters: columns, the head of the column of time, slip, torque and load, with or without its unit; the load may
-    be a number. A head such as `slip [rpm]` is converted to SI, one without unit is SI.
+    Parameters: columns, the head of the column of time, slip, torque, load and, where it counts, temperature, with or
+    without its unit; load and temperature may be numbers. A head such as `slip [rpm]` is converted to
+    SI, one without unit is SI.
     """
     known = _heads(Path(path))
     heads = {name: _head(name, wanted, known) for name, wanted in columns.items() if isinstance(wanted, str)}
@@ -48,8 +49,9 @@ def read(path: str | Path, columns: dict[str, str | float]) -> Measurement:
         )
     rows = {name: _column(path, head, heads["time"]) for name, head in heads.items() if name != "time"}
     time = _column(path, heads["time"], heads["time"])
-    load = rows.get("load", columns["load"])
-    return measurement(time, rows["slip"], rows["torque"], load, translation=domains == {True})
+    load, temperature = (rows.get(name, columns.get(name)) for name in ("load", "temperature"))
+    slip, torque = rows["slip"], rows["torque"]
+    return measurement(time, slip, torque, load, temperature=temperature, translation=domains == {True})
 
 
 def _heads(path: Path) -> list[str]:
@@ -83,7 +85,7 @@ def _head(name: str, wanted: str, known: list[str]) -> Head:
         factor = factor_to_si(unit, wanted_unit, tuple(others), text)
     except QuantityError as bad:
         raise FitError(name, f"column {text!r} {bad.message}", bad.remedy) from None
-    domain = None if name == "time" else parse(unit).powers != parse(wanted_unit).powers
+    domain = None if name in ("time", "temperature") else parse(unit).powers != parse(wanted_unit).powers
     return Head(text, factor, domain)
 
 

@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 from math import exp, inf, log, nextafter
 from typing import TYPE_CHECKING, TypeAlias
 
-from clutchwork.fit.adjustable import STATIC, kinetic
+from clutchwork.fit.adjustable import kinetic
 from clutchwork.fit.failure import FitError
+from clutchwork.fit.ordinates import ABOVE, STATIC, ordinates, rival
+from clutchwork.tables import Tabulated
 
 if TYPE_CHECKING:
     from clutchwork.node import Law
@@ -23,9 +25,9 @@ REACH = 1e6
 
 @dataclass(frozen=True)
 class Unknown:
-    """A number of the law, or the ordinate of one point of a curve."""
+    """A number of the law, or one ordinate of a table."""
 
-    name: str  # "speed", or "kinetic[2]" for the second point of a curve
+    name: str  # "speed", "kinetic[2]" for the second point of a curve, "kinetic[2][3]" for a number of a row
     unit: str
     start: float
     bound: str  # in words
@@ -34,8 +36,8 @@ class Unknown:
     lowest: float  # ends of what the law or the user allows
     highest: float
     field: str
-    point: int | None = None  # place in the curve
-    over: bool = False  # the static coefficient: its excess over the kinetic one is searched for
+    point: int | None = None  # place in the table, row after row
+    over: bool = False  # a static coefficient: its excess over the kinetic one is searched for
 
     @property
     def is_log(self) -> bool:
@@ -58,13 +60,12 @@ class Unknown:
 
 
 def unknowns_of(law: Law, name: str, spec: Spec, unit: str, bounds: Bounds) -> list[Unknown]:
-    """A parameter, or the ordinates of all points of a curve."""
-    value = getattr(law, name)
+    """A parameter, or all ordinates of a table."""
     given = bounds.get(name, (None, None))
-    if spec.what == "curve":
-        named = [(f"{name}[{i + 1}]", i, float(y)) for i, (_, y) in enumerate(value)]
-        return [_made(word, spec, unit, y, name, i, bounds.get(word, given)) for word, i, y in named]
-    return [_made(name, spec, unit, float(value), name, None, given)]
+    if spec.what == "param":
+        return [_made(name, spec, unit, float(getattr(law, name)), name, None, given)]
+    named = enumerate(ordinates(law, name).items())
+    return [_made(word, spec, unit, y, name, i, bounds.get(word, given)) for i, (word, y) in named]
 
 
 def _made(name: str, spec: Spec, unit: str, start: float, field: str, point: int | None, given: Pair) -> Unknown:
@@ -78,7 +79,7 @@ def _made(name: str, spec: Spec, unit: str, start: float, field: str, point: int
     is_given = any(side is not None for side in given)
     words = f"{lowest:g} to {highest:g}" if is_given else spec.bound or (">= 0" if lower == 0.0 else "> 0")
     # static and kinetic coefficients move together, unless bounds hold the static one
-    over = name == STATIC and not is_given
+    over = field == STATIC and not is_given
     return Unknown(name, unit, start, words, lower, upper, lowest, highest, field, point, over)
 
 
@@ -97,6 +98,11 @@ def _limits(spec: Spec, start: float, point: int | None, given: Pair) -> tuple[f
 
 def below_static(law: Law, item: Unknown, free: list[str]) -> Unknown:
     """The same, or for a kinetic coefficient below a static one that is not free: with that as its upper end."""
+    if isinstance(law, Tabulated):
+        if item.field == STATIC or STATIC in free:
+            return item
+        upper = rival(law, item.point or 0) / ABOVE
+        return replace(item, upper=min(item.upper, upper), highest=min(item.highest, upper))
     static = getattr(law, STATIC, None)
     if item.point is not None or item.field == STATIC or STATIC in free or not static:
         return item

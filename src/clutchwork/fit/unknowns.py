@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from clutchwork.errors import near
 from clutchwork.fit.adjustable import adjustable, default_free, fixed, kinetic, sum_is_held
 from clutchwork.fit.failure import FitError
+from clutchwork.fit.ordinates import ordinates, with_ordinates
 from clutchwork.fit.unknown import REACH, Bounds, Unknown, below_static, unknowns_of
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ class Unknowns:
 
     Some parameters are tied to others:
 
-    - the static coefficient is searched for as its excess over the kinetic one, so that it is never below it;
+    - a static coefficient is searched for as its excess over the kinetic one, so that it is never below it;
     - ordinates whose sum the law holds, such as shares, are searched for as ratios to the last one: one code less.
     """
 
@@ -37,7 +38,7 @@ class Unknowns:
         found = [item for name in names for item in _unknowns(law, name, bounds or {}, translation)]
         _check(names, found, bounds or {})
         self.items = tuple(below_static(law, item, names) for item in found)
-        # (first item, number of items, sum) of the curves whose sum is held
+        # (first item, number of items, sum) of the tables whose sum is held
         self.held = [block for block in _curves(self.items) if sum_is_held(law, self.items[block[0]].field)]
         closing = {first + count - 1 for first, count, _ in self.held}
         self.searched = [place for place in range(len(self.items)) if place not in closing]
@@ -45,8 +46,13 @@ class Unknowns:
     @property
     def start(self) -> Array:
         """Codes of the start values."""
-        floor = kinetic(self.law)
-        made = np.array([max(item.start - floor, 0.0) if item.over else item.coded(item.start) for item in self.items])
+        law = self.law
+        made = np.array(
+            [
+                max(item.start - kinetic(law, item.point), 0.0) if item.over else item.coded(item.start)
+                for item in self.items
+            ]
+        )
         for first, count, _ in self.held:
             made[first : first + count] -= made[first + count - 1]
         return np.asarray(made[self.searched])
@@ -74,8 +80,10 @@ class Unknowns:
         for first, count, total in self.held:
             part = slice(first, first + count)
             made[part] += log(total) - np.log(np.sum(np.exp(made[part])))
-        for place, item in enumerate(self.items):
-            made[place] += kinetic(self._law(made)) if item.over else 0.0
+        over = [place for place, item in enumerate(self.items) if item.over]
+        law = self._law(made) if over else self.law
+        for place in over:
+            made[place] += kinetic(law, self.items[place].point)
         return made
 
     def values(self, u: Array) -> list[float]:
@@ -84,11 +92,12 @@ class Unknowns:
 
     def ends(self, u: Array) -> list[tuple[float, float]]:
         """Lowest and highest value of every free parameter, where the others have these codes."""
-        floor = kinetic(self.law_at(u))
+        law = self.law_at(u)
         # the smallest number above a bound stands for it
         lowest = [round(item.lowest, 300) for item in self.items]
         return [
-            (max(low, floor) if item.over else low, item.highest) for low, item in zip(lowest, self.items, strict=True)
+            (max(low, kinetic(law, item.point)) if item.over else low, item.highest)
+            for low, item in zip(lowest, self.items, strict=True)
         ]
 
     def law_at(self, u: Array) -> Law:
@@ -97,15 +106,16 @@ class Unknowns:
 
     def _law(self, codes: Array) -> Law:
         changes: dict[str, Any] = {}
+        rows: dict[str, list[float]] = {}
         for item, code in zip(self.items, codes.tolist(), strict=True):
             value = item.decoded(code)
             if item.point is None:
                 changes[item.field] = value
             else:
-                points = changes.setdefault(
-                    item.field, [(float(x), float(y)) for x, y in getattr(self.law, item.field)]
-                )
-                points[item.point] = (points[item.point][0], value)
+                if item.field not in rows:
+                    rows[item.field] = list(ordinates(self.law, item.field).values())
+                rows[item.field][item.point] = value
+        changes |= {name: with_ordinates(self.law, name, row) for name, row in rows.items()}
         return replace(self.law, **changes)
 
 
@@ -134,7 +144,7 @@ def _check(names: list[str], found: list[Unknown], bounds: Bounds) -> None:
 
 
 def _curves(items: tuple[Unknown, ...]) -> list[tuple[int, int, float]]:
-    """First item, number of items and sum of the ordinates of every curve."""
+    """First item, number of items and sum of the ordinates of every table."""
     made, first = [], 0
     for _, group in groupby(items, key=lambda item: item.field):
         block = list(group)

@@ -1,0 +1,40 @@
+"""The temperature at which samples were measured, for laws that depend on it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from numbers import Real
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clutchwork.fit.failure import FitError
+from clutchwork.schema import inputs
+
+if TYPE_CHECKING:
+    from clutchwork.fit.measurement import Measurement
+    from clutchwork.node import Law
+
+TEMPERATURE = "temperature"
+_REMEDY = "give the measured temperature [K], a number or a row"
+
+
+def at_temperature(samples: Measurement, law: Law) -> Measurement:
+    """Samples with the temperature that the law needs: the measured one, else the number that the law holds."""
+    kind = type(law).__name__
+    needed = [name for names, _ in inputs(type(law)) for name in names[:1]]
+    for name in needed:
+        if name != TEMPERATURE:
+            raise FitError(name, f"drives {kind}, and a fit knows no signals but the temperature", "fit another law")
+    if samples.temperature is not None:
+        if not needed:
+            raise FitError(TEMPERATURE, f"is given, and {kind} does not depend on it", "leave it out")
+        return samples
+    if not needed:
+        return samples
+    held = getattr(law, TEMPERATURE)
+    if held is None:
+        raise FitError(TEMPERATURE, f"is missing, and {kind} depends on it", _REMEDY)
+    if not isinstance(held, Real):
+        raise FitError(TEMPERATURE, f"of the law is {held!r}, and a fit runs no signals", _REMEDY)
+    return replace(samples, temperature=np.full(len(samples.time), float(held)))
