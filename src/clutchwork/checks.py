@@ -33,20 +33,26 @@ def label(component: Component) -> str:
 def component_problems(component: Component) -> Iterator[Problem]:
     """All mistakes of one element, its friction law and its signals."""
     at = At(label(component), "")
-    yield from object_problems(component, at)
+    found = list(object_problems(component, at))
+    yield from found
     if hasattr(component, "friction"):
         from clutchwork.law_checks import locked_problems
 
         yield from locked_problems(component, at)
+    # what an element asks of its law is only asked once both make sense
+    if hasattr(component, "law_problems") and not found:
+        for name, message, remedy in component.law_problems():
+            yield at.inner(name).problem(message, remedy=remedy)
 
 
 def object_problems(thing: Any, at: At) -> Iterator[Problem]:
     """All mistakes of a declared object: an element, a law or a signal."""
     found = list(value_problems(type(thing), vars(thing), at))
     yield from found
-    # rules between fields only make sense once each field does
+    # rules between fields only make sense once each field does; what is wrong inside a law is its own affair
+    inside = tuple(f"{at.inner(item.name).quantity}." for item, _ in specs(type(thing), "law"))
     rules = getattr(thing, "problems", None)
-    if rules is not None and not found:
+    if rules is not None and all(problem.quantity.startswith(inside) for problem in found):
         for name, message, remedy in rules():
             yield at.inner(name).problem(message, remedy=remedy)
 

@@ -54,12 +54,16 @@ def not_positive(field: str, values: Sequence[float], unit: str, places: Sequenc
 
 
 def crossing(static: Sequence[float], kinetic: Sequence[float], unit: str, places: Sequence[float]) -> Found:
-    """A static coefficient that is not above its kinetic one."""
-    for own, other, place in zip(static, kinetic, places, strict=True):
-        if not own > other:
-            fault = f"is {own:g} at {place:g} {unit}, not above the kinetic coefficient {other:g}"
-            return [("static", fault, f"raise it above {other:g}, or lower the kinetic one")]
-    return []
+    """Static coefficients that are not above their kinetic one."""
+    return [
+        (
+            "static",
+            f"is {own:g} at {place:g} {unit}, not above the kinetic coefficient {other:g}",
+            f"raise it above {other:g}, or lower the kinetic one",
+        )
+        for own, other, place in zip(static, kinetic, places, strict=True)
+        if not own > other
+    ]
 
 
 def slip_axis(field: str, first: float, unit: str) -> Found:

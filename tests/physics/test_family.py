@@ -205,6 +205,14 @@ def test_a_shoe_that_locks_by_itself_is_named() -> None:
     assert any("locks by itself" in str(problem) for problem in d.check())
 
 
+def test_a_shoe_with_a_broken_law_is_told_of_the_law_alone() -> None:
+    d, shaft = wheel()
+    law: Any = cw.Coulomb(static="high", kinetic=1.0)  # type: ignore[arg-type]
+    d.add(cw.DoubleShoeBrake("b", shaft=shaft, friction=law, **SHOES))
+    (problem,) = d.check()
+    assert problem.quantity == "friction.static"
+
+
 # ---------------------------------------------------------------- freewheels, limiters
 
 

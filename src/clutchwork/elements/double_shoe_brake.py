@@ -43,13 +43,17 @@ class DoubleShoeBrake(Heating):
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
-        if not self.end > self.start:
-            return [("end", f"is {self.end:g} rad, not above the start {self.start:g} rad", "give it behind the start")]
+        if self.end > self.start:
+            return []
+        return [("end", f"is {self.end:g} rad, not above the start {self.start:g} rad", "give it behind the start")]
+
+    def law_problems(self) -> Found:
+        """A coefficient with which a leading shoe needs no force."""
         limit, largest = self.locking_coefficient(), largest_coefficient(self.friction)
-        if largest >= limit:
-            fault = f"has the coefficient {largest:g}, at which a leading shoe locks by itself: it must be < {limit:g}"
-            return [("friction", fault, "lower it, or move the hinge outwards")]
-        return []
+        if largest < limit:
+            return []
+        fault = f"has the coefficient {largest:g}, at which a leading shoe locks by itself: it must be < {limit:g}"
+        return [("friction", fault, "lower it, or move the hinge outwards")]
 
     def locking_coefficient(self) -> float:
         """Coefficient from which on a leading shoe needs no force."""

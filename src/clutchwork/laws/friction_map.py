@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from clutchwork.node import SignalLike
 from clutchwork.schema import Role, component, numbers, signal
-from clutchwork.tables import Found, Tabulated, crossing, few_points, not_positive, slip_axis
+from clutchwork.tables import Found, Tabulated, crossing, few_points, slip_axis
 
 
 @component(Role.LAW)
@@ -40,13 +40,12 @@ class FrictionMap(Tabulated):
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = few_points("temperatures", len(self.temperatures), self.interpolation)
         found += few_points("speeds", len(self.speeds), self.interpolation)
-        found = found or slip_axis("speeds", self.speeds[0], "rad/s") or self._shape_problems()
-        found = found or not_positive("static", self.static, "K", self.temperatures)
-        for speed, column in zip(self.speeds, zip(*self.kinetic, strict=True) if not found else (), strict=not found):
-            found = not_positive("kinetic", column, f"K, {speed:g} rad/s", self.temperatures)
-            found = found or crossing(self.static, column, f"K, {speed:g} rad/s", self.temperatures)
-            if found:
-                return found
+        found += slip_axis("speeds", self.speeds[0], "rad/s")
+        shape = self._shape_problems()
+        if shape:
+            return found + shape
+        for speed, column in zip(self.speeds, zip(*self.kinetic, strict=True), strict=True):
+            found += crossing(self.static, column, f"K, {speed:g} rad/s", self.temperatures)
         return found
 
     def _shape_problems(self) -> Found:

@@ -28,9 +28,9 @@ class FrictionTable(Tabulated):
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         slips, values = [x for x, _ in self.kinetic], [y for _, y in self.kinetic]
-        found = few_points("kinetic", len(slips), self.interpolation)
-        found = found or slip_axis("kinetic", slips[0], "rad/s") or not_positive("kinetic", values, "rad/s", slips)
-        return found or crossing([self.static] * len(slips), values, "rad/s", slips)
+        found = few_points("kinetic", len(slips), self.interpolation) + slip_axis("kinetic", slips[0], "rad/s")
+        found += not_positive("kinetic", values, "rad/s", slips)
+        return found + crossing([self.static] * len(slips), values, "rad/s", slips)
 
     def sliding(self) -> float:
         """Kinetic coefficient at vanishing slip."""

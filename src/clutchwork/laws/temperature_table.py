@@ -27,14 +27,12 @@ class TemperatureTable(Tabulated):
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
-        places, others = ([x for x, _ in points] for points in (self.static, self.kinetic))
+        (places, static), (others, kinetic) = (zip(*points, strict=True) for points in (self.static, self.kinetic))
         found = few_points("static", len(places), self.interpolation)
-        if not found and places != others:
-            found = [("kinetic", "has other temperatures than static", "give both at the same temperatures")]
-        static, kinetic = ([y for _, y in points] for points in (self.static, self.kinetic))
-        for name, values in (("static", static), ("kinetic", kinetic)):
-            found = found or not_positive(name, values, "K", places)
-        return found or crossing(static, kinetic, "K", places)
+        found += not_positive("static", static, "K", places) + not_positive("kinetic", kinetic, "K", others)
+        if places != others:
+            return [*found, ("kinetic", "has other temperatures than static", "give both at the same temperatures")]
+        return found + crossing(static, kinetic, "K", places)
 
     def sliding(self) -> float | None:
         """None: it depends on the temperature."""
