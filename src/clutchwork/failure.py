@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 NAMES = [name for name, *_ in STATUS]
 DONE, ROWS_FULL, EVENTS_FULL = (NAMES.index(name) for name in ("done", "rows_full", "events_full"))
 
+# why a run stopped, where a value tells more
+WITH_VALUE = ("not_finite", "out_of_table", "chatter")
+
 
 class SimulationError(ClutchworkError, RuntimeError):
     """A run failed; `trajectory` holds what was computed before."""
@@ -40,7 +43,8 @@ def explain(status: int, component: Any, time: float, value: float) -> str:
     """One line for a status of the core: message, element, value, what a table covers, time, remedy."""
     name, message, remedy = STATUS[status]
     where = f" at {component.name!r}" if component is not None else ""
-    seen = f" (value {value:g}{_covered(component) if name == 'out_of_table' else ''})" if component is not None else ""
+    covered = _covered(component) if name == "out_of_table" else ""
+    seen = f" (value {value:g}{covered})" if component is not None and name in WITH_VALUE else ""
     return f"stopped at {time:.9g} s: {message}{where}{seen}: {remedy}"
 
 

@@ -386,14 +386,16 @@ bool is_switching(const Branch<T>& b) {
       b, [&](auto tag, const T*, const T*, const T*, int) { return SwitchingLaw<typename decltype(tag)::type>; });
 }
 
-/// Room that the law of a contact has inside its tables; below zero it has left one, and `seen` is what did.
+/// Room that the law of a contact has inside its tables at a slip; below zero it has left one, and `seen` is what did.
 template <class T>
-T table_room(const Workspace<T>& ws, const Branch<T>& b, T rate, T& seen) {
-  return visit_law(b.law, [&](auto tag) {
+T table_room(const Workspace<T>& ws, int c, T slip, T& seen) {
+  const System& sys = ws.sys;
+  return visit_law(sys.contact_law[c], [&](auto tag) {
     using L = typename decltype(tag)::type;
     if constexpr (BoundedLaw<L>) {
-      const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(b.law_params);
-      return L::outside(p, At<T>{T(b.sign) * rate, nullptr, b.law_input, b.piece, ws.sys.points}, seen);
+      const T* params = ws.params + sys.contact_law_param[c];
+      const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
+      return L::outside(p, At<T>{abs(slip), nullptr, ws.u + sys.contact_law_input[c], 0, sys.points}, seen);
     }
     return T(1);
   });

@@ -234,29 +234,31 @@ void find_fault(Form& form, Step<Form>& step, Hit& hit) {
   }
 }
 
-/// Where the law of a contact leaves a table that may not be left.
+/// Where the law of a contact, locked or not, leaves a table that may not be left.
 template <class Form, class Integrator>
 void find_exit(Form& form, Step<Form>& step, Hit& hit) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
   for (int i = 0; i < ws.n_bounded; ++i) {
-    const int k = ws.bounded[i];
-    const Branch<T>& b = ws.branch[k];
+    const int c = ws.bounded[i], k = ws.branch_of[ws.sys.elements + c];
     T seen = T(0);
-    inputs_with(ws, step.t + step.h, step.y1() + form.nz());
-    const double end = value(table_room(ws, b, ws.there.rate[k], seen));
-    if (end >= 0) continue;
+    auto room = [&](double s, const T* y) {
+      inputs_with(ws, step.t + s * step.h, y + form.nz());
+      const T slip = k < 0 ? T(0) : form.rate(k, y) + offset_rate(ws, k);
+      return value(table_room(ws, c, slip, seen));
+    };
+    const double start = room(0, step.y0()), end = room(1, step.y1());
+    if (start >= 0 && end >= 0) continue;
     if (!step.dense) Integrator::prepare_dense(form, step);
     auto f = [&](double s) {
       interpolate(form, step, s, step.point());
-      inputs_with(ws, step.t + s * step.h, step.point() + form.nz());
-      return value(table_room(ws, b, form.rate(k, step.point()) + offset_rate(ws, k), seen));
+      return room(s, step.point());
     };
-    const double s = first_crossing(f, f(0), end, hit.s);
+    const double s = start < 0 ? 0.0 : first_crossing(f, start, end, hit.s);
     if (s < 0 || (hit.what != Hit::nothing && s >= hit.s)) continue;
     f(s);
     ws.detail_value = value(seen);
-    hit = {Hit::exit, k, s, -1};
+    hit = {Hit::exit, c, s, -1};
   }
 }
 

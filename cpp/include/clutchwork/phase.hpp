@@ -466,7 +466,7 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
       continue;
     }
     if (hit.what == Hit::exit) {
-      ws.detail_component = ws.branch[hit.index].direction;
+      ws.detail_component = int(ws.sys.elements) + hit.index;
       return Status::out_of_table;
     }
     switch (hit.what) {

@@ -175,12 +175,14 @@ void pack(Workspace<T>& ws, int d, int sign, bool held, int& block) {
 template <class T>
 void list_laws(Workspace<T>& ws) {
   ws.n_switching = ws.n_chattering = ws.n_bounded = 0;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (ws.loaded[c] && is_bounded_law(ws.sys.contact_law[c])) ws.bounded[ws.n_bounded++] = c;
+  }
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
     if (is_switching(b)) ws.switching[ws.n_switching++] = k;
     if (b.law < 0) continue;
     if (is_chattering_law(b.law)) ws.chattering[ws.n_chattering++] = k;
-    if (is_bounded_law(b.law) && !b.held) ws.bounded[ws.n_bounded++] = k;
   }
 }
 
