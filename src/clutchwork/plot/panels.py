@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from clutchwork.wiring import Branch
 
 MOST_CURVES = 24
+# inputs of a contact that press it together
+PRESSING = ("pressure", "normal_force", "force")
 # (unit in the result, from this size on, unit in the picture, factor)
 SCALES = (("Pa", 1e5, "MPa", 1e-6), ("N m", 5e3, "kN m", 1e-3), ("N", 5e3, "kN", 1e-3))
 
@@ -62,21 +65,18 @@ def zoom(axes: Axes, run: Trajectory, event: Event) -> None:
     legend(axes)
 
 
-def inputs(axes: Axes, run: Trajectory) -> None:
-    """What presses the contacts together."""
-    names = driven(run)
+def inputs(axes: Axes, run: Trajectory, names: dict[str, str]) -> None:
+    """What presses some contacts together, signals of one unit by contact."""
     factor, unit = scale(run, list(names.values()))
     for (contact, signal), look in zip(names.items(), contact_looks(run, names).values(), strict=True):
         axes.plot(run.time, factor * run[signal], label=contact, **look)
-    what = "pressure" if unit in ("Pa", "MPa") else "normal force"
-    axes.set_ylabel(f"{what}, {'share' if unit == '1' else unit}")
+    axes.set_ylabel(f"{pressing(run, names)}, {'share' if unit == '1' else unit}")
     axes.margins(y=0.08)
     legend(axes)
 
 
-def torques(axes: Axes, run: Trajectory) -> None:
-    """Torques of the contacts: thin while slipping, thick while locked."""
-    names = busy(run)
+def torques(axes: Axes, run: Trajectory, names: list[str]) -> None:
+    """Torques of some contacts, or forces: thin while slipping, thick while locked."""
     factor, unit = scale(run, [f"{name}.torque" for name in names])
     for name, look in contact_looks(run, names).items():
         torque = factor * run[f"{name}.torque"]
@@ -85,7 +85,7 @@ def torques(axes: Axes, run: Trajectory) -> None:
         axes.plot(run.time, np.where(is_locked, torque, np.nan), **{**look, "linewidth": 2.4})
     axes.axhline(0.0, color="#B0B0B0", linewidth=0.5, zorder=1)
     axes.margins(y=0.08)
-    axes.set_ylabel(f"torque on follower, {unit}")
+    axes.set_ylabel(f"{carrying(run, names)} on follower, {unit}")
     legend(axes, "thick: locked")
 
 
@@ -121,17 +121,37 @@ def busy(run: Trajectory) -> list[str]:
     return [name for name in names if np.any(run[f"{name}.torque"] != 0.0)][:MOST_CURVES]
 
 
-def driven(run: Trajectory) -> dict[str, str]:
-    """Contacts that carry torque, with the signal that presses each."""
+def loaded(run: Trajectory) -> list[list[str]]:
+    """Contacts that carry torque, those of one unit together."""
+    return list(_by_unit(run, {name: f"{name}.torque" for name in busy(run)}))
+
+
+def carrying(run: Trajectory, names: list[str]) -> str:
+    """What some contacts of one unit carry, in one word."""
+    return "torque" if run.units[f"{names[0]}.torque"] == "N m" else "force"
+
+
+def driven(run: Trajectory) -> list[dict[str, str]]:
+    """Contacts that carry torque, with the signal that presses each, those of one unit together."""
     names = [*(name for name, _ in run.wiring.inputs), *(link.name for link in run.wiring.links)]
-    found = {c: [n for n in names if n in (f"{c}.pressure", f"{c}.normal_force")] for c in busy(run)}
-    return {contact: signals[0] for contact, signals in found.items() if signals}
+    found = {c: [n for n in names if n in (f"{c}.{word}" for word in PRESSING)] for c in busy(run)}
+    signals = {contact: given[0] for contact, given in found.items() if given}
+    return [{name: signals[name] for name in group} for group in _by_unit(run, signals)]
 
 
-def pressing(run: Trajectory) -> str:
-    """What presses the contacts together, in one word or two."""
-    units = {run.units[signal] for signal in driven(run).values()}
-    return "pressures" if units == {"Pa"} else "normal forces" if "Pa" not in units else "pressures and forces"
+def pressing(run: Trajectory, names: dict[str, str]) -> str:
+    """What presses some contacts together, in one word or two."""
+    if run.units[next(iter(names.values()))] == "Pa":
+        return "pressure"
+    return "actuating force" if any(signal.endswith(".force") for signal in names.values()) else "normal force"
+
+
+def _by_unit(run: Trajectory, signals: dict[str, str]) -> Iterable[list[str]]:
+    """Contacts whose signals have the same unit, in the order in which they come."""
+    groups: dict[str, list[str]] = {}
+    for contact, signal in signals.items():
+        groups.setdefault(run.units[signal], []).append(contact)
+    return groups.values()
 
 
 def scale(run: Trajectory, names: list[str]) -> tuple[float, str]:

@@ -62,13 +62,14 @@ def _panels(run: Trajectory, lockup: Event | None) -> list[Panel]:
             chosen.append(Panel(f"speeds of all {members}", 52.0, True, partial(panels.speeds, run=run, domain=domain)))
     if lockup is not None:
         chosen.append(Panel("zoom at lock-up", 42.0, False, partial(panels.zoom, run=run, event=lockup)))
-    if panels.driven(run):
-        chosen.append(
-            Panel(f"{panels.pressing(run)} of clutches and brakes", 28.0, True, partial(panels.inputs, run=run))
-        )
+    for group in panels.driven(run):
+        words = f"{panels.pressing(run, group)}s of clutches and brakes"
+        chosen.append(Panel(words, 28.0, True, partial(panels.inputs, run=run, names=group)))
+    for contacts in panels.loaded(run):
+        words = f"{panels.carrying(run, contacts)}s of clutches and brakes"
+        chosen.append(Panel(words, 46.0, True, partial(panels.torques, run=run, names=contacts)))
     if panels.busy(run):
         rows = len(panels.busy(run))
-        chosen.append(Panel("torques of clutches and brakes", 46.0, True, partial(panels.torques, run=run)))
         chosen.append(Panel("states of clutches and brakes", 5.0 + 4.0 * rows, True, partial(panels.locks, run=run)))
     return chosen
 
