@@ -33,13 +33,16 @@ class At:
 def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A finite number within its bounds."""
     if isinstance(value, bool) or not isinstance(value, Real):
-        yield at.problem(f"must be a number in [{at.unit}]", value=repr(value), remedy="write it without quotes")
+        remedy = f"write the number alone, in {at.unit}" if at.unit not in ("", "1") else "write the number alone"
+        yield at.problem(f"must be a number in [{at.unit}]", value=repr(value), remedy=remedy)
         return
-    number, shown = float(value), f"{value} {at.unit}".strip()
+    # the unit of a bare number says nothing beside it
+    unit = "" if at.unit == "1" else at.unit
+    number, shown = float(value), f"{value} {unit}".strip()
     if not isfinite(number):
         yield at.problem("must be finite", value=shown, remedy="give a number")
     elif not spec.allows(number):
-        yield at.problem(f"must be {spec.bound} {at.unit}".rstrip(), value=shown, remedy=_meaning(spec))
+        yield at.problem(f"must be {spec.bound} {unit}".rstrip(), value=shown, remedy=_meaning(spec))
     elif spec.whole and number != int(number):
         yield at.problem("must be a whole number", value=shown, remedy=_meaning(spec))
 

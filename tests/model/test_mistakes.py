@@ -325,10 +325,11 @@ def test_planetary_teeth(cls):
     assert "ratio is given twice" in messages[1]
 
 
-def test_ring_smaller_than_sun():
+@pytest.mark.parametrize("cls", [cw.Planetary, cw.DoublePlanetary])
+def test_ring_smaller_than_sun(cls):
     d = cw.Driveline()
     sun, ring, carrier = (d.shaft(name, inertia=1.0) for name in ("s", "r", "c"))
-    d.add(cw.DoublePlanetary("p", sun=sun, ring=ring, carrier=carrier, teeth_sun=60, teeth_ring=30))
+    d.add(cls("p", sun=sun, ring=ring, carrier=carrier, teeth_sun=60, teeth_ring=30))
     assert "teeth_ring is 30, not above teeth_sun = 60" in str(d.check()[0])
 
 

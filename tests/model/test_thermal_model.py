@@ -87,7 +87,7 @@ def test_flow_between_one_and_the_same_node():
 def test_share_of_the_heat_is_between_zero_and_one():
     d, a, _, plates, _ = _model()
     d.add(cw.Brake("b1", shaft=a, friction=LAW, gain=1.0, pressure=1.0, heat=plates, heat_share=1.1))
-    assert "heat_share = 1.1 1: must be >= 0 and <= 1" in _one(d)
+    assert "heat_share = 1.1: must be >= 0 and <= 1;" in _one(d)
 
 
 def test_names_are_taken_once_among_all():

@@ -26,11 +26,13 @@ class Planetary(Component):
 
     def problems(self) -> list[tuple[str, str, str]]:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
-        wheels = self.teeth_sun, self.teeth_ring
-        if self.ratio is None and None in wheels:
+        sun, ring = self.teeth_sun, self.teeth_ring
+        if self.ratio is None and (sun is None or ring is None):
             return [("ratio", "is missing", "give `ratio`, or both `teeth_sun` and `teeth_ring`")]
-        if self.ratio is not None and wheels != (None, None):
+        if self.ratio is not None and (sun, ring) != (None, None):
             return [("ratio", "is given twice, as a number and by teeth", "give only one of the two")]
+        if sun is not None and ring is not None and ring <= sun:
+            return [("teeth_ring", f"is {ring:g}, not above teeth_sun = {sun:g}", "a ring has more teeth than its sun")]
         return []
 
     def exact_ratio(self) -> Fraction:
