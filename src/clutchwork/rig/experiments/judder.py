@@ -15,7 +15,7 @@ from clutchwork.elements.prescribed_speed import PrescribedSpeed
 from clutchwork.elements.spring_damper import SpringDamper
 from clutchwork.rig.bench import Bench, speed
 from clutchwork.rig.experiment import Experiment, experiment
-from clutchwork.rig.looks import GREY, GUIDE, head, legend_below, nested, title
+from clutchwork.rig.looks import GREY, GUIDE, head, legend_below, looks, nested, title
 from clutchwork.rig.presets import Preset
 from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Column, Table
@@ -152,11 +152,12 @@ class Judder(Experiment):
     def _envelopes(self, course: Axes, result: Result) -> None:
         """Slip of the first law, below and above the limit."""
         label = next(iter(result.trials))
-        for share, colour in (("judder", "#D55E00"), (f"{self.most:.3g}", "#0072B2")):
+        look = looks(result.runs)[label]
+        for share, above in (("judder", {"linewidth": 0.6}), (f"{self.most:.3g}", {"color": "#9A9A9A", "zorder": 3})):
             run = result[label, share]
-            course.plot(run.time, -run["friction.slip"], color=colour, linewidth=0.6)
+            course.plot(run.time, -run["friction.slip"], **{**look, **above})
         course.set_xlim(0.0, result[label, "judder"].time[-1])
-        head(course, "b", f"slip of {title(label)} at {self.least:g} (grows) and {self.most:g} of the limit")
+        head(course, "b", f"slip of {title(label)} at {self.least:g} and, grey, {self.most:g} of the limit")
 
     def _words(self, growth: Axes, limit: float, unit: str) -> None:
         head(growth, "a", "growth of small vibrations")

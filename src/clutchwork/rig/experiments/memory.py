@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from string import ascii_lowercase
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clutchwork.rig.bench import Bench, friction, position
 from clutchwork.rig.experiment import Experiment, experiment
-from clutchwork.rig.looks import looks, small, title
+from clutchwork.rig.looks import head, legend_below, looks, small, title
 from clutchwork.rig.presets import Preset
 from clutchwork.rig.result import Result, Runs, Trial
 from clutchwork.rig.table import Column
@@ -77,14 +78,16 @@ class Memory(Experiment):
         labels = list(result.runs)
         panels = figure.subplots(result.rows, min(self.across, len(labels)), sharex=True, sharey=True, squeeze=False)
         unit, every = result.preset.unit_length, looks(labels)
-        for axes, label in zip(panels.flat, labels, strict=False):
-            for case, look in (("large", {"color": "#C4C4C4", "linewidth": 2.6}), ("minor", every[label])):
+        grey = {"color": "#C4C4C4", "linewidth": 2.6, "label": "without the minor loop"}
+        for letter, axes, label in zip(ascii_lowercase, panels.flat, labels, strict=False):
+            for case, look in (("large", grey), ("minor", {**every[label], "label": None})):
                 run = result[label, case]
                 axes.plot(1e6 * position(run), friction(run), **{**look, "linestyle": "-"})
-            axes.set_title(title(label), loc="left")
+            head(axes, letter, title(label))
         for axes in panels.flat[len(labels) :]:
             axes.set_axis_off()
         for axes in panels[-1]:
             axes.set_xlabel(f"displacement, {small(unit, 1e6)}")
         for axes in panels[:, 0]:
             axes.set_ylabel(f"friction, {result.preset.unit_force}")
+        legend_below(panels[0][0])

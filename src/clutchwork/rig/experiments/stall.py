@@ -126,4 +126,6 @@ def _shown(torque: NDArray[np.float64]) -> int:
 
 
 def _end(run: Trajectory) -> str:
-    return "complete" if run.finished else f"{run.status} at {run.time[-1]:.4f} s"
+    end = "complete" if run.finished else f"{run.status} at {run.time[-1]:.4f} s"
+    shown = _shown(run["clutch.torque"])
+    return end if shown >= len(run) else f"{end}, first {shown} of {run.statistics['steps']} steps"
