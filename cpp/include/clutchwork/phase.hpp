@@ -240,6 +240,20 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   return !stands_still(ws);
 }
 
+/// Longest first step after an element has met another piece: half a radian of the swing of what it joins on its own
+/// stiffness. An implicit step much longer would damp a whole collision away unseen.
+template <class T>
+double collision_step(const Workspace<T>& ws, int k) {
+  const Branch<T>& b = ws.branch[k];
+  if (b.law >= 0) return infinity;
+  const int nv = int(ws.sys.speeds);
+  const T* row = ws.direction + b.direction * nv;
+  double stiffness = 0;
+  for (int s = 0; s < b.states; ++s) stiffness += abs(value(ws.f_state[b.state + s] * ws.g_rate[b.state + s]));
+  const double square = stiffness * value(dot(nv, row, row));
+  return square > 0 ? 0.5 / sqrt(square) : infinity;
+}
+
 /// Whether a contact whose torque jumps with the sign of its slip reverses again and again within a few steps: it
 /// cannot come to rest.
 template <class T>
@@ -463,6 +477,7 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
       if (!law) pass_line(form, *guard);
       look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
       h = ws.last_step;
+      if (hit.what == Hit::law) h = smaller(h, collision_step(ws, hit.index));
       continue;
     }
     if (hit.what == Hit::exit) {

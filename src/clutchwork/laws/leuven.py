@@ -36,7 +36,9 @@ class Leuven(StribeckCurve):
         units_x=("m",),
         example=((2e-5, 0.1), (5e-5, 0.2), (1e-4, 0.3), (2e-4, 0.4)),
     )
-    order: float = param("1", "how sharply deflection turns into sliding", default=1.0, above=0.0)
+    order: float = param(
+        "1", "how sharply deflection turns into sliding; low orders creep as LuGre", default=20.0, above=0.0
+    )
     damping: float = param("s/rad", "coefficient per rate of the deflection", default=0.0, at_least=0.0, units=("s/m",))
 
     def own_states(self) -> tuple[State, ...]:
