@@ -31,7 +31,7 @@ PASSIVE: dict[str, cw.Law] = {
     "lugre": cw.LuGre(**GENTLE),
     "elastoplastic": cw.ElastoPlastic(**GENTLE, elastic=4.9e-5),
     "leuven": cw.Leuven(**sets.CURVE, elements=sets.FEW, order=20.0),
-    "leuven linear": cw.Leuven(**sets.CURVE, elements=sets.FEW, damping=0.9),
+    "leuven linear": cw.Leuven(**sets.CURVE, elements=sets.FEW, order=1.0, damping=0.9),
     "gms even": cw.GMS(**EVEN, elements=sets.FEW),
 }
 # laws that hold this only for swings there and back at like speeds, see (26) and (31)

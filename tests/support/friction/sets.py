@@ -47,7 +47,7 @@ OTHERS: dict[str, cw.Law] = {
     "elastoplastic lorentz": cw.ElastoPlastic(
         **BRISTLE | {"damping": 60.0}, elastic=3e-5, plastic=6e-5, shape="lorentz"
     ),
-    "leuven linear": cw.Leuven(**CURVE, elements=FEW),
+    "leuven linear": cw.Leuven(**CURVE, elements=FEW, order=1.0),
     "leuven square": cw.Leuven(**CURVE, elements=(*FEW[:2], (2e-4, 0.8)), order=2.0, damping=30.0),
     "gms quick": cw.GMS(**CURVE, elements=FEW, attraction=2000.0),
     "mykhalevych narrow": cw.Mykhalevych(**WOUND, range=1.5),
