@@ -89,6 +89,12 @@ def test_what_is_not_there_is_answered_with_what_is_near() -> None:
         result.table.value("lugra", "sliding peak")
 
 
+def test_a_law_over_the_temperature_is_refused_with_the_remedy() -> None:
+    fades = cw.TemperatureTable(static=[(280.0, 0.35), (500.0, 0.28)], kinetic=[(280.0, 0.3), (500.0, 0.25)])
+    with pytest.raises(ValueError, match="'lining' is a TemperatureTable over it: give .* FrictionTable"):
+        rig.steady({"lining": fades})
+
+
 def test_a_run_that_stops_early_leaves_a_note_and_no_numbers() -> None:
     result = rig.drift(["naive_sign", "stribeck"])
     assert result.table["note"][0].startswith("chatter at ")

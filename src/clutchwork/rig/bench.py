@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -40,8 +41,12 @@ class Bench:
         """Normal load [N] under which the law has the static force of the preset, or the kinetic where it has one only.
 
         So a lining with a coefficient of 0.12 is compared with the laws of the preset under the same forces.
+        ValueError for a law whose static coefficient is a curve.
         """
         static = getattr(self.law, "static", None)
+        if static is not None and not isinstance(static, Real):
+            remedy = "give its values at one temperature as a FrictionTable"
+            raise ValueError(f"the rig has no temperature, and {self.label!r} is a {type(self.law).__name__} over it: {remedy}")
         if static is not None:
             return self.preset.force / float(static)
         kinetic = getattr(self.law, "kinetic", self.preset.kinetic)
