@@ -91,7 +91,7 @@ def test_what_is_not_there_is_answered_with_what_is_near() -> None:
 
 def test_a_law_over_the_temperature_is_refused_with_the_remedy() -> None:
     fades = cw.TemperatureTable(static=[(280.0, 0.35), (500.0, 0.28)], kinetic=[(280.0, 0.3), (500.0, 0.25)])
-    with pytest.raises(ValueError, match="'lining' is a TemperatureTable over it: give .* FrictionTable"):
+    with pytest.raises(ValueError, match=r"'lining' is a TemperatureTable over it: give .* FrictionTable"):
         rig.steady({"lining": fades})
 
 

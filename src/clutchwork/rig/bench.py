@@ -45,8 +45,8 @@ class Bench:
         """
         static = getattr(self.law, "static", None)
         if static is not None and not isinstance(static, Real):
-            remedy = "give its values at one temperature as a FrictionTable"
-            raise ValueError(f"the rig has no temperature, and {self.label!r} is a {type(self.law).__name__} over it: {remedy}")
+            what = f"the rig has no temperature, and {self.label!r} is a {type(self.law).__name__} over it"
+            raise ValueError(f"{what}: give its values at one temperature as a FrictionTable")
         if static is not None:
             return self.preset.force / float(static)
         kinetic = getattr(self.law, "kinetic", self.preset.kinetic)
