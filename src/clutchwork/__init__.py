@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     # what type checkers and editors shall know by name; at run time the registry decides
     from clutchwork import fit as fit
     from clutchwork import rig as rig
+    from clutchwork.codegen import export_c as export_c
     from clutchwork.elements.band_brake import BandBrake as BandBrake
     from clutchwork.elements.bearing_friction import BearingFriction as BearingFriction
     from clutchwork.elements.brake import Brake as Brake
@@ -121,6 +122,7 @@ _LAZY = {
     "StoppedEarly": "failure",
     "System": "system",
     "Trajectory": "trajectory",
+    "export_c": "codegen",
     "simulate": "simulation",
 }
 

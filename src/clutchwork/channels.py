@@ -8,7 +8,7 @@ element counts as the element, such as the drag of a clutch, its torque, power, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,17 +18,12 @@ from numpy.typing import NDArray
 
 from clutchwork import heat_channels, reactions
 from clutchwork.errors import near
-from clutchwork.layout import MODES
+from clutchwork.forms import LOCKED as LOCKED
+from clutchwork.forms import Affine, Column, Form, Linear, Mode, Power, Slip, Total
 from clutchwork.node import Domain
 from clutchwork.wiring import HOUSING, Branch, Wiring
 
 Array = NDArray[Any]
-Rows = NDArray[np.float64]
-Evaluate = Callable[[Rows], Array]
-
-LOCKED = next(number for number, name in MODES.items() if name == "locked")
-STATE_NAMES = np.array([MODES[number] for number in sorted(MODES)])
-FIRST_MODE = min(MODES)
 
 SPEED = {Domain.ROTATION: "rad/s", Domain.TRANSLATION: "m/s"}
 ANGLE = {Domain.ROTATION: "rad", Domain.TRANSLATION: "m"}
@@ -43,7 +38,7 @@ class Channel:
     """One signal: its unit and its evaluation on a matrix of output rows."""
 
     unit: str
-    evaluate: Evaluate
+    evaluate: Form
 
 
 class Channels(Mapping[str, Channel]):
@@ -105,10 +100,10 @@ class Channels(Mapping[str, Channel]):
             yield f"{node.name}.acceleration", _column(self._start("acceleration") + index, ACCELERATION[domain])
 
     def _element(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
-        torque, rate = self._total("torque", branch), _linear(self._rate(branch))
+        torque, rate = self._total("torque", branch), self._rate(branch)
         yield f"{branch.name}.torque", Channel(TORQUE[branch.domain], torque)
         yield f"{branch.name}.rate", Channel(SPEED[branch.domain], rate)
-        yield f"{branch.name}.power", _power(torque, rate)
+        yield f"{branch.name}.power", Channel("W", Power(torque, rate))
         yield f"{branch.name}.work", Channel("J", self._total("work", branch))
         yield from self._states(branch)
 
@@ -117,31 +112,32 @@ class Channels(Mapping[str, Channel]):
             column = self._start("state") + index
             yield f"{branch.name}.{name}", _column(column, unit)
             if name == "spring_torque":
-                yield f"{branch.name}.twist", _scaled(column, 1.0 / branch.component.stiffness, ANGLE[branch.domain])
+                twist = Affine(column, 1.0 / branch.component.stiffness)
+                yield f"{branch.name}.twist", Channel(ANGLE[branch.domain], twist)
 
     def _contact(self, branch: Branch, index: int) -> Iterator[tuple[str, Channel]]:
         mode = self._start("contact_mode") + index
         torque, work = self._total("torque", branch), self._total("work", branch)
-        slip = _slip(_linear(self._rate(branch)), mode)
+        slip = Slip(self._rate(branch), mode)
         yield f"{branch.name}.torque", Channel(TORQUE[branch.domain], torque)
         yield f"{branch.name}.slip", Channel(SPEED[branch.domain], slip)
-        yield f"{branch.name}.power", _power(torque, slip)
+        yield f"{branch.name}.power", Channel("W", Power(torque, slip))
         yield f"{branch.name}.work", Channel("J", work)
-        yield f"{branch.name}.heat", Channel("J", lambda rows: -work(rows))
-        yield f"{branch.name}.mode", Channel("1", lambda rows: rows[:, mode].astype(int))
-        yield f"{branch.name}.state", Channel("", lambda rows: STATE_NAMES[rows[:, mode].astype(int) - FIRST_MODE])
+        yield f"{branch.name}.heat", Channel("J", Total(work.indices, negative=True))
+        yield f"{branch.name}.mode", Channel("1", Mode(mode))
+        yield f"{branch.name}.state", Channel("", Mode(mode, named=True))
         yield f"{branch.name}.capacity", _column(self._start("contact_capacity") + index, TORQUE[branch.domain])
         yield from self._states(branch)
 
     def _thermal(self) -> Iterator[tuple[str, Channel]]:
         for name, unit, columns in heat_channels.affine(self._wiring):
-            yield name, Channel(unit, _affine(*columns))
+            yield name, Channel(unit, Affine(*columns))
 
-    def _total(self, what: str, branch: Branch) -> Evaluate:
+    def _total(self, what: str, branch: Branch) -> Total:
         """Torque or work of a branch and of the parts that count as it."""
         names = (branch.name, *self._wiring.sums.get(branch.name, ()))
-        columns = [self._start(f"{sort}_{what}") + index for sort, index in map(self._acting.__getitem__, names)]
-        return lambda rows: sum((rows[:, column] for column in columns[1:]), rows[:, columns[0]])
+        acting = map(self._acting.__getitem__, names)
+        return Total(tuple(self._start(f"{sort}_{what}") + index for sort, index in acting))
 
     @cached_property
     def _acting(self) -> dict[str, tuple[str, int]]:
@@ -153,21 +149,21 @@ class Channels(Mapping[str, Channel]):
         wiring, made = self._wiring, reactions.multipliers(self._wiring)
         yield from _gear_torques(wiring, made)
         for index, branch in enumerate(wiring.motions):
-            torque, rate = _linear(made[len(wiring.gears) + index]), _linear(self._rate(branch))
+            torque, rate = Linear.of(made[len(wiring.gears) + index]), self._rate(branch)
             yield f"{branch.name}.torque", Channel(TORQUE[branch.domain], torque)
-            yield f"{branch.name}.power", _power(torque, rate)
+            yield f"{branch.name}.power", Channel("W", Power(torque, rate))
             yield f"{branch.name}.work", _column(self._start("prescribed_work") + index, "J")
         for domain in Domain:
             if domain is Domain.ROTATION or any(node.domain is domain for node in wiring.nodes):
-                yield REACTION[domain], Channel(TORQUE[domain], _linear(reactions.on_housing(wiring, made, domain)))
+                yield REACTION[domain], Channel(TORQUE[domain], Linear.of(reactions.on_housing(wiring, made, domain)))
 
-    def _rate(self, branch: Branch) -> Array:
-        """Vector that turns an output row into the rate of a branch."""
+    def _rate(self, branch: Branch) -> Linear:
+        """Rate of a branch."""
         vector = np.zeros(self._wiring.row_size)
         for node, coefficient in branch.direction.items():
             if node != HOUSING:
                 vector[self._start("speed") + node] += coefficient
-        return vector
+        return Linear.of(vector)
 
 
 def _left_out(angles: bool, work: bool) -> dict[str, str]:
@@ -185,32 +181,8 @@ def _gear_torques(wiring: Wiring, made: Array) -> Iterator[tuple[str, Channel]]:
             before = totals[name][0] if name in totals else np.zeros(wiring.row_size)
             totals[name] = (before + coefficient * made[index], row.domains[port])
     for name, (vector, domain) in totals.items():
-        yield name, Channel(TORQUE[domain], _linear(vector))
+        yield name, Channel(TORQUE[domain], Linear.of(vector))
 
 
 def _column(column: int, unit: str) -> Channel:
-    return Channel(unit, lambda rows: rows[:, column])
-
-
-def _scaled(column: int, factor: float, unit: str) -> Channel:
-    return Channel(unit, lambda rows: factor * rows[:, column])
-
-
-def _affine(column: int, scale: float, offset: float) -> Evaluate:
-    return lambda rows: offset + scale * rows[:, column]
-
-
-def _linear(vector: Array) -> Evaluate:
-    """Product with a constant vector; columns with factor 0 are left out, for they may be infinite."""
-    used = np.flatnonzero(vector)
-    factors = vector[used]
-    return lambda rows: rows[:, used] @ factors
-
-
-def _power(torque: Evaluate, rate: Evaluate) -> Channel:
-    return Channel("W", lambda rows: torque(rows) * rate(rows))
-
-
-def _slip(rate: Evaluate, mode: int) -> Evaluate:
-    """Slip of a contact; exactly zero while it is locked."""
-    return lambda rows: np.where(rows[:, mode] == LOCKED, 0.0, rate(rows))
+    return Channel(unit, Column(column))

@@ -1,4 +1,4 @@
-"""The command line: run | check | demo | rig | fit | --version.
+"""The command line: run | check | demo | rig | fit | export | --version.
 
 Exit codes: 0 done; 1 the run stopped early (what was asked for is written up to there); 2 the command line or an
 option is wrong; 3 the model is wrong, every mistake is listed; 4 a file cannot be read or written, or a package is
@@ -52,7 +52,7 @@ def parser() -> argparse.ArgumentParser:
     _run_parser(commands.add_parser("run", help="compute the motion of a model", epilog=_codes()))
     _check_parser(commands.add_parser("check", help="check a model and list its ratios, without running it"))
     _demo_parser(commands.add_parser("demo", help="launch and 3-4 shift of a six-speed planetary gearbox"))
-    for module in ("rig", "fit"):
+    for module in ("rig", "fit", "codegen"):
         import_module(f"clutchwork.{module}.command").add_command(commands)
     return top
 

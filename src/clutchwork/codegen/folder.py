@@ -1,0 +1,79 @@
+"""Write a model with the core as a folder that builds without Python."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.channels import Channels
+from clutchwork.codegen.model import Exported, chosen, files
+from clutchwork.codegen.sources import sources
+from clutchwork.driveline import Driveline
+from clutchwork.options import Options, end_time
+from clutchwork.wiring import wiring
+
+if TYPE_CHECKING:
+    from clutchwork.system import System
+
+TEMPLATES = Path(__file__).parent / "templates"
+# intervals of the grid when no spacing is given
+INTERVALS = 1000
+# main.c holds its rows in static memory, [bytes]
+MOST_MEMORY = 2**28
+
+
+def export_c(
+    model: Driveline | System,
+    folder: str | Path,
+    *,
+    t_end: float | None = None,
+    signals: Sequence[str] | None = None,
+    options: Options | None = None,
+    **changes: Any,
+) -> Path:
+    """Write C and C++ of a Driveline or a System into a folder; its path.
+
+    Parameters: t_end [s], that of the model file by default; signals, names of what main.c prints, all by default;
+    options, an `Options`, or its fields by name (rtol=, dt=, method= ...), after those of the model file. `make` in
+    the folder builds it, with a C and a C++20 compiler and nothing else. What is in it: docs/guide/export.md.
+    """
+    settings = dict(model.simulation) if isinstance(model, Driveline) else {}
+    settings |= changes | ({} if t_end is None else {"t_end": t_end})
+    if "t_end" not in settings:
+        raise ValueError("no end time: give t_end, or t_end in the [simulation] table of the model file")
+    end = end_time(settings.pop("t_end"))
+    made = (options or Options()).changed(settings)
+    if made.times is not None:
+        raise ValueError("times cannot be exported: give dt, the spacing of the grid")
+    system = model if not isinstance(model, Driveline) else model.assemble()
+    channels = Channels(wiring(system), angles=made.angles, work=made.work)
+    exported = Exported(system, end, made.dt or end / INTERVALS, made, chosen(signals, channels))
+    _refuse_large(exported)
+    return _write(exported, Path(folder))
+
+
+def _refuse_large(exported: Exported) -> None:
+    size = 8 * exported.instants * len(exported.columns)
+    if size > MOST_MEMORY:
+        words = f"{exported.instants} instants need {size / 2**20:.0f} MiB of static memory"
+        raise ValueError(f"dt is {exported.dt:g} s: {words}; take a larger dt")
+
+
+def _write(exported: Exported, folder: Path) -> Path:
+    for name, lines in files(exported).items():
+        _put(folder / name, ("\n".join(lines) + "\n").encode())
+    for path, content in sources().items():
+        _put(folder / "core" / path, content)
+    # these belong to whoever edits them
+    for template in sorted(TEMPLATES.iterdir()):
+        if not (folder / template.name).exists():
+            _put(folder / template.name, template.read_bytes())
+    return folder
+
+
+def _put(path: Path, content: bytes) -> None:
+    """Write a file; one that is the same keeps its date, so that it is not compiled again."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not path.is_file() or path.read_bytes() != content:
+        path.write_bytes(content)

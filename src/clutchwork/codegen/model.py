@@ -1,0 +1,195 @@
+"""What is written about one model: its layout as a header, its tables, its bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from clutchwork.channels import Channel, Channels
+from clutchwork.codegen.expression import expression
+from clutchwork.codegen.rows import numbers
+from clutchwork.codegen.text import comment, enumeration, identifiers, literal, string
+from clutchwork.forms import Mode
+from clutchwork.layout import EVENT, MODES, STATUS
+from clutchwork.options import Options
+from clutchwork.simulation import new_run
+from clutchwork.system import System
+from clutchwork.wiring import Wiring, wiring
+
+MADE = "Made by clutchwork. Do not edit: export the model again."
+BYTES_PER_LINE = 16
+
+
+@dataclass(frozen=True)
+class Exported:
+    """A System with its grid, the settings of the solver and the signals that are printed."""
+
+    system: System
+    t_end: float  # s
+    dt: float  # s
+    options: Options
+    printed: tuple[str, ...]
+
+    @cached_property
+    def data(self) -> bytes:
+        """The frozen System."""
+        return self.system.to_bytes()
+
+    @cached_property
+    def wiring(self) -> Wiring:
+        """Who is joined to what."""
+        return wiring(self.system)
+
+    @cached_property
+    def signals(self) -> dict[str, Channel]:
+        """All signals that are numbers, by name."""
+        channels = Channels(self.wiring, angles=self.options.angles, work=self.options.work)
+        return {name: item for name, item in channels.items() if not _is_text(item)}
+
+    @cached_property
+    def functions(self) -> dict[str, str]:
+        """The C function of each signal."""
+        return dict(zip(self.signals, identifiers("model_get_", self.signals), strict=True))
+
+    @cached_property
+    def columns(self) -> list[str]:
+        """The identifier of each number of a row."""
+        return identifiers("MODEL_ROW_", [name for name, _ in numbers(self.wiring)])
+
+    @property
+    def outside(self) -> list[tuple[int, str, str]]:
+        """Number, name and unit of the inputs that are set from outside."""
+        counts = self.system.arrays["input_count"]
+        return [(k, item.name, item.unit) for k, item in enumerate(self.system.inputs) if counts[k] == 0]
+
+    @property
+    def instants(self) -> int:
+        """Number of instants of the grid."""
+        grid = self.options.changed({"dt": self.dt, "times": None}).grid(self.t_end)
+        return 0 if grid is None else len(grid)
+
+
+def header(model: Exported) -> Iterator[str]:
+    """model.h: sizes, settings, layout of rows and events, signals."""
+    memory = len(new_run(model.data).save())
+    yield f"/* The model {comment(model.system.name)}. {MADE} */"
+    yield from ("#ifndef MODEL_H", "#define MODEL_H", "", "#include <math.h>", "")
+    yield from ("#include <clutchwork/c_api.h>", '#include "model_system.h"', "")
+    yield "/* Memory of a run, aligned to 16 bytes; cw_load refuses when another machine needs more. */"
+    yield from (f"#define MODEL_MEMORY {memory}", "")
+    yield "/* The grid of main.c: 0, dt, 2 dt ... t_end. */"
+    yield f"#define MODEL_T_END {literal(model.t_end)} /* s */"
+    yield f"#define MODEL_DT {literal(model.dt)} /* s */"
+    yield from (f"#define MODEL_INSTANTS {model.instants}", "")
+    yield from _enumerations(model)
+    yield from ("#ifdef __cplusplus", 'extern "C" {', "#endif", "")
+    yield "/* The settings of the solver with which the model was exported; 0: the core refuses one. */"
+    yield from ("int model_set_options(cw_run *run);", "")
+    yield "/* What main.c prints: name, unit, value in a row. */"
+    yield "typedef struct {"
+    yield from ("  const char *name, *unit;", "  double (*value)(const double *row);", "} model_signal;")
+    yield f"#define MODEL_SIGNALS {len(model.printed)}"
+    yield from ("extern const model_signal model_signals[MODEL_SIGNALS];", "")
+    yield "/* Names of the contacts, in the order of their numbers in events. */"
+    contacts = len(model.system.contacts)
+    yield from (
+        f"#define MODEL_CONTACTS {contacts}",
+        f"extern const char *const model_contacts[{max(contacts, 1)}];",
+        "",
+    )
+    yield from ("#ifdef __cplusplus", "}", "#endif", "")
+    yield "/* All signals, from one row. */"
+    for name, channel in model.signals.items():
+        yield f"/* {comment(name)} [{comment(channel.unit)}] */"
+        yield f"static inline double {model.functions[name]}(const double *row) {{"
+        value = expression(channel.evaluate, model.columns)
+        yield from (*(["  (void)row;"] if "row" not in value else []), f"  return {value};", "}")
+    yield from ("", "#endif")
+
+
+def _enumerations(model: Exported) -> Iterator[str]:
+    """The layout of rows and events, and all that has a number."""
+    row = [(column, k, f"{n} [{u}]") for k, (column, (n, u)) in enumerate(zip(model.columns, _row(model), strict=True))]
+    yield "/* Where each number stands in a row. */"
+    yield from enumeration("model_row", [*row, ("MODEL_ROW_SIZE", len(row), "numbers in a row")])
+    yield from ("", "/* Inputs that are set from outside, as cw_set_input takes them; at zero until they are set. */")
+    names = identifiers("MODEL_INPUT_", [name for _, name, _ in model.outside])
+    inputs = [(name, k, f"{n} [{u}]") for name, (k, n, u) in zip(names, model.outside, strict=True)]
+    yield from enumeration("model_input", [*inputs, ("MODEL_OUTSIDE", len(inputs), "how many there are")])
+    yield from ("", "/* Numbers that cw_set_param changes. */")
+    params = zip(identifiers("MODEL_PARAM_", model.system.parameters), model.system.parameters.items(), strict=True)
+    count = len(model.system.arrays["params"])
+    members = [(name, place, path) for name, (path, place) in params]
+    yield from enumeration("model_param", [*members, ("MODEL_PARAMS", count, "numbers in the pool")])
+    yield from ("", "/* Modes of a contact: slip below zero, locked, slip above zero, open. */")
+    yield from enumeration("model_mode", [(f"MODEL_MODE_{name.upper()}", k, "") for k, name in MODES.items()])
+    yield from ("", "/* What cw_advance returns. */")
+    statuses = [(f"MODEL_STATUS_{name.upper()}", k, message) for k, (name, message, _) in enumerate(STATUS)]
+    yield from enumeration("model_status", statuses)
+    yield from ("", "/* Where each number stands in an event. */")
+    event = [(f"MODEL_EVENT_{name.upper()}", k, unit) for k, (name, unit) in enumerate(EVENT)]
+    yield from (*enumeration("model_event", [*event, ("MODEL_EVENT_SIZE", len(event), "numbers in an event")]), "")
+
+
+def _row(model: Exported) -> list[tuple[str, str]]:
+    return numbers(model.wiring)
+
+
+def tables(model: Exported) -> Iterator[str]:
+    """model.c: settings, printed signals, names of contacts."""
+    yield from (f"/* {MADE} */", '#include "model.h"', "", "int model_set_options(cw_run *run) {")
+    settings = model.options.core_options().items()
+    yield "  return 1"
+    yield from (f'         && cw_set_option(run, "{name}", {literal(value)})' for name, value in settings)
+    yield from ("      ;", "}", "")
+    yield "const model_signal model_signals[MODEL_SIGNALS] = {"
+    for name in model.printed:
+        yield f"    {{{string(name)}, {string(model.signals[name].unit)}, {model.functions[name]}}},"
+    yield from ("};", "", f"const char *const model_contacts[{max(len(model.system.contacts), 1)}] = {{")
+    yield from (f"    {string(contact.name)}," for contact in model.system.contacts)
+    yield from (["    0,"] if not model.system.contacts else [])
+    yield "};"
+
+
+def system_header(model: Exported) -> Iterator[str]:
+    """model_system.h: the bytes of the frozen System."""
+    yield f"/* {MADE} */"
+    yield from ("#ifndef MODEL_SYSTEM_H", "#define MODEL_SYSTEM_H", "")
+    yield "/* The frozen system, little endian. It must outlive every run that was loaded from it. */"
+    yield f"#define MODEL_SYSTEM_BYTES {len(model.data)}"
+    yield from ("#ifdef __cplusplus", 'extern "C"', "#else", "extern", "#endif")
+    yield from ("    const unsigned char model_system[MODEL_SYSTEM_BYTES];", "", "#endif")
+
+
+def system_bytes(data: bytes) -> Iterator[str]:
+    """model_system.c."""
+    yield from (f"/* {MADE} */", '#include "model_system.h"', "")
+    yield "_Alignas(16) const unsigned char model_system[MODEL_SYSTEM_BYTES] = {"
+    for first in range(0, len(data), BYTES_PER_LINE):
+        yield "    " + "".join(f"{byte}," for byte in data[first : first + BYTES_PER_LINE])
+    yield "};"
+
+
+def files(model: Exported) -> dict[str, Iterator[str]]:
+    """All files that depend on the model."""
+    return {
+        "model.h": header(model),
+        "model.c": tables(model),
+        "model_system.h": system_header(model),
+        "model_system.c": system_bytes(model.data),
+    }
+
+
+def _is_text(channel: Channel) -> bool:
+    return isinstance(channel.evaluate, Mode) and channel.evaluate.named
+
+
+def chosen(names: Sequence[str] | None, channels: Channels) -> tuple[str, ...]:
+    """The names that are printed, all numbers by default; KeyError with near ones for an unknown name."""
+    if names is None:
+        return tuple(name for name, item in channels.items() if not _is_text(item))
+    for name in names:
+        if _is_text(channels[name]):
+            raise ValueError(f"{name} is a text: take {name.rpartition('.')[0]}.mode, its number")
+    return tuple(names)

@@ -1,0 +1,46 @@
+"""The sources of the core: beside the installed package, else in the checkout."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+# what the build installs beside the compiled core, CMakeLists.txt
+INSTALLED = "native"
+CHECKOUT = Path(__file__).resolve().parents[3]
+REGISTRY = Path("include", "clutchwork", "registry.gen.hpp")
+ENDINGS = (".cpp", ".hpp", ".h")
+
+
+def sources() -> dict[Path, bytes]:
+    """Headers, sources and licence of the core, by their paths in the folder that holds them."""
+    from clutchwork import _core
+
+    installed = Path(_core.__file__).parent / INSTALLED
+    if (installed / REGISTRY).is_file():
+        return dict(_below(installed))
+    if (CHECKOUT / "cpp" / "src").is_dir():
+        return {**dict(_below(CHECKOUT / "cpp")), Path("LICENSE"): (CHECKOUT / "LICENSE").read_bytes(), **_registry()}
+    raise FileNotFoundError(f"{installed} does not hold the sources of the core: install clutchwork again")
+
+
+def _below(folder: Path) -> Iterator[tuple[Path, bytes]]:
+    for path in sorted(folder.rglob("*")):
+        if path.suffix in ENDINGS or path.name == "LICENSE":
+            yield path.relative_to(folder), path.read_bytes()
+
+
+def _registry() -> dict[Path, bytes]:
+    """The generated header, made by the tool of the checkout."""
+    generator = CHECKOUT / "tools" / "gen_registry.py"
+    with TemporaryDirectory() as folder:
+        made = Path(folder, "registry.gen.hpp")
+        # without the site module no installed clutchwork is in its way
+        command = [sys.executable, "-I", "-S", str(generator), str(CHECKOUT), str(made)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own tool
+        if done.returncode != 0:
+            raise OSError(f"{generator} failed: {done.stderr.strip()}")
+        return {REGISTRY: made.read_bytes()}
