@@ -53,5 +53,7 @@ def component_advice(component: Component) -> Iterator[Problem]:
         return
     units = {item.name: spec.unit for item, spec in specs(type(law))}
     for name, message, remedy in law.advice():
-        value = f"{getattr(law, name):g} {units[name]}"
-        yield place.inner(name).problem(message, value=value.removesuffix(" 1"), remedy=remedy)
+        given = getattr(law, name)
+        # a table is shown by what is said of it
+        value = f"{given:g} {units[name]}".removesuffix(" 1") if isinstance(given, Real) else ""
+        yield place.inner(name).problem(message, value=value, remedy=remedy)

@@ -337,3 +337,15 @@ def test_pulse_wider_than_its_period():
     d = cw.Driveline()
     d.add(cw.Torque("t", shaft=d.shaft("a", inertia=1.0), torque=cw.Pulse(height=1.0, period=1.0, width=2.0)))
     assert "torque.width is 2 s, not below period = 1 s" in str(d.check()[0])
+
+
+def test_temperatures_in_degrees_celsius_are_warned_of():
+    """A table that starts at 20 K is meant in degrees Celsius."""
+    d = cw.Driveline()
+    shaft = d.shaft("a", inertia=1.0)
+    law = cw.TemperatureTable(
+        static=[(20.0, 0.4), (200.0, 0.3)], kinetic=[(20.0, 0.3), (200.0, 0.2)], temperature=300.0
+    )
+    d.add(cw.Brake("b", shaft=shaft, friction=law, gain=1.0, pressure=1.0))
+    with pytest.warns(cw.ModelWarning, match=r"starts at 20 K.*293\.15 K"):
+        d.assemble()
