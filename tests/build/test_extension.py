@@ -89,7 +89,7 @@ struct Hyperbolic {
     return S(p.slow) / (S(1.0) + at.rate / S(p.speed));
   }
   template <class T>
-  static T hold(const Params<T>& p) {
+  static T hold(const Params<T>& p, const At<T>&) {
     return p.static_;
   }
 };
