@@ -1,10 +1,10 @@
 #pragma once
-#include <clutchwork/stribeck_curve.hpp>
+#include <clutchwork/bristles.hpp>
 
 namespace clutchwork::laws {
 
 /// LuGre with a range of deflection that is purely elastic: no drift below it.
-struct ElastoPlastic {
+struct ElastoPlastic : Bristles<ElastoPlastic> {
   template <class T>
   struct Params : StribeckCurve<T> {
     T stiffness;  ///< [1/rad]
@@ -12,7 +12,6 @@ struct ElastoPlastic {
     T elastic;    ///< [rad]
     T plastic;    ///< [rad]
   };
-  static constexpr int states = 1;
 
   /// Share of the slip that is plastic: 0 inside the elastic range and on the way back, 1 beyond the plastic one.
   template <class T, class S>
@@ -30,18 +29,6 @@ struct ElastoPlastic {
   static S bending(const Params<T>& p, const At<S>& at) {
     const S level = sliding_level(p, at.rate);
     return at.rate - plasticity(p, at, level) * abs(at.rate) * at.state[0] / level;
-  }
-  template <class T, class S>
-  static S coefficient(const Params<T>& p, const At<S>& at) {
-    return at.state[0] + p.damping * bending(p, at) + p.viscous * at.rate;
-  }
-  template <class T, class S>
-  static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
-    rates[0] = p.stiffness * bending(p, at);
-  }
-  template <class T>
-  static T hold(const Params<T>& p, const At<T>&) {
-    return p.static_;
   }
 };
 
