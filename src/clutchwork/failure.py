@@ -39,9 +39,12 @@ class FaultWarning(RuntimeWarning):
     """Warning that a fault was triggered that its element reports as a warning."""
 
 
-def explain(status: int, component: Any, time: float, value: float) -> str:
-    """One line for a status of the core: message, element, value, what a table covers, time, remedy."""
+def explain(status: int, component: Any, time: float, value: float, signal: str = "") -> str:
+    """One line for a status of the core: message, element or signal, value, what a table covers, time, remedy."""
     name, message, remedy = STATUS[status]
+    if name == "zeno" and component is None:
+        crowded = f"{signal!r} has more than 50 knots within a microsecond"
+        return f"stopped at {time:.9g} s: {crowded}: thin out the signal, or filter it before it becomes a table"
     where = f" at {component.name!r}" if component is not None else ""
     covered = _covered(component) if name == "out_of_table" else ""
     seen = f" (value {value:g}{covered})" if component is not None and name in WITH_VALUE else ""

@@ -142,7 +142,11 @@ STATUS = (
         "extend the table, or choose the extrapolation linear or nearest",
     ),
     ("fault", "a fault was triggered that is reported as an error", "report it as a warning to go on"),
-    ("zeno", "more than 50 events within a microsecond", "give the named contact some inertia or damping"),
+    (
+        "zeno",
+        "more than 50 events within a microsecond",
+        "give the shafts beside the named element inertia, or damping to the springs that drive it",
+    ),
     (
         "no_mode",
         "no set of sticking contacts fits",

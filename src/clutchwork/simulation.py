@@ -142,7 +142,9 @@ def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
     if status != DONE:
         index, at, value = run.detail()
         parts = [*system.elements, *system.contacts]
-        message = explain(status, parts[index] if 0 <= index < len(parts) else None, at, value)
+        component = parts[index] if 0 <= index < len(parts) else None
+        crowded = NAMES[status] == "zeno" and component is None
+        message = explain(status, component, at, value, system.inputs[int(value)].name if crowded else "")
     return Trajectory(
         system=system,
         options=job.options,

@@ -8,9 +8,9 @@ template <class Form>
 Status run_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink) {
   // the explicit method serves soft models of any size; only the sparse form carries it
   if constexpr (!Form::small) {
-    if (ws.is_explicit) return smooth_phase<Form, Dopri5>(ws, t_end, sink);
+    if (ws.is_explicit) return Phase<Form, Dopri5>(ws, t_end, sink).run();
   }
-  return smooth_phase<Form, Rodas5P>(ws, t_end, sink);
+  return Phase<Form, Rodas5P>(ws, t_end, sink).run();
 }
 
 /// Exact sizes for small systems, one sparse form for the rest.
@@ -45,7 +45,7 @@ bool start(Workspace<T>& ws) {
   for (int c = 0; c < sys.contacts; ++c) {
     ws.compliant[c] = is_compliant_law(sys.contact_law[c]);
     ws.fault[c] = sound;
-    ws.forced[c] = ws.held[c] = ws.loaded[c] = 0;
+    ws.forced[c] = ws.loaded[c] = 0;
     const double slip = value(rate_of(ws, int(sys.elements) + c));
     ws.mode[c] = abs(slip) <= slip_tolerance(ws) ? open : slip > 0 ? forward : backward;
     ws.mode_before[c] = ws.mode[c];

@@ -122,28 +122,12 @@ CLUTCHWORK_INLINE void dual_inputs(int count, const T* input, const T* slope, S*
   }
 }
 
-/// Torque of a held contact after `ahead` seconds: what it can resist in the direction in which it is pulled.
-template <class T>
-T held_torque(const Workspace<T>& ws, const Branch<T>& b, double ahead = 0) {
-  T input[most_inputs], law_input[most_inputs];
-  for (int i = 0; i < b.inputs; ++i) input[i] = b.input[i] + T(ahead) * b.input_slope[i];
-  for (int i = 0; i < b.law_inputs; ++i) law_input[i] = b.law_input[i] + T(ahead) * b.law_input_slope[i];
-  const int c = b.direction - int(ws.sys.elements);
-  return T(b.sign) * contact_limit(ws.sys, c, ws.params, input, law_input, -b.sign);
-}
-
-/// Its time derivative: limits are close to linear in their inputs.
-template <class T>
-T held_slope(const Workspace<T>& ws, const Branch<T>& b) {
-  constexpr double h = 1e-5;
-  return (held_torque(ws, b, h) - held_torque(ws, b, -h)) / T(2 * h);
-}
-
 /// Torque of a sliding contact with a law that sticks, on its follower.
 template <class T, class S>
 CLUTCHWORK_INLINE S sliding_torque(const Workspace<T>& ws, const Branch<T>& b, const S& rate, const S* input,
                                    const S* law_input) {
-  const S load = larger(contact_load<T, S>(b.kind, b.params, input, ws.sys.points), S(0));
+  // beyond its zero, at which the step will end, the load goes on as it falls
+  const S load = contact_load<T, S>(b.kind, b.params, input, ws.sys.points);
   S coefficient = visit_law(b.law, [&](auto tag) {
     using L = typename decltype(tag)::type;
     if constexpr (StickingLaw<L>) {
@@ -161,7 +145,8 @@ CLUTCHWORK_INLINE S sliding_torque(const Workspace<T>& ws, const Branch<T>& b, c
 template <int Room, class T, class S>
 CLUTCHWORK_INLINE S bending_torque(const Workspace<T>& ws, const Branch<T>& b, const S& rate, const S* own,
                                    const S* input, const S* law_input, S* rates) {
-  const S load = larger(contact_load<T, S>(b.kind, b.params, input, ws.sys.points), S(0));
+  // beyond its zero, at which the step will end, the load goes on as it falls
+  const S load = contact_load<T, S>(b.kind, b.params, input, ws.sys.points);
   S coefficient = visit_law(b.law, [&](auto tag) {
     using L = typename decltype(tag)::type;
     if constexpr (CompliantLaw<L> && L::states <= Room) {
@@ -189,8 +174,6 @@ template <class T>
 CLUTCHWORK_INLINE T contact_torque(const Workspace<T>& ws, const Branch<T>& b, T rate, const T* state, T* rates) {
   if (b.compliant) [[unlikely]]
     return compliant_torque(ws, b, rate, state, rates);
-  if (b.held) [[unlikely]]
-    return held_torque(ws, b);
   return sliding_torque<T, T>(ws, b, rate, b.input, b.law_input);
 }
 
@@ -260,7 +243,6 @@ CLUTCHWORK_INLINE Partial<T> branch_partial(const Workspace<T>& ws, const Branch
     Slots<S, most_inputs> input, law_input;
     dual_inputs<2>(b.inputs, b.input, b.input_slope, input.at);
     dual_inputs<2>(b.law_inputs, b.law_input, b.law_input_slope, law_input.at);
-    if (b.held) return {held_torque(ws, b), T(0), held_slope(ws, b)};
     S x = S::variable(rate, 0);
     x.d[1] = rate_slope;
     const S f = sliding_torque<T, S>(ws, b, x, input.at, law_input.at);
@@ -302,7 +284,7 @@ template <class T>
     });
   } else if (b.compliant) {
     f = bending_torque<most_own_states, T, S>(ws, b, S(rate), own, input, law_input, rates);
-  } else if (!b.held) {
+  } else {
     f = sliding_torque<T, S>(ws, b, S(rate), input, law_input);
   }
   for (int i = 0; i < b.inputs + b.law_inputs; ++i) out[i] = f.d[i];

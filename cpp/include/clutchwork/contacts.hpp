@@ -33,7 +33,7 @@ void capacity_weights(BoundedProblem<T>& p, const T* capacity, double small = 1e
   for (int i = 0; i < p.n; ++i) {
     const double c = value(capacity[i]);
     const double ratio = c > 0 && c < infinity ? largest / c : 1;
-    p.weight[i] = p.matrix[i * p.n + i] * T(small * (ratio * ratio < 1e4 ? ratio * ratio : 1e4));
+    p.weight[i] = p.matrix[i * p.n + i] * T(small * (ratio < 1e6 ? ratio : 1e6));
   }
 }
 

@@ -137,6 +137,16 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
     edge.noise[a] = T(1e-12) * size;
     edge.capacity[a] = capacity_at(ws, ws.locked[a], edge.multiplier[a]);
   }
+  for (int k = 0; k < ws.n_sets; ++k) [[unlikely]]
+    edge.room[k] = set_room(ws, k, edge.multiplier, edge.noise[0]);
+}
+
+/// Room of the dependent sets were the torques of their carriers to drift on for a time.
+template <class T>
+double room_ahead(Workspace<T>& ws, int k, const Edge<T>& edge, double time) {
+  T* carried = ws.qp_g + 3 * ws.sys.contacts;
+  for (int a = 0; a < ws.n_locked; ++a) carried[a] = edge.multiplier[a] + T(time) * edge.drift[a];
+  return value(set_room(ws, k, carried, edge.noise[0]));
 }
 
 /// v = Z z + Y u.

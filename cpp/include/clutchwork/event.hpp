@@ -11,7 +11,7 @@ T torque_after(const Workspace<T>& ws, int c) {
   if (!ws.loaded[c]) return T(0);
   const T held = ws.mode[c] == locked ? ws.torque[d] : T(0);
   if (ws.mode[c] == locked && !ws.compliant[c]) return held;
-  const Branch<T> b = make_branch(ws, d, ws.mode[c], false);
+  const Branch<T> b = make_branch(ws, d, ws.mode[c]);
   return held + contact_torque(ws, b, rate_of(ws, d), ws.state, ws.scratch);
 }
 
@@ -54,33 +54,66 @@ void note_before(Form& form, Step<Form>& step, double s) {
   }
 }
 
-/// Too many events within a microsecond, for the number of contacts?
+/// Whether something happens more than 50 times within a microsecond; `count` is its own of ws.crowd.
 template <class T>
-bool stands_still(Workspace<T>& ws) {
-  if (ws.time - ws.stand_time > 1e-6) {
-    ws.stand_time = ws.time;
-    ws.stand_events = 0;
+bool crowds(Workspace<T>& ws, std::int64_t count) {
+  constexpr int most = 50;
+  if (ws.time - ws.crowd_time > 1e-6) {
+    ws.crowd_time = ws.time;
+    for (std::int64_t i = 0; i < ws.n_directions + ws.sys.inputs; ++i) ws.crowd[i] = 0;
   }
-  return ++ws.stand_events > 50 + 4 * ws.sys.contacts;
+  return ++ws.crowd[count] > most;
 }
 
-/// Whether the load of a contact can pass zero before the next knot. A load is monotonic in each of its inputs.
+/// Whether a direction has events that crowd; they are told by its number.
+template <class T>
+bool events_crowd(Workspace<T>& ws, int direction) {
+  if (!crowds(ws, direction)) return false;
+  ws.detail_component = direction;
+  return true;
+}
+
+/// Whether the knots of a signal crowd; told by the number of the signal, without a component.
+template <class T>
+bool knots_crowd(Workspace<T>& ws) {
+  for (std::int64_t i = 0; i < ws.sys.inputs; ++i) {
+    if (ws.signal[i].knot > ws.time || !crowds(ws, ws.n_directions + i)) continue;
+    ws.detail_component = -1;
+    ws.detail_value = double(i);
+    return true;
+  }
+  return false;
+}
+
+/// Whether the load of a contact can pass zero before the next knot. A load is monotonic in each of its inputs while the
+/// others are held, so its extremes are at the corners of their ranges.
 template <class T>
 bool load_may_turn(const Workspace<T>& ws, int c) {
   const System& sys = ws.sys;
   return visit_contact(sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
-    T low[E::inputs > 0 ? E::inputs : 1], high[E::inputs > 0 ? E::inputs : 1];
+    double low[E::inputs > 0 ? E::inputs : 1], high[E::inputs > 0 ? E::inputs : 1];
     for (int i = 0; i < E::inputs; ++i) {
-      double a, b;
-      signal_range(ws, sys.input_refs[sys.contact_input[c] + i], ws.time, a, b);
-      if (b - a == infinity || b - a != b - a) return true;
-      low[i] = T(a), high[i] = T(b);
+      signal_range(ws, sys.input_refs[sys.contact_input[c] + i], ws.time, low[i], high[i]);
+      if (high[i] - low[i] == infinity || high[i] - low[i] != high[i] - low[i]) return true;
     }
-    const T* params = ws.params + sys.contact_param[c];
-    return (contact_load(sys.contact_kind[c], params, &low[0], sys.points) < T(0)) !=
-           (contact_load(sys.contact_kind[c], params, &high[0], sys.points) < T(0));
+    bool below = false, above = false;
+    for (unsigned corner = 0; corner < 1u << E::inputs; ++corner) {
+      T at[E::inputs > 0 ? E::inputs : 1];
+      for (int i = 0; i < E::inputs; ++i) at[i] = T(corner >> i & 1 ? high[i] : low[i]);
+      const bool falls = contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &at[0], sys.points) < T(0);
+      (falls ? below : above) = true;
+    }
+    return below && above;
   });
+}
+
+/// Forced break-aways last while time stands.
+template <class T>
+void forget_forced(Workspace<T>& ws) {
+  if (ws.time - ws.forced_time <= 1e-9 + 1e-12 * abs(ws.time)) return;
+  for (int c = 0; c < ws.sys.contacts; ++c) ws.forced[c] = 0;
+  ws.forced_time = ws.time;
 }
 
 /// A contact fails: for good, and told as an event without a change of mode.
@@ -124,15 +157,11 @@ Status switch_modes(Workspace<T>& ws) {
   const System& sys = ws.sys;
   const int nc = int(sys.contacts), ne = int(sys.elements);
   const bool at_start = ws.cause == Cause::initial;
+  if (ws.located >= 0 && events_crowd(ws, ne + ws.located)) return Status::zeno;
   ws.detail_component = ws.located >= 0 ? ne + ws.located : -1;
-  if (ws.located >= 0 && stands_still(ws)) return Status::zeno;
   if (ws.statistics.events > ws.options.max_events) return Status::too_many_events;
 
-  // forced break-aways last while time stands
-  if (ws.time - ws.forced_time > 1e-9 + 1e-12 * abs(ws.time)) {
-    for (int c = 0; c < nc; ++c) ws.forced[c] = 0;
-    ws.forced_time = ws.time;
-  }
+  forget_forced(ws);
   if (ws.cause == Cause::slip_zero && ws.located >= 0) ws.forced[ws.located] = 0;
 
   if (!at_start) prescribed_jump(ws);
@@ -143,7 +172,7 @@ Status switch_modes(Workspace<T>& ws) {
   }
   if (!settle_contacts(ws, ws.located)) return Status::no_mode;
   if (stops_short(ws, ws.located)) {
-    if (!stop_within_tolerance(ws)) return Status::no_mode;
+    if (!stop_within_tolerance(ws, ws.located)) return Status::no_mode;
     // its impulse may bring others to rest
     if (others_rest(ws, ws.located) && !settle_contacts(ws, -1)) return Status::no_mode;
   }
@@ -156,6 +185,8 @@ Status switch_modes(Workspace<T>& ws) {
     return Status::fault;
   }
 
+  list_locked(ws);
+  share_decided(ws);
   const double after = kinetic_energy(ws);
   T* acceleration = ws.qp_w;
   accelerations_after(ws, acceleration);

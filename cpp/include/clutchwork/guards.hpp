@@ -7,11 +7,16 @@ namespace clutchwork {
 
 /// The first thing that happens inside a step.
 struct Hit {
-  enum What : int { nothing, line, multiplier, load, law, fault, exit } what = nothing;
-  int index = -1;  ///< guard, locked contact, contact, or branch
+  enum What : int { nothing, line, multiplier, set, load, law, fault, exit } what = nothing;
+  int index = -1;  ///< guard, locked contact, dependent set, contact, or branch
   double s = 1;    ///< where in the step, 0 to 1
   int who = -1;    ///< what of a law leaves its piece
 };
+
+/// Whether a zero at s comes before what has been found.
+CLUTCHWORK_INLINE bool is_first(const Hit& hit, double s) {
+  return s >= 0 && (hit.what == Hit::nothing || s < hit.s);
+}
 
 /// First interval in which a quartic in Bernstein form turns from not negative to negative. b[0] counts as not
 /// negative; inner dips above -tolerance do not count, the end value does.
@@ -138,7 +143,7 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   double scale = 0;
   for (double x : b) scale = larger(scale, abs(x));
   double low = 0, high = 1;
-  if (!first_bracket(b, larger(1e-9 * scale, noise), 40, g1 < -noise, low, high)) return -1;
+  if (!first_bracket(b, larger(1e-9 * scale, noise), 40, g1 < (fresh ? -noise : 0.0), low, high)) return -1;
   const double start = larger(g0, 0.0);
   auto poly = [&](double s) {
     const double r = 1 - s;
@@ -160,10 +165,21 @@ CLUTCHWORK_INLINE double margin(const Workspace<T>& ws, int a, T torque, T capac
 
 /// Whether a freewheel was hit at the torque at which it gives way, and not where its torque ends.
 template <class T>
-bool rolls_over(const Workspace<T>& ws, int a) {
-  const int c = ws.locked[a];
-  return contact_one_way(ws, c) && value(freewheel_limit(ws, c)) < infinity &&
-         value(ws.output_torque[ws.sys.elements + c]) > 0;
+bool rolls_over(const Workspace<T>& ws, int c) {
+  return contact_one_way(ws, c) && value(freewheel_limit(ws, c)) < infinity && value(ws.torque_before[c]) > 0;
+}
+
+/// Torques of the carriers at s, into the output torques.
+template <class Form>
+void torques_at(Form& form, Step<Form>& step, double s) {
+  auto& ws = form.ws;
+  interpolate(form, step, s, step.point());
+  const double t = step.t + s * step.h;
+  inputs_at(ws, t);
+  if (ws.sys.prescribed > 0) input_slopes_at(ws, t);
+  observe(form, t, step.point(), step.slope(), ws.scratch, ws.torque);
+  multipliers(ws, ws.torque, true, ws.output_torque);
+  ++ws.statistics.locations;
 }
 
 /// Smallest margin of the watched locked contacts at s, and whose it is.
@@ -171,13 +187,7 @@ template <class Form>
 double least_margin(Form& form, Step<Form>& step, double s, const int* watched, int n, int& who) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
-  interpolate(form, step, s, step.point());
-  const double t = step.t + s * step.h;
-  inputs_at(ws, t);
-  if (ws.sys.prescribed > 0) input_slopes_at(ws, t);
-  T* rates = ws.scratch;
-  observe(form, t, step.point(), step.slope(), rates, ws.torque);
-  multipliers(ws, ws.torque, true, ws.output_torque);
+  torques_at(form, step, s);
   double least = infinity;
   for (int i = 0; i < n; ++i) {
     const int a = watched[i];
@@ -185,7 +195,6 @@ double least_margin(Form& form, Step<Form>& step, double s, const int* watched, 
     const double m = margin(ws, a, torque, capacity_at(ws, ws.locked[a], torque));
     if (m < least) least = m, who = a;
   }
-  ++ws.statistics.locations;
   return least;
 }
 
@@ -228,7 +237,7 @@ void find_fault(Form& form, Step<Form>& step, Hit& hit) {
       return -fault_trigger(ws, c);
     };
     const double s = first_crossing(f, f(0), f(1), hit.s);
-    if (s < 0 || (hit.what != Hit::nothing && s >= hit.s)) continue;
+    if (!is_first(hit, s)) continue;
     if (!step.dense) Integrator::prepare_dense(form, step);
     hit = {Hit::fault, c, s, -1};
   }
@@ -255,7 +264,7 @@ void find_exit(Form& form, Step<Form>& step, Hit& hit) {
       return room(s, step.point());
     };
     const double s = start < 0 ? 0.0 : first_crossing(f, start, end, hit.s);
-    if (s < 0 || (hit.what != Hit::nothing && s >= hit.s)) continue;
+    if (!is_first(hit, s)) continue;
     f(s);
     ws.detail_value = value(seen);
     hit = {Hit::exit, c, s, -1};
@@ -287,25 +296,20 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
       return noise + value(law_margin(ws, b, rate, T(0), step.point() + nz, step.f0() + nz, who).v);
     };
     const double s = first_crossing(f, noise + value(start.v), noise + value(end.v), hit.s);
-    if (s < 0 || (hit.what != Hit::nothing && s >= hit.s)) continue;
+    if (!is_first(hit, s)) continue;
     f(s);
     hit = {Hit::law, k, s, who};
   }
 }
 
-/// First guard that turns negative inside the step.
+/// Slips and kinks: a cubic through values and slopes proves most of them clear.
 template <class Form, class Integrator>
-CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
-  using T = typename Form::Scalar;
-  Workspace<T>& ws = form.ws;
+CLUTCHWORK_INLINE void find_line(Form& form, Step<Form>& step, Hit& hit) {
+  auto& ws = form.ws;
   const double h = step.h;
-  const Edge<T>&e0 = ws.here, &e1 = ws.there;
-  Hit hit;
-
+  const auto &e0 = ws.here, &e1 = ws.there;
   // round-off of a rate: far below the slip that counts as zero
   const double noise = 1e-3 * slip_tolerance(ws);
-
-  // slips and kinks: a cubic through values and slopes proves most of them clear
   for (int i = 0; i < ws.n_lines; ++i) {
     const LineGuard& g = ws.line[i];
     const int k = g.branch;
@@ -316,47 +320,69 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
     const double c0 = g0 + g.sign * h * value(e0.slope[k]) / 3, c1 = g1 - g.sign * h * value(e1.slope[k]) / 3;
     if (g1 >= 0 && c0 >= 0 && c1 >= 0) continue;
     const double s = line_crossing<Form, Integrator>(form, step, g, g0, g1, noise, hit.s);
-    if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) hit = {Hit::line, i, s, -1};
+    if (is_first(hit, s)) hit = {Hit::line, i, s, -1};
   }
+}
 
-  if (ws.n_switching > 0) find_law_hit<Form, Integrator>(form, step, hit);
-
-  // torques of locked contacts: skipped while the margin exceeds what can change in the step
+/// Torques of locked contacts: skipped while the margin exceeds what can change in the step.
+template <class Form, class Integrator>
+CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
+  auto& ws = form.ws;
+  const auto &e0 = ws.here, &e1 = ws.there;
   int* watched = ws.iscratch;
   int n = 0;
   double m0 = infinity, m1 = infinity;
   for (int a = 0; a < ws.n_locked; ++a) {
     if (is_rigid(ws, ws.locked[a])) {
       const double s = rigid_departure(form, step, a, hit.s);
-      if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) {
-        if (!step.dense) Integrator::prepare_dense(form, step);
-        hit = {Hit::multiplier, a, s, -1};
-      }
+      if (!is_first(hit, s)) continue;
+      if (!step.dense) Integrator::prepare_dense(form, step);
+      hit = {Hit::multiplier, a, s, -1};
       continue;
     }
+    if (ws.in_set[a] != 0) continue;
     const double before = margin(ws, a, e0.multiplier[a], e0.capacity[a]),
                  after = margin(ws, a, e1.multiplier[a], e1.capacity[a]);
     const double change = abs(value(e1.multiplier[a] - e0.multiplier[a])) + abs(value(e1.capacity[a] - e0.capacity[a]));
-    const double drift = h * larger(abs(value(e0.drift[a])), abs(value(e1.drift[a])));
+    const double drift = step.h * larger(abs(value(e0.drift[a])), abs(value(e1.drift[a])));
     if (smaller(before, after) > larger(change, drift)) continue;
     watched[n++] = a;
     m0 = smaller(m0, before), m1 = smaller(m1, after);
   }
-  if (n > 0) {
+  if (n == 0) return;
+  if (!step.dense) Integrator::prepare_dense(form, step);
+  int who = watched[0];
+  auto f = [&](double s) { return least_margin(form, step, s, watched, n, who); };
+  const double s = first_crossing(f, m0, m1, hit.s);
+  if (!is_first(hit, s)) return;
+  f(s);
+  hit = {Hit::multiplier, who, s, -1};
+}
+
+/// Where a dependent set of locked contacts reaches its limit load.
+template <class Form, class Integrator>
+[[gnu::noinline]] void find_set_limit(Form& form, Step<Form>& step, Hit& hit) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  for (int k = 0; k < ws.n_sets; ++k) {
+    const double before = value(ws.here.room[k]), after = value(ws.there.room[k]);
+    const double coming = room_ahead(ws, k, ws.here, step.h), gone = room_ahead(ws, k, ws.there, -step.h);
+    const double change = larger(abs(after - before), larger(before - coming, after - gone));
+    if (smaller(before, after) > change) continue;
     if (!step.dense) Integrator::prepare_dense(form, step);
-    int who = watched[0];
-    auto f = [&](double s) { return least_margin(form, step, s, watched, n, who); };
-    const double s = first_crossing(f, m0, m1, hit.s);
-    if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) {
-      f(s);
-      hit = {Hit::multiplier, who, s, -1};
-    }
+    auto f = [&](double s) {
+      torques_at(form, step, s);
+      return value(set_room(ws, k, ws.output_torque, ws.here.noise[0]));
+    };
+    const double s = first_crossing(f, before, after, hit.s);
+    if (is_first(hit, s)) hit = {Hit::set, k, s, -1};
   }
+}
 
-  if (ws.n_faulty > 0) find_fault<Form, Integrator>(form, step, hit);
-  if (ws.n_bounded > 0) find_exit<Form, Integrator>(form, step, hit);
-
-  // loads that pass zero
+/// Where the load of a contact passes zero.
+template <class Form, class Integrator>
+void find_load(Form& form, Step<Form>& step, Hit& hit) {
+  auto& ws = form.ws;
   for (int i = 0; i < ws.n_watch; ++i) {
     const int c = ws.watch[i];
     const double sign = ws.loaded[c] ? 1.0 : -1.0;
@@ -367,11 +393,24 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
     if (ws.n_shared_refs > 0 && !step.dense) Integrator::prepare_dense(form, step);
     const double l0 = f(0), l1 = f(1);
     const double s = first_crossing(f, l0, abs(l1) <= 1e-12 * abs(l0) ? 0.0 : l1, hit.s);
-    if (s >= 0 && (hit.what == Hit::nothing || s < hit.s)) {
-      if (!step.dense) Integrator::prepare_dense(form, step);
-      hit = {Hit::load, c, s, -1};
-    }
+    if (!is_first(hit, s)) continue;
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    hit = {Hit::load, c, s, -1};
   }
+}
+
+/// First guard that turns negative inside the step.
+template <class Form, class Integrator>
+CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
+  auto& ws = form.ws;
+  Hit hit;
+  find_line<Form, Integrator>(form, step, hit);
+  if (ws.n_switching > 0) find_law_hit<Form, Integrator>(form, step, hit);
+  if (ws.n_locked > 0) find_break_away<Form, Integrator>(form, step, hit);
+  if (ws.n_sets > 0) find_set_limit<Form, Integrator>(form, step, hit);
+  if (ws.n_faulty > 0) find_fault<Form, Integrator>(form, step, hit);
+  if (ws.n_bounded > 0) find_exit<Form, Integrator>(form, step, hit);
+  if (ws.n_watch > 0) find_load<Form, Integrator>(form, step, hit);
   return hit;
 }
 

@@ -29,12 +29,11 @@ T prescribed_share(const Workspace<T>& ws, int d, int p) {
 
 /// The branch of an element, or of a contact that slips with the given sign.
 template <class T>
-Branch<T> make_branch(const Workspace<T>& ws, int d, int sign, bool held) {
+Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
   const System& sys = ws.sys;
   Branch<T> b{};
   b.direction = d;
   b.sign = sign;
-  b.held = held;
   b.piece = ws.piece[d];
   b.law_params = nullptr;
   if (d < sys.elements) {
@@ -60,7 +59,7 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign, bool held) {
     b.law_input_slope = ws.du + sys.contact_law_input[c];
     b.shaped = is_shaped(b.kind);
     b.compliant = ws.compliant[c] != 0;
-    if (b.compliant) b.sign = forward, b.held = false;
+    if (b.compliant) b.sign = forward;
   }
   b.states = states_of(b.kind, b.law, b.law_params);
   return b;
@@ -198,7 +197,7 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
       sign = ws.mode[c];
       if (sign != forward && sign != backward) continue;
     }
-    const Branch<T> b = make_branch(ws, d, sign, false);
+    const Branch<T> b = make_branch(ws, d, sign);
     T* rates = ws.scratch;
     add(branch_torque(ws, b, rate_of(ws, d), ws.state, rates), d);
   }
@@ -238,31 +237,6 @@ BoundedProblem<T> gather(Workspace<T>& ws, const int* list, int n) {
 template <class T>
 bool is_rigid(const Workspace<T>& ws, int c) {
   return value(ws.mobility[c * ws.sys.contacts + c]) == 0;
-}
-
-/// Whether the direction of contact list[a] is spanned by those of the list that still have room.
-template <class T>
-bool is_spanned(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list, int a) {
-  if (!ws.redundant) return false;
-  const int nc = int(ws.sys.contacts), nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
-  T* rows = ws.scratch + ws.sys.states + 1 + nv;
-  T* basis = rows + nc * nv;
-  int m = 0;
-  for (int b = 0; b < p.n; ++b) {
-    const double x = value(p.x[b]), room = x > 0 ? value(p.upper[b]) : -value(p.lower[b]);
-    if (b == a || p.bound[b] != 0 || abs(x) >= room * (1 - 1e-7)) continue;
-    for (int i = 0; i < nv; ++i) rows[m * nv + i] = ws.direction[(ne + list[b]) * nv + i];
-    ++m;
-  }
-  const int rank = orthonormal_split(m, nv, rows, basis, ws.iscratch + 2 * nc, ws.qp_f);
-  const T* row = ws.direction + (ne + list[a]) * nv;
-  double outside = 0;
-  for (int j = rank; j < nv; ++j) {
-    T s = T(0);
-    for (int i = 0; i < nv; ++i) s += basis[i * nv + j] * row[i];
-    outside += value(s * s);
-  }
-  return outside <= 1e-16 * value(ws.mobility[list[a] * nc + list[a]]);
 }
 
 /// Let a contact slip; one that still moves within its own tolerance goes on the way it moves.
@@ -307,7 +281,7 @@ bool settle_contacts(Workspace<T>& ws, int located) {
   for (int c = 0; c < nc; ++c) {
     const bool still = ws.mode[c] == locked && !is_rigid(ws, c);
     const double slip = still ? 0.0 : value(rate_of(ws, int(sys.elements) + c));
-    ws.held[c] = released[c] = candidate[c] = 0;
+    released[c] = candidate[c] = 0;
     if (!may_stick(ws, c)) {
       ws.mode[c] = forward;
       continue;
@@ -386,28 +360,6 @@ bool settle_contacts(Workspace<T>& ws, int located) {
       continue;
     }
 
-    // the located contact: held by others along the same direction, or forced to slip against its torque
-    bool again = false;
-    for (int a = 0; a < n && !again; ++a) {
-      const int c = list[a];
-      const double x = value(p.x[a]), upper = value(p.upper[a]), lower = value(p.lower[a]);
-      const double limit = x > 0 ? upper : -lower;
-      const bool breaks = c == located && ws.cause == Cause::torque_limit;
-      const bool at_limit = p.bound[a] != 0 || breaks || abs(x) >= limit * (1 - 1e-7);
-      if (!at_limit || is_rigid(ws, c)) continue;
-      if (limit > 0 && is_spanned(ws, p, list, a)) {
-        ws.held[c] = x > 0 ? 1 : -1;
-      } else if (breaks) {
-        ws.forced[c] = ws.pull > 0 && !contact_one_way(ws, c) ? backward : forward;
-        release(ws, c, ws.forced[c]);
-        candidate[c] = 0;
-        again = true;
-      }
-    }
-    if (again) {
-      for (int c = 0; c < nc; ++c) ws.held[c] = 0;
-      continue;
-    }
     for (int a = 0; a < n; ++a) ws.torque[sys.elements + list[a]] = p.x[a];
     const int back = turned_back(ws, list, n, p.x, released, q);
     if (back < 0) return true;
@@ -456,30 +408,36 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
   }
 }
 
-/// Impulses that bring inconsistent slips to rest: contacts declared locked and freewheels that run backward.
-template <class T>
-bool settle_impulses(Workspace<T>& ws, bool at_start) {
-  const System& sys = ws.sys;
-  const int nc = int(sys.contacts), ne = int(sys.elements);
+/// Contacts that an impulse must bring to rest, and all freewheels, which it must not turn backward.
+template <class T, class Stops>
+int impulse_contacts(const Workspace<T>& ws, Stops&& stops, int* list) {
+  int n = 0;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (is_rigid(ws, c)) continue;
+    if (stops(c) || (contact_one_way(ws, c) && ws.loaded[c])) list[n++] = c;
+  }
+  return n;
+}
+
+/// The impulses that change the kinetic energy least: some contacts come to rest, no freewheel turns backward; those
+/// that had to stop lock. {eq}`contacts-16`
+template <class T, class Stops>
+bool least_impulses(Workspace<T>& ws, Stops&& stops) {
+  const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements);
   const double tolerance = slip_tolerance(ws);
   int* list = ws.iscratch;
-  int n = 0;
+  const int n = impulse_contacts(ws, stops, list);
   bool needed = false;
-  for (int c = 0; c < nc; ++c) {
-    const bool one_way = contact_one_way(ws, c), declared = at_start && sys.contact_initial[c] == 1;
-    if (!one_way && !declared) continue;
-    const double slip = value(rate_of(ws, ne + c));
-    if (is_rigid(ws, c) || (!declared && slip > tolerance)) continue;
-    list[n++] = c;
-    needed = needed || slip < -tolerance || (declared && slip > tolerance);
+  for (int a = 0; a < n; ++a) {
+    const double slip = value(rate_of(ws, ne + list[a]));
+    needed = needed || slip < -tolerance || (stops(list[a]) && slip > tolerance);
   }
   if (!needed) return true;
   BoundedProblem<T> p = gather(ws, list, n);
   T* capacity = ws.qp_g + nc;
   for (int a = 0; a < n; ++a) {
-    const bool declared = at_start && sys.contact_initial[list[a]] == 1;
     p.gradient[a] = rate_of(ws, ne + list[a]);
-    p.lower[a] = declared ? T(-infinity) : T(0);
+    p.lower[a] = stops(list[a]) ? T(-infinity) : T(0);
     p.upper[a] = capacity[a] = T(infinity);
     p.x[a] = T(0);
   }
@@ -487,9 +445,17 @@ bool settle_impulses(Workspace<T>& ws, bool at_start) {
   if (!solve(p)) return false;
   apply_impulses(ws, p, list);
   for (int a = 0; a < n; ++a) {
-    if (abs(value(p.slope[a])) <= tolerance) ws.mode[list[a]] = locked;
+    // a freewheel that an impulse has closed is locked, one that it has left behind overruns
+    const bool stopped = abs(value(p.slope[a])) <= tolerance;
+    if (stopped && (stops(list[a]) || value(p.x[a]) > 0)) ws.mode[list[a]] = locked;
   }
   return true;
+}
+
+/// Impulses at a decision: contacts declared locked, at the start, and freewheels that would run backward.
+template <class T>
+bool settle_impulses(Workspace<T>& ws, bool at_start) {
+  return least_impulses(ws, [&](int c) { return at_start && ws.sys.contact_initial[c] == 1; });
 }
 
 /// Whether a contact has locked while it still slips within its own tolerance.
@@ -508,28 +474,11 @@ bool others_rest(const Workspace<T>& ws, int located) {
   return false;
 }
 
-/// A contact that may lock below a slip of its own is stopped by an impulse; the others that are locked stay so.
+/// A contact that may lock below a slip of its own is stopped by an impulse; the others that are locked stay so, but for
+/// freewheels, which transmit no impulse that pulls.
 template <class T>
-bool stop_within_tolerance(Workspace<T>& ws) {
-  const System& sys = ws.sys;
-  const int nc = int(sys.contacts), ne = int(sys.elements);
-  int* list = ws.iscratch;
-  int n = 0;
-  for (int c = 0; c < nc; ++c) {
-    if (ws.mode[c] == locked && !is_rigid(ws, c)) list[n++] = c;
-  }
-  BoundedProblem<T> p = gather(ws, list, n);
-  T* capacity = ws.qp_g + nc;
-  for (int a = 0; a < n; ++a) {
-    p.gradient[a] = rate_of(ws, ne + list[a]);
-    p.lower[a] = T(-infinity);
-    p.upper[a] = capacity[a] = T(infinity);
-    p.x[a] = T(0);
-  }
-  capacity_weights(p, capacity);
-  if (!solve(p)) return false;
-  apply_impulses(ws, p, list);
-  return true;
+bool stop_within_tolerance(Workspace<T>& ws, int located) {
+  return least_impulses(ws, [&](int c) { return ws.mode[c] == locked && (c == located || !contact_one_way(ws, c)); });
 }
 
 /// A jump of prescribed speeds: friction transmits no impulse, rigid parts follow.

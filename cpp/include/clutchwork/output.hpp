@@ -52,9 +52,9 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
     const int k = ws.branch_of[d];
     ws.output_torque[d] = k >= 0 && k < ws.n_branches ? ws.torque[k] : T(0);
   }
-  T* held = ws.qp_g + 3 * nc;
-  multipliers(ws, ws.torque, true, held);
-  for (int a = 0; a < ws.n_locked; ++a) ws.output_torque[ne + ws.locked[a]] += held[a];
+  T* carried = ws.qp_g + 3 * nc;
+  multipliers(ws, ws.torque, true, carried);
+  locked_torques(ws, carried, [&](int c, T x) { ws.output_torque[ne + c] += x; });
   expand(form, shot.y, shot.v);
   bool algebraic = false;
   for (int i = 0; i < nv; ++i) algebraic = algebraic || sys.massless[i] != 0;
@@ -125,7 +125,6 @@ void fit_power(Form& form, Step<Form>& step, double s_end) {
       observe(form, t, step.point(), step.slope(), rate, ws.torque);
     }
     for (int k = 0; k < ws.n_branches; ++k) {
-      if (ws.branch[k].held) continue;
       const T power = ws.torque[k] * rate[k];
       for (int j = 0; j < 4; ++j) ws.power[j * n + ws.branch[k].direction] += power * T(gauss.coef[g][j]);
     }

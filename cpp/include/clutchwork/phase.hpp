@@ -213,7 +213,10 @@ bool pass_knot(Form& form, Step<Form>& step) {
   for (int a = 0; a < ws.n_locked; ++a) {
     if (is_rigid(ws, ws.locked[a])) return true;
     const T torque = ws.here.multiplier[a], capacity = ws.here.capacity[a];
-    if (margin(ws, a, torque, capacity) < 0) return true;
+    if (ws.in_set[a] == 0 && margin(ws, a, torque, capacity) < 0) return true;
+  }
+  for (int k = 0; k < ws.n_sets; ++k) {
+    if (value(ws.here.room[k]) < 0) return true;
   }
   return false;
 }
@@ -235,9 +238,8 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   }
   ws.piece[b.direction] = b.piece;
   for (int i = 0; i < b.states; ++i) ws.state[b.state + i] = state[b.state + i];
-  ws.detail_component = b.direction;
   list_lines(ws);
-  return !stands_still(ws);
+  return !events_crowd(ws, b.direction);
 }
 
 /// Longest first step after an element has met another piece: half a radian of the swing of what it joins on its own
@@ -352,158 +354,283 @@ double work_error(Form& form, Step<Form>& step) {
   return error;
 }
 
-/// Integrate until an event, the end time, or a full buffer. `running`: an event is waiting to be settled.
-template <class Form, class Integrator>
-Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink) {
-  Form form(ws);
-  Step<Form> step(form);
-  const int n = form.n();
-  const bool fresh = ws.fresh_phase;
+/// Error that the motion up to the share s of a step may have, in units of the tolerance: what the interpolant misses of
+/// the equations of motion there, over that time. Only the end of a step is checked by its own estimate.
+template <class Form>
+double error_until(Form& form, Step<Form>& step, double s) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  T *y = step.point(), *slope = step.slope(), *miss = step.u();
+  interpolate(form, step, s, y);
+  evaluate(form, step.t + s * step.h, y, miss);
+  form.solve_mass(miss);
+  interpolate_slope(form, step, s, slope);
+  for (int i = 0; i < form.n(); ++i) miss[i] = T(s * step.h) * (miss[i] - slope[i]);
   if constexpr (!Form::small) {
-    if (fresh) form.solve_mass(ws.y);
+    // speeds without inertia have no equation of motion
+    for (int i = 0; i < form.nz(); ++i) {
+      if (ws.m_first[i] == ws.m_first[i + 1]) miss[i] = T(0);
+    }
   }
-  for (int i = 0; i < n; ++i) step.y0()[i] = ws.y[i];
-  if constexpr (!Form::small) balance_massless(form, step);
-  ws.fresh_phase = false;
-  emit_start(form, step, sink, fresh);
-  look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
-  double h = ws.last_step > 0 ? (fresh ? 0.25 * ws.last_step : ws.last_step) : first_step(form, step, t_end - ws.time);
-  bool rejected = false;
+  return error_norm(form, miss, step.y0(), y);
+}
 
-  while (true) {
-    if (ws.time >= ws.next_knot) {
-      rest_step(form, step);
-      export_state(form, step.y0());
-      note_before(form, step, 0.0);
-      if (pass_knot(form, step)) {
-        ws.located = -1;
-        ws.cause = Cause::input;
-        return Status::running;
+/// Integration until an event, the end time, or a full buffer.
+template <class Form, class Integrator>
+class Phase {
+  using T = typename Form::Scalar;
+  // a step may be repeated so often to end on an event
+  static constexpr int most_landings = 4;
+
+  Workspace<T>& ws_;
+  Form form_;
+  Step<Form> step_;
+  Sink& sink_;
+  const double t_end_;
+  double h_ = 0;       ///< [s] next step
+  double reach_ = 0;   ///< [s] present step
+  double stop_ = 0;    ///< [s] time that it must not pass
+  double error_ = 0;   ///< of the present step in units of the tolerance
+  double before_ = 0;  ///< [s] length of the step that was cut to end on an event
+  int landings_ = 0;
+  bool rejected_ = false, cut_ = false;
+  Status status_ = Status::running;
+
+ public:
+  Phase(Workspace<T>& ws, double t_end, Sink& sink) : ws_(ws), form_(ws), step_(form_), sink_(sink), t_end_(t_end) {}
+
+  /// `running`: an event is waiting to be settled.
+  Status run() {
+    begin();
+    while (true) {
+      if (ends()) return status_;
+      if (!try_step()) {
+        if (status_ != Status::running) return status_;
+        continue;
+      }
+      const Hit hit = find_hit<Form, Integrator>(form_, step_);
+      if (hit.what != Hit::nothing && must_land(hit.s)) {
+        land(hit.s);
+        continue;
+      }
+      write(hit.what == Hit::nothing ? 1.0 : hit.s);
+      if (hit.what == Hit::nothing ? accept() : meet(hit)) continue;
+      return status_;
+    }
+  }
+
+ private:
+  CLUTCHWORK_INLINE void begin() {
+    const bool fresh = ws_.fresh_phase;
+    if constexpr (!Form::small) {
+      if (fresh) form_.solve_mass(ws_.y);
+    }
+    for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = ws_.y[i];
+    if constexpr (!Form::small) balance_massless(form_, step_);
+    ws_.fresh_phase = false;
+    emit_start(form_, step_, sink_, fresh);
+    look_here();
+    h_ = ws_.last_step > 0 ? (fresh ? 0.25 * ws_.last_step : ws_.last_step) : first_step(form_, step_, t_end_ - ws_.time);
+  }
+
+  CLUTCHWORK_INLINE void look_here() { look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here); }
+
+  bool leave(Status status) {
+    export_state(form_, step_.y0());
+    status_ = status;
+    return true;
+  }
+
+  /// Whether the phase is over before the next step: a knot that changes the modes, the end, no room, no budget.
+  CLUTCHWORK_INLINE bool ends() {
+    if (ws_.time >= ws_.next_knot) {
+      rest_step(form_, step_);
+      export_state(form_, step_.y0());
+      note_before(form_, step_, 0.0);
+      if (knots_crowd(ws_)) return leave(Status::zeno);
+      if (pass_knot(form_, step_)) {
+        ws_.located = -1;
+        ws_.cause = Cause::input;
+        return true;
       }
     }
-    if (ws.time >= t_end) {
-      emit_start(form, step, sink, false);
-      export_state(form, step.y0());
-      return Status::done;
+    if (ws_.time >= t_end_) {
+      emit_start(form_, step_, sink_, false);
+      return leave(Status::done);
     }
-    if ((sink.steps && sink.at + 3 > sink.count) || ws.n_events >= Workspace<typename Form::Scalar>::event_room) {
-      export_state(form, step.y0());
-      return ws.n_events > 0 && !(sink.steps && sink.at + 3 > sink.count) ? Status::events_full : Status::rows_full;
-    }
-    if (ws.statistics.steps + ws.statistics.rejected >= ws.options.max_steps) {
-      export_state(form, step.y0());
-      return Status::too_many_steps;
-    }
+    if (sink_.steps && sink_.at + 3 > sink_.count) return leave(Status::rows_full);
+    if (ws_.n_events >= Workspace<T>::event_room) return leave(Status::events_full);
+    if (ws_.statistics.steps + ws_.statistics.rejected >= ws_.options.max_steps) return leave(Status::too_many_steps);
+    return false;
+  }
 
-    // step, onto knots and the end exactly
-    const double stop = smaller(t_end, ws.next_knot);
-    double reach = smaller(smaller(h, signal_step(ws)), ws.options.max_step);
-    const bool cut = ws.time + 1.0001 * reach >= stop;
-    if (cut) reach = stop - ws.time;
-    step.t = ws.time;
-    double error = Integrator::advance(form, step, reach);
-    if (error <= 1 && ws.options.work && rates_bend(ws))
-      error = larger(error, work_error<Form, Integrator>(form, step));
-    if (!(error <= 1)) {
-      ++ws.statistics.rejected;
-      h = reach * (error < 1e300 ? larger(0.2, 0.9 * pow(error, -0.2)) : 0.1);
-      rejected = true;
-      if (h > 1e-14 * larger(1e-2, abs(ws.time))) continue;
-      blame(form, step);
-      export_state(form, step.y0());
-      return ws.detail_component >= 0 || !(error <= 1e300) ? Status::not_finite : Status::step_collapse;
-    }
-    ++ws.statistics.steps;
-    const double t1 = cut ? stop : ws.time + reach;
-    look(form, step, t1, step.y1(), step.f1(), step.dt1(), ws.there);
+  /// One step, onto knots and the end exactly. False: rejected, or the run cannot go on.
+  CLUTCHWORK_INLINE bool try_step() {
+    stop_ = smaller(t_end_, ws_.next_knot);
+    reach_ = smaller(smaller(h_, signal_step(ws_)), ws_.options.max_step);
+    cut_ = ws_.time + 1.0001 * reach_ >= stop_;
+    if (cut_) reach_ = stop_ - ws_.time;
+    step_.t = ws_.time;
+    error_ = Integrator::advance(form_, step_, reach_);
+    if (error_ <= 1 && ws_.options.work && rates_bend(ws_))
+      error_ = larger(error_, work_error<Form, Integrator>(form_, step_));
+    if (!(error_ <= 1)) return reject();
+    ++ws_.statistics.steps;
+    look(form_, step_, cut_ ? stop_ : ws_.time + reach_, step_.y1(), step_.f1(), step_.dt1(), ws_.there);
+    return true;
+  }
 
-    // locate
-    const Hit hit = find_hit<Form, Integrator>(form, step);
-    const bool whole = hit.what == Hit::nothing;
-    const double s = whole ? 1.0 : hit.s;
-    const bool rows = sink.steps || (sink.at < sink.count && sink.times[sink.at] <= ws.time + s * reach);
-    if ((rows || ws.options.work || ws.options.angles) && s > 0) {
-      if (!step.dense) Integrator::prepare_dense(form, step);
-      if (ws.options.work) fit_power(form, step, s);
-      if (rows) emit(form, step, s, sink);
-      accumulate(form, step, s);
-    }
+  bool reject() {
+    ++ws_.statistics.rejected;
+    h_ = reach_ * (error_ < 1e300 ? larger(0.2, 0.9 * pow(error_, -0.2)) : 0.1);
+    rejected_ = true;
+    before_ = 0;
+    if (h_ > 1e-14 * larger(1e-2, abs(ws_.time))) return false;
+    blame(form_, step_);
+    leave(ws_.detail_component >= 0 || !(error_ <= 1e300) ? Status::not_finite : Status::step_collapse);
+    return false;
+  }
 
-    // accept
-    if (whole) {
-      for (int i = 0; i < n; ++i) {
-        step.y0()[i] = step.y1()[i];
-        step.f0()[i] = step.f1()[i];
-        step.dt0()[i] = step.dt1()[i];
-      }
-      const Edge<typename Form::Scalar> edge = ws.here;
-      ws.here = ws.there;
-      ws.there = edge;
-      ws.time = t1;
-      const double growth = 0.9 * pow(larger(error, 1e-10), -0.2);
-      const double next = reach * smaller(rejected ? 1.0 : 6.0, larger(0.2, growth));
-      h = cut ? larger(next, h) : next;
-      rejected = false;
-      ws.last_step = h;
-      if (ws.n_undirected > 0) direct_open(form, ws.here);
-      if (ws.n_chattering > 0 && chatters(ws)) {
-        export_state(form, step.y0());
-        return Status::chatter;
-      }
-      continue;
-    }
+  /// Whether the step must be repeated to end at the share s, because its own estimate does not speak for that point.
+  CLUTCHWORK_INLINE bool must_land(double s) {
+    if (landings_ >= most_landings || s <= 0 || s >= 1) return false;
+    return !(error_until(form_, step_, s) <= 1);
+  }
 
-    // switch
+  /// Repeat the step so that it ends there.
+  void land(double s) {
+    --ws_.statistics.steps;
+    ++ws_.statistics.rejected;
+    if (landings_++ == 0) before_ = larger(h_, reach_);
+    h_ = s * reach_;
+    // the derivatives are those of the other end
+    ws_.input_time = -infinity;
+    look_here();
+  }
+
+  /// Rows and integrals of the step up to the share s.
+  CLUTCHWORK_INLINE void write(double s) {
+    const bool rows = sink_.steps || (sink_.at < sink_.count && sink_.times[sink_.at] <= ws_.time + s * reach_);
+    if (!(rows || ws_.options.work || ws_.options.angles) || s <= 0) return;
+    if (!step_.dense) Integrator::prepare_dense(form_, step_);
+    if (ws_.options.work) fit_power(form_, step_, s);
+    if (rows) emit(form_, step_, s, sink_);
+    accumulate(form_, step_, s);
+  }
+
+  /// Go on from the end of the step. False: a contact chatters.
+  CLUTCHWORK_INLINE bool accept() {
+    for (int i = 0; i < form_.n(); ++i) {
+      step_.y0()[i] = step_.y1()[i];
+      step_.f0()[i] = step_.f1()[i];
+      step_.dt0()[i] = step_.dt1()[i];
+    }
+    const Edge<T> edge = ws_.here;
+    ws_.here = ws_.there;
+    ws_.there = edge;
+    ws_.time = cut_ ? stop_ : ws_.time + reach_;
+    const double growth = 0.9 * pow(larger(error_, 1e-10), -0.2);
+    const double next = reach_ * smaller(rejected_ ? 1.0 : 6.0, larger(0.2, growth));
+    h_ = cut_ ? larger(next, h_) : larger(next, before_);
+    rejected_ = false;
+    before_ = 0, landings_ = 0;
+    ws_.last_step = h_;
+    if (ws_.n_undirected > 0) direct_open(form_, ws_.here);
+    if (ws_.n_chattering == 0 || !chatters(ws_)) return true;
+    leave(Status::chatter);
+    return false;
+  }
+
+  /// Go to where the guard was hit; true when the phase goes on from there.
+  CLUTCHWORK_INLINE bool meet(const Hit& hit) {
     // after an event a quarter of the step before it; events at one instant do not shrink it further
-    ws.last_step = s * reach > 1e-9 * larger(1e-3, h) ? larger(h, reach) : larger(4 * h, reach);
-    if (s > 0)
-      note_before(form, step, s);
-    else
-      note_before(form, step, 0.0);
-    interpolate(form, step, s, step.u());
-    ws.time = smaller(ws.time + s * reach, stop);
-    for (int i = 0; i < n; ++i) step.y0()[i] = step.u()[i];
-    ws.input_time = -infinity;
-    export_state(form, step.y0());
-    input_slopes_at(ws, ws.time);
-    for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];
-    const LineGuard* guard = hit.what == Hit::line ? &ws.line[hit.index] : nullptr;
+    const double planned = larger(larger(h_, reach_), before_);
+    ws_.last_step = hit.s * reach_ > 1e-9 * larger(1e-3, planned) ? planned : larger(4 * h_, planned);
+    before_ = 0, landings_ = 0;
+    note_before(form_, step_, hit.s);
+    interpolate(form_, step_, hit.s, step_.u());
+    ws_.time = smaller(ws_.time + hit.s * reach_, stop_);
+    forget_forced(ws_);
+    if (hit.what == Hit::set) force_set(hit);
+    for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = step_.u()[i];
+    ws_.input_time = -infinity;
+    export_state(form_, step_.y0());
+    input_slopes_at(ws_, ws_.time);
+    for (int p = 0; p < ws_.sys.prescribed; ++p) ws_.prescribed_before[p] = ws_.prescribed[p];
+    if (passes(hit)) return true;
+    if (status_ == Status::running) hand_over(hit);
+    return false;
+  }
+
+  /// A set at its limit load: its contacts slip the way in which it gives way, seen just behind the limit.
+  void force_set(const Hit& hit) {
+    torques_at(form_, step_, larger(hit.s, 1e-6));
+    break_set(ws_, hit.index, ws_.output_torque);
+  }
+
+  /// Guards that need no decision: the next piece of a law or a table, an open contact that passes zero.
+  CLUTCHWORK_INLINE bool passes(const Hit& hit) {
+    const LineGuard* guard = hit.what == Hit::line ? &ws_.line[hit.index] : nullptr;
     const bool law = hit.what == Hit::law || (guard != nullptr && guard->kind == LineGuard::turn);
-    if (law && !pass_law(form, step, hit.what == Hit::law ? hit.index : guard->branch, hit.who)) {
-      export_state(form, step.y0());
-      return Status::zeno;
+    if (!law && (guard == nullptr || guard->kind == LineGuard::slip)) return false;
+    if (law && !pass_law(form_, step_, hit.what == Hit::law ? hit.index : guard->branch, hit.who)) {
+      leave(Status::zeno);
+      return false;
     }
-    if (law || (guard != nullptr && guard->kind != LineGuard::slip)) {
-      if (!law) pass_line(form, *guard);
-      look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
-      h = ws.last_step;
-      if (hit.what == Hit::law) h = smaller(h, collision_step(ws, hit.index));
-      continue;
-    }
-    if (hit.what == Hit::exit) {
-      ws.detail_component = int(ws.sys.elements) + hit.index;
-      return Status::out_of_table;
-    }
+    if (!law) pass_line(form_, *guard);
+    look_here();
+    h_ = ws_.last_step;
+    if (hit.what == Hit::law) h_ = smaller(h_, collision_step(ws_, hit.index));
+    return true;
+  }
+
+  /// Leave what happened to the decision.
+  void hand_over(const Hit& hit) {
+    ws_.located = -1;
     switch (hit.what) {
       case Hit::line:
-        ws.located = ws.branch[guard->branch].direction - int(ws.sys.elements);
-        break;
+        ws_.located = ws_.branch[ws_.line[hit.index].branch].direction - int(ws_.sys.elements);
+        ws_.cause = Cause::slip_zero;
+        return;
       case Hit::multiplier:
-        ws.located = ws.locked[hit.index];
-        ws.pull = s > 0 ? value(ws.torque_before[ws.located]) : value(ws.there.multiplier[hit.index]);
-        break;
+        ws_.located = ws_.locked[hit.index];
+        ws_.cause = Cause::torque_limit;
+        return break_away(hit);
+      case Hit::set:
+        ws_.cause = Cause::torque_limit;
+        if (events_crowd(ws_, int(ws_.sys.elements) + ws_.set_member[ws_.set_first[hit.index]])) status_ = Status::zeno;
+        return roll_over(hit.index);
+      case Hit::exit:
+        ws_.detail_component = int(ws_.sys.elements) + hit.index;
+        status_ = Status::out_of_table;
+        return;
+      case Hit::fault:
+        ws_.located = hit.index;
+        ws_.cause = Cause::fault;
+        return fail(ws_, hit.index);
       default:
-        ws.located = hit.index;
+        ws_.located = hit.index;
+        ws_.cause = Cause::input;
+        ws_.loaded[hit.index] = !ws_.loaded[hit.index] || contact_one_way(ws_, hit.index);
     }
-    ws.cause = hit.what == Hit::line         ? Cause::slip_zero
-               : hit.what == Hit::multiplier ? Cause::torque_limit
-               : hit.what == Hit::fault      ? Cause::fault
-                                             : Cause::input;
-    if (hit.what == Hit::fault) fail(ws, hit.index);
-    if (hit.what == Hit::multiplier && rolls_over(ws, hit.index)) fail(ws, ws.located);
-    if (hit.what == Hit::load) ws.loaded[hit.index] = !ws.loaded[hit.index] || contact_one_way(ws, hit.index);
-    return Status::running;
   }
-}
+
+  /// A contact at its limit slips against its torque; a freewheel overruns, or gives way for good.
+  void break_away(const Hit& hit) {
+    const int c = ws_.located;
+    if (rolls_over(ws_, c)) return fail(ws_, c);
+    if (is_rigid(ws_, c)) return;
+    const double pull = hit.s > 0 ? value(ws_.torque_before[c]) : value(ws_.there.multiplier[hit.index]);
+    ws_.forced[c] = pull > 0 && !contact_one_way(ws_, c) ? backward : forward;
+  }
+
+  /// Freewheels of a set that gives way at their own limit do so for good.
+  void roll_over(int k) {
+    for (int i = ws_.set_first[k]; i < ws_.set_first[k + 1]; ++i) {
+      const int c = ws_.set_member[i];
+      if (ws_.forced[c] == backward && rolls_over(ws_, c)) fail(ws_, c);
+    }
+  }
+};
 
 }  // namespace clutchwork

@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/modes.hpp>
+#include <clutchwork/locked.hpp>
 
 /// The reduced motion of one mode: v = Z z + Y u with the locked slips gone. docs/theory/multipliers.md.
 namespace clutchwork {
@@ -56,15 +56,6 @@ bool prepare_geometry(Workspace<T>& ws) {
   return true;
 }
 
-/// The contacts that are locked and carry what the motion asks.
-template <class T>
-void list_locked(Workspace<T>& ws) {
-  ws.n_locked = 0;
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (ws.mode[c] == locked && ws.held[c] == 0) ws.locked[ws.n_locked++] = c;
-  }
-}
-
 /// Orthonormal directions whose first `rank` span the locked contacts, the others the motion that is left.
 template <class T>
 int split_locked(Workspace<T>& ws, T* basis) {
@@ -76,44 +67,24 @@ int split_locked(Workspace<T>& ws, T* basis) {
   return orthonormal_split(ws.n_locked, nv, rows, basis, ws.iscratch, ws.qp_f);
 }
 
-/// Factor of the mobility of the locked contacts; weighted by capacity where it is singular.
+/// Factor of the mobility of the carriers.
 template <class T>
 bool factor_mobility(Workspace<T>& ws) {
-  const int m = ws.n_locked;
-  BoundedProblem<T> p = gather(ws, ws.locked, m);
-  T* capacity = ws.qp_g + ws.sys.contacts;
+  const int m = ws.n_locked, nc = int(ws.sys.contacts);
   for (int a = 0; a < m; ++a) {
-    const int c = ws.locked[a];
-    capacity[a] = larger(capacity_of(ws, c, forward), capacity_of(ws, c, backward));
-    if (contact_one_way(ws, c)) capacity[a] = T(infinity);
-    if (is_rigid(ws, ws.locked[a])) p.matrix[a * m + a] = T(1);
-    p.bound[a] = 0;
+    for (int b = 0; b <= a; ++b) ws.mobility_factor[a * m + b] = ws.mobility[ws.locked[a] * nc + ws.locked[b]];
+    if (is_rigid(ws, ws.locked[a])) ws.mobility_factor[a * m + a] = T(1);
   }
-  // larger than in the decision: round-off in the shares of redundant contacts is divided by it
-  capacity_weights(p, capacity, 1e-7);
-  for (int a = 0; a < m && ws.rank == m; ++a) p.weight[a] = T(0);
-  p.factor = ws.mobility_factor;
-  return factor_free(p) == m;
+  return cholesky(m, ws.mobility_factor, m);
 }
 
-/// Torques x of the locked contacts for slip accelerations b: mobility x = b; minimum norm where it is singular.
+/// Torques x of the carriers for slip accelerations b: mobility x = b.
 template <class T>
 void solve_locked(const Workspace<T>& ws, const T* b, T* x) {
-  const int m = ws.n_locked, nc = int(ws.sys.contacts);
+  const int m = ws.n_locked;
   for (int a = 0; a < m; ++a) x[a] = b[a];
   forward_solve(m, ws.mobility_factor, m, x);
   backward_solve(m, ws.mobility_factor, m, x);
-  // refinements take the weight out again
-  T* r = ws.qp_g + 4 * nc;
-  for (int k = 0; k < 4 && ws.rank < m; ++k) {
-    for (int a = 0; a < m; ++a) {
-      r[a] = b[a];
-      for (int c = 0; c < m; ++c) r[a] -= ws.mobility[ws.locked[a] * nc + ws.locked[c]] * x[c];
-    }
-    forward_solve(m, ws.mobility_factor, m, r);
-    backward_solve(m, ws.mobility_factor, m, r);
-    axpy(m, T(1), r, x);
-  }
 }
 
 /// Multipliers as a linear map of branch torques and prescribed accelerations; few contacts only.
@@ -163,8 +134,8 @@ void map_prescribed(Workspace<T>& ws, const T* basis) {
 
 /// Add a branch to the list.
 template <class T>
-void pack(Workspace<T>& ws, int d, int sign, bool held, int& block) {
-  const Branch<T> b = make_branch(ws, d, sign, held);
+void pack(Workspace<T>& ws, int d, int sign, int& block) {
+  const Branch<T> b = make_branch(ws, d, sign);
   ws.branch_of[d] = ws.n_rates;
   ws.block[ws.n_rates] = block;
   block += b.states * b.states;
@@ -186,7 +157,7 @@ void list_laws(Workspace<T>& ws) {
   }
 }
 
-/// Active components: all elements, slipping contacts, saturated ones that are held by others.
+/// Active components: all elements and slipping contacts.
 /// Behind them, without torque, the open contacts: only their rates are followed.
 template <class T>
 void pack_branches(Workspace<T>& ws) {
@@ -194,19 +165,17 @@ void pack_branches(Workspace<T>& ws) {
   const int ne = int(sys.elements), nc = int(sys.contacts);
   ws.n_rates = ws.n_undirected = 0;
   int block = 0;
-  for (int d = 0; d < ne; ++d) pack(ws, d, 0, false, block);
+  for (int d = 0; d < ne; ++d) pack(ws, d, 0, block);
   for (int c = 0; c < nc; ++c) {
-    const bool held = ws.mode[c] == locked && ws.held[c] != 0;
     ws.branch_of[ne + c] = -1;
     // a law that never sticks works beside a freewheel that is locked
-    const bool slips = ws.loaded[c] && (ws.mode[c] != locked || held || ws.compliant[c]);
-    if (slips) pack(ws, ne + c, held ? ws.held[c] : ws.mode[c], held, block);
+    if (ws.loaded[c] && (ws.mode[c] != locked || ws.compliant[c])) pack(ws, ne + c, ws.mode[c], block);
   }
   ws.n_branches = ws.n_rates;
   list_laws(ws);
   for (int c = 0; c < nc; ++c) {
     if (ws.loaded[c] || ws.compliant[c]) continue;
-    pack(ws, ne + c, ws.mode[c] == open ? 0 : ws.mode[c], false, block);
+    pack(ws, ne + c, ws.mode[c] == open ? 0 : ws.mode[c], block);
     ws.n_undirected += ws.mode[c] == open;
   }
 }
@@ -243,7 +212,6 @@ void list_lines(Workspace<T>& ws) {
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
     const bool contact = b.law >= 0;
-    if (contact && b.held) continue;
     if (contact) list_slip(ws, k);
     list_turn(ws, k);
     const int edges = edge_count(ws, b.direction), sign = contact ? b.sign : 1;
@@ -274,9 +242,7 @@ void reduce_rates(Workspace<T>& ws) {
     if (ws.sparse) continue;
     for (int j = 0; j < nz; ++j) {
       T s = T(0);
-      if (!ws.branch[k].held) {
-        for (int i = 0; i < nv; ++i) s += T(row[i]) * ws.z_basis[i * nz + j];
-      }
+      for (int i = 0; i < nv; ++i) s += T(row[i]) * ws.z_basis[i * nz + j];
       ws.row_z[k * nz + j] = s;
     }
   }

@@ -76,7 +76,6 @@ void reduce_sparse(Workspace<T>& ws) {
   int at = 0;
   for (int k = 0; k < ws.n_rates; ++k) {
     ws.sp_first[k] = at;
-    if (ws.branch[k].held) continue;
     const int d = ws.branch[k].direction;
     const double* given = d < sys.elements ? sys.element_rate + d * nv : sys.contact_rate + (d - sys.elements) * nv;
     for (int j = 0; j < nz; ++j) row[j] = T(0);

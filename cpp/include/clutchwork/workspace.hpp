@@ -53,7 +53,6 @@ struct Branch {
   int state, states;  ///< own states: offset and number
   int piece;          ///< smooth piece of the element or of the law
   int sign;           ///< direction of slip of a contact
-  bool held;          ///< a saturated contact that does not slip: applies its static torque
   bool compliant;     ///< a contact whose law never sticks: smooth over signed slip
   bool shaped;        ///< a contact whose torque per load is not the coefficient itself
 };
@@ -81,6 +80,7 @@ struct Edge {
   T* drift;       ///< its time derivative
   T* capacity;    ///< static torque of each locked contact
   T* noise;       ///< round-off of the torque of each locked contact
+  T* room;        ///< what each dependent set has left of its limit load, as a share of the load
 };
 
 template <class T>
@@ -93,15 +93,14 @@ struct Workspace {
   // the state of the run
   double time = 0;
   T *v = nullptr, *state = nullptr, *angle = nullptr, *work = nullptr, *prescribed_work = nullptr;
-  int *mode = nullptr, *piece = nullptr, *loaded = nullptr, *forced = nullptr, *held = nullptr;
+  int *mode = nullptr, *piece = nullptr, *loaded = nullptr, *forced = nullptr;
   int *compliant = nullptr, *heading = nullptr;  ///< contacts with a law that never sticks; sign of a rate
   int *fault = nullptr, *faulty = nullptr;       ///< what has failed in a contact; contacts that can
   int n_faulty = 0, failed = -1;
   double last_step = 0;  ///< [s] last step that was not cut short
   bool started = false, fresh_phase = true, input_changed = false;
-  double stand_time = -infinity, forced_time = -infinity;
-  int stand_events = 0;
-  bool redistributed = false;
+  double crowd_time = -infinity, forced_time = -infinity;
+  int* crowd = nullptr;  ///< events of each direction, then knots of each signal, within the last microsecond
 
   // signals, read through references; the prescribed speeds come last
   Signal* signal = nullptr;
@@ -128,7 +127,15 @@ struct Workspace {
 
   // the present mode
   int n_locked = 0, rank = 0, nz = 0, n_branches = 0, n_rates = 0, n_lines = 0, n_watch = 0, n_undirected = 0;
-  int* locked = nullptr;
+  int* locked = nullptr;  ///< contacts that are locked: carriers, which are independent, and rigid ones
+
+  // locked contacts that depend on the carriers, and the sets that they make with them: locked.hpp
+  int n_spare = 0, n_sets = 0;
+  int *spare = nullptr, *set_first = nullptr, *set_rank = nullptr, *set_member = nullptr, *set_place = nullptr;
+  int* in_set = nullptr;     ///< of each locked contact
+  T* tie = nullptr;          ///< n_spare x contacts: direction of a spare in terms of the carriers
+  T* set_memory = nullptr;   ///< one set at a time
+  int* set_basis = nullptr;  ///< of the same
   bool sparse = false, is_explicit = false, redundant = false;
   T *z_basis = nullptr, *y_basis = nullptr, *mobility = nullptr, *mobility_factor = nullptr;
   T *row_z = nullptr, *offset = nullptr, *reach = nullptr, *reach_prescribed = nullptr;
@@ -164,13 +171,12 @@ struct Workspace {
   double* events = nullptr;
   int n_events = 0;
 
-  // where a failure happened
   // what the phase that just ended leaves to the switch
   int located = -1;
-  double pull = 0;    ///< sign of the torque of a contact that breaks away
   double effort = 0;  ///< size of the mass-weighted forces
   Cause cause = Cause::initial;
 
+  // where a failure happened
   int detail_component = -1;
   double detail_value = 0;
 };
@@ -202,7 +208,7 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   ws.n_directions = int(nd);
   a.take(ws.v, nv), a.take(ws.state, ns), a.take(ws.angle, s.nodes), a.take(ws.work, nd),
       a.take(ws.prescribed_work, np);
-  a.take(ws.mode, nc), a.take(ws.piece, nd), a.take(ws.loaded, nc), a.take(ws.forced, nc), a.take(ws.held, nc);
+  a.take(ws.mode, nc), a.take(ws.piece, nd), a.take(ws.loaded, nc), a.take(ws.forced, nc), a.take(ws.crowd, nd + s.inputs);
   a.take(ws.compliant, nc), a.take(ws.heading, nd), a.take(ws.switching, nd), a.take(ws.chattering, nc);
   a.take(ws.bounded, nc), a.take(ws.fault, nc), a.take(ws.faulty, nc);
   const auto nx = s.shared;
@@ -215,6 +221,10 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   a.take(ws.signal, s.inputs), a.take(ws.ref_signal, ws.n_refs), a.take(ws.varying, ws.n_refs);
   a.take(ws.u, ws.n_refs), a.take(ws.du, ws.n_refs), a.take(ws.params, s.n_params), a.take(ws.prescribed_before, np);
   a.take(ws.factor, nv * nv), a.take(ws.direction, nd * nv), a.take(ws.prescribed_momentum, np * nv);
+  const auto nr = s.contacts > 1 ? nc : 0;
+  a.take(ws.spare, nr), a.take(ws.set_first, nr + 1), a.take(ws.set_rank, nr), a.take(ws.set_member, nr);
+  a.take(ws.set_place, nr), a.take(ws.in_set, nc), a.take(ws.tie, nr * nr), a.take(ws.set_basis, 2 * nr + 2);
+  a.take(ws.set_memory, nr * (3 * nr + 12) + 4);
   a.take(ws.locked, nc), a.take(ws.z_basis, nv * nv), a.take(ws.y_basis, nv * np), a.take(ws.mobility, nc * nc);
   a.take(ws.mobility_factor, nc * nc), a.take(ws.white_first, nd + 1), a.take(ws.white_col, nd * nv),
       a.take(ws.white, nd * nv);
@@ -226,7 +236,7 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   Edge<T>* edges[2] = {&ws.here, &ws.there};
   for (Edge<T>* e : edges) {
     a.take(e->rate, nd), a.take(e->slope, nd), a.take(e->multiplier, nc), a.take(e->drift, nc);
-    a.take(e->capacity, nc), a.take(e->noise, nc);
+    a.take(e->capacity, nc), a.take(e->noise, nc), a.take(e->room, nc);
   }
   a.take(ws.torque, nd), a.take(ws.output_torque, nd), a.take(ws.power, 4 * (nd + np));
   a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.take(ws.watch, nc), a.take(ws.mode_before, nc),

@@ -1,0 +1,197 @@
+#pragma once
+#include <clutchwork/dense.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// What contacts whose directions depend on each other hold together, and the share of each: docs/theory/contacts.md.
+namespace clutchwork {
+
+/// One set of n locked contacts. The first `rank` of them, the carriers, are independent; column i tells contact i in
+/// terms of them, so that the torques x hold the load when the sum of x[i] times column i is the load.
+template <class T>
+struct DependentSet {
+  int n, rank;
+  T* column;  ///< n x rank
+  T* load;    ///< rank [N m]
+  T* lower;   ///< n [N m], not above zero
+  T* upper;   ///< n [N m], not below zero, may be infinite
+  T* x;       ///< n [N m], shares
+};
+
+/// Most of the load that counts: a set that holds it twice is far from its limit.
+inline constexpr double ample = 2;
+
+/// Bounded simplex for the largest factor of the load that the set can hold, at most `ample`. {eq}`contacts-12`
+/// Variables: the torques, then the factor. Memory: tableau rank x (n + 1), x, price and `place` n + 1 each.
+template <class T>
+struct LimitLoad {
+  const DependentSet<T>& set;
+  T *tableau, *x, *price;
+  int *basis, *place;  ///< variable of each row; row of each variable, -1: not basic
+
+  T size = T(0);       ///< of the load [N m]: the factor is counted in it
+
+  T lower(int j) const { return j < set.n ? set.lower[j] : T(0); }
+  T upper(int j) const { return j < set.n ? set.upper[j] : T(ample) * size; }
+  int width() const { return set.n + 1; }
+
+  /// The carriers are the first basis; no torque, no load.
+  void start() {
+    for (int j = 0; j < width(); ++j) x[j] = price[j] = T(0), place[j] = -1;
+    price[set.n] = T(1);
+    size = T(0);
+    for (int r = 0; r < set.rank; ++r) size = larger(size, abs(set.load[r]));
+    for (int r = 0; r < set.rank; ++r) {
+      for (int j = 0; j < set.n; ++j) tableau[r * width() + j] = set.column[j * set.rank + r];
+      tableau[r * width() + set.n] = value(size) > 0 ? -set.load[r] / size : T(0);
+      basis[r] = r, place[r] = r;
+    }
+  }
+
+  /// A variable that raises the factor, and which way it goes; -1: the factor is the largest.
+  int entering(int& way) const {
+    double most = 0;
+    for (int j = 0; j < width(); ++j) most = larger(most, abs(value(price[j])));
+    for (int j = width() - 1; j >= 0; --j) {
+      if (place[j] >= 0 || abs(value(price[j])) <= 1e-11 * most) continue;
+      way = value(price[j]) > 0 ? 1 : -1;
+      if (way > 0 ? value(x[j]) < value(upper(j)) : value(x[j]) > value(lower(j))) return j;
+    }
+    return -1;
+  }
+
+  /// Move variable j until it or a basic one meets its bound; the row of that one (-1: j itself).
+  int move(int j, int way) {
+    T step = way > 0 ? upper(j) - x[j] : x[j] - lower(j);
+    int row = -1;
+    for (int r = 0; r < set.rank; ++r) {
+      const T rate = tableau[r * width() + j] * T(-way);
+      if (abs(value(rate)) <= 1e-11) continue;
+      const int b = basis[r];
+      const T bound = value(rate) > 0 ? upper(b) : lower(b);
+      if (abs(value(bound)) == infinity) continue;
+      const T room = larger((bound - x[b]) / rate, T(0));
+      if (value(room) < value(step) || (row >= 0 && value(room) == value(step) && b > basis[row])) step = room, row = r;
+    }
+    for (int r = 0; r < set.rank; ++r) x[basis[r]] -= T(way) * step * tableau[r * width() + j];
+    x[j] += T(way) * step;
+    if (row >= 0) x[basis[row]] = value(tableau[row * width() + j]) * way < 0 ? upper(basis[row]) : lower(basis[row]);
+    if (row < 0) x[j] = way > 0 ? upper(j) : lower(j);
+    return row;
+  }
+
+  /// Variable j becomes the basic one of a row.
+  void pivot(int row, int j) {
+    T* own = tableau + row * width();
+    const T inverse = T(1) / own[j];
+    for (int k = 0; k < width(); ++k) own[k] *= inverse;
+    auto clear = [&](T* other) {
+      const T factor = other[j];
+      for (int k = 0; k < width(); ++k) other[k] -= factor * own[k];
+      other[j] = T(0);
+    };
+    for (int r = 0; r < set.rank; ++r) {
+      if (r != row) clear(tableau + r * width());
+    }
+    clear(price);
+    place[basis[row]] = -1, place[j] = row, basis[row] = j;
+  }
+
+  /// The largest factor. `price` then tells how the set gives way: a contact with a positive one slips backward.
+  T solve() {
+    start();
+    for (int round = 0; round < 50 + 20 * set.n; ++round) {
+      int way = 0;
+      const int j = entering(way);
+      if (j < 0) break;
+      const int row = move(j, way);
+      if (row >= 0) pivot(row, j);
+    }
+    return value(size) > 0 ? x[set.n] / size : T(ample);
+  }
+};
+
+/// Shares of a load as springs in parallel would have them whose stiffness is the capacity, each yielding at its
+/// bound: Newton on the common deflection. {eq}`contacts-13`
+template <class T>
+struct Shares {
+  const DependentSet<T>& set;
+  T *deflection, *step, *residual;  ///< rank each
+  T* matrix;                        ///< rank x rank
+  T free_stiffness = T(1);          ///< of a contact without bound
+
+  T use(int i, const T* at) const { return dot(set.rank, set.column + i * set.rank, at); }
+  T stiffness(int i, bool ahead) const {
+    const T bound = ahead ? set.upper[i] : -set.lower[i];
+    return value(bound) < infinity ? bound : free_stiffness;
+  }
+  T torque(int i, T use) const {
+    const bool ahead = value(use) >= 0;
+    return larger(smaller(stiffness(i, ahead) * use, set.upper[i]), set.lower[i]);
+  }
+  bool yields(int i, T use) const {
+    const T bound = value(use) >= 0 ? set.upper[i] : set.lower[i];
+    return value(bound) == 0 || (abs(value(bound)) < infinity && abs(value(use)) > 1);
+  }
+
+  /// Load that is not held at a deflection; its size.
+  double miss(const T* at) {
+    for (int r = 0; r < set.rank; ++r) residual[r] = set.load[r];
+    for (int i = 0; i < set.n; ++i) axpy(set.rank, -torque(i, use(i, at)), set.column + i * set.rank, residual);
+    double size = 0;
+    for (int r = 0; r < set.rank; ++r) size = larger(size, abs(value(residual[r])));
+    return size;
+  }
+
+  bool newton_step() {
+    const int m = set.rank;
+    T most = T(0);
+    for (int e = 0; e < m * m; ++e) matrix[e] = T(0);
+    for (int i = 0; i < set.n; ++i) {
+      const T at = use(i, deflection), k = stiffness(i, value(at) >= 0);
+      most = larger(most, k);
+      if (yields(i, at)) continue;
+      const T* c = set.column + i * m;
+      for (int a = 0; a < m; ++a) axpy(m, k * c[a], c, matrix + a * m);
+    }
+    // where all have yielded the deflection is not unique
+    for (int a = 0; a < m; ++a) matrix[a * m + a] += matrix[a * m + a] * T(1e-12) + most * T(1e-14);
+    for (int a = 0; a < m; ++a) step[a] = residual[a];
+    if (!cholesky(m, matrix, m)) return false;
+    forward_solve(m, matrix, m, step);
+    backward_solve(m, matrix, m, step);
+    return true;
+  }
+
+  /// How far to go along the step: where the load that is missing no longer points ahead.
+  void search() {
+    T* from = matrix;
+    for (int r = 0; r < set.rank; ++r) from[r] = deflection[r];
+    double low = 0, high = 1;
+    for (int k = 0; k < 50; ++k) {
+      const double s = k == 0 ? 1.0 : 0.5 * (low + high);
+      for (int r = 0; r < set.rank; ++r) deflection[r] = from[r] + T(s) * step[r];
+      miss(deflection);
+      const double ahead = value(dot(set.rank, residual, step));
+      if (k == 0 && ahead >= 0) return;
+      (ahead >= 0 ? low : high) = s;
+    }
+  }
+
+  void solve() {
+    double scale = 0;
+    free_stiffness = T(0);
+    for (int i = 0; i < set.n; ++i) {
+      if (value(set.upper[i]) < infinity) free_stiffness = larger(free_stiffness, set.upper[i]);
+      if (value(set.lower[i]) > -infinity) free_stiffness = larger(free_stiffness, -set.lower[i]);
+    }
+    if (value(free_stiffness) == 0) free_stiffness = T(1);
+    for (int r = 0; r < set.rank; ++r) deflection[r] = T(0), scale = larger(scale, abs(value(set.load[r])));
+    for (int round = 0; round < 60 && miss(deflection) > 4e-16 * scale; ++round) {
+      if (!newton_step()) break;
+      search();
+    }
+    for (int i = 0; i < set.n; ++i) set.x[i] = torque(i, use(i, deflection));
+  }
+};
+
+}  // namespace clutchwork
