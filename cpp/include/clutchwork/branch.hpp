@@ -127,7 +127,7 @@ template <class T, class S>
 CLUTCHWORK_INLINE S sliding_torque(const Workspace<T>& ws, const Branch<T>& b, const S& rate, const S* input,
                                    const S* law_input) {
   // beyond its zero, at which the step will end, the load goes on as it falls
-  const S load = contact_load<T, S>(b.kind, b.params, input, ws.sys.points);
+  const S load = b.pressed ? contact_load<T, S>(b.kind, b.params, input, ws.sys.points) : S(0);
   S coefficient = visit_law(b.law, [&](auto tag) {
     using L = typename decltype(tag)::type;
     if constexpr (StickingLaw<L>) {
@@ -146,7 +146,7 @@ template <int Room, class T, class S>
 CLUTCHWORK_INLINE S bending_torque(const Workspace<T>& ws, const Branch<T>& b, const S& rate, const S* own,
                                    const S* input, const S* law_input, S* rates) {
   // beyond its zero, at which the step will end, the load goes on as it falls
-  const S load = contact_load<T, S>(b.kind, b.params, input, ws.sys.points);
+  const S load = b.pressed ? contact_load<T, S>(b.kind, b.params, input, ws.sys.points) : S(0);
   S coefficient = visit_law(b.law, [&](auto tag) {
     using L = typename decltype(tag)::type;
     if constexpr (CompliantLaw<L> && L::states <= Room) {

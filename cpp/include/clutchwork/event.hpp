@@ -127,7 +127,7 @@ void fail(Workspace<T>& ws, int c) {
   const double e = kinetic_energy(ws), torque = value(ws.torque_before[c]);
   record(ws, c, ws.mode[c], ws.mode[c], Cause::fault, 0.0, torque, torque, e, e);
   if (report == 2) ws.failed = c;
-  if (kind == cannot_transmit) ws.loaded[c] = 0;
+  if (kind == cannot_transmit) ws.loaded[c] = ws.pressed[c] = 0;
 }
 
 /// Flags that follow from the signals: which contacts are closed, which loads vary, which fail.
@@ -143,12 +143,26 @@ bool refresh_loads(Workspace<T>& ws) {
       ws.faulty[ws.n_faulty++] = c;
       if (fault_trigger(ws, c) > 0) fail(ws, c), changed = true;
     }
-    const int closed = is_loaded(ws, c) || contact_one_way(ws, c);
-    changed = changed || closed != ws.loaded[c];
+    const int pressed = is_pressed(ws, c), was = ws.pressed[c];
+    ws.pressed[c] = pressed;
+    const int closed = is_closed(ws, c);
+    changed = changed || closed != ws.loaded[c] || pressed != was;
     ws.loaded[c] = closed;
     if (load_may_turn(ws, c)) ws.watch[ws.n_watch++] = c;
   }
   return changed;
+}
+
+/// Decide the modes; freewheels that would have to hold more than they can give way for good on the way.
+template <class T>
+bool settle(Workspace<T>& ws, int located) {
+  for (int round = 0; round <= ws.sys.contacts; ++round) {
+    int who = located;
+    const Settled settled = settle_contacts(ws, who);
+    if (settled != Settled::gives_way) return settled == Settled::yes;
+    fail(ws, who);
+  }
+  return false;
 }
 
 /// Decide the modes at the present instant and report what changed.
@@ -170,11 +184,11 @@ Status switch_modes(Workspace<T>& ws) {
   if (at_start) {
     for (int c = 0; c < nc; ++c) ws.impulse[c] = ws.mode[c] == locked && ws.mode_before[c] != locked;
   }
-  if (!settle_contacts(ws, ws.located)) return Status::no_mode;
+  if (!settle(ws, ws.located)) return Status::no_mode;
   if (stops_short(ws, ws.located)) {
     if (!stop_within_tolerance(ws, ws.located)) return Status::no_mode;
     // its impulse may bring others to rest
-    if (others_rest(ws, ws.located) && !settle_contacts(ws, -1)) return Status::no_mode;
+    if (others_rest(ws, ws.located) && !settle(ws, -1)) return Status::no_mode;
   }
   for (int d = 0; d < ne; ++d) {
     if (edge_count(ws, d) > 0) ws.piece[d] = piece_of(ws, d, value(rate_of(ws, d)));

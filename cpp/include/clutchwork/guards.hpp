@@ -385,7 +385,7 @@ void find_load(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
   for (int i = 0; i < ws.n_watch; ++i) {
     const int c = ws.watch[i];
-    const double sign = ws.loaded[c] ? 1.0 : -1.0;
+    const double sign = ws.pressed[c] ? 1.0 : -1.0;
     auto f = [&](double s) {
       inputs_in(form, step, s);
       return sign * value(load_of(ws, c));

@@ -126,12 +126,13 @@ CLUTCHWORK_INLINE double room_inside(const Axis& axis, double x) {
 /// The same for a slip, which passes zero: its table starts there.
 CLUTCHWORK_INLINE double room_for_slip(const Axis& axis, double slip) { return (1 + 1e-9) * axis.last() - abs(slip); }
 
-/// Kinks of a table over the slip: its inner points where it is linear, and its ends where it keeps their values.
+/// Kinks of a table over the slip: its inner points, where a smooth one changes its curvature and no step may run over
+/// what lies between them, and its ends where it keeps their values.
 struct Kinks {
   Axis axis;
   Manner manner;
 
-  int inner() const { return manner.smooth() || axis.count < 3 ? 0 : axis.count - 2; }
+  int inner() const { return axis.count < 3 ? 0 : axis.count - 2; }
   int ends() const { return int(manner.kept()); }
   int count() const { return inner() + 2 * ends(); }
   double at(int i) const {
@@ -148,8 +149,7 @@ CLUTCHWORK_INLINE S slip_value(const Axis& axis, const Manner& manner, At_&& at,
   const Kinks kinks{axis, manner};
   if (manner.kept() && piece == 0) return at(0);
   if (manner.kept() && piece == kinks.count()) return at(axis.count - 1);
-  const int k = manner.smooth() ? interval_of(axis, value(slip)) : piece - kinks.ends();
-  return table_value<S>(axis, manner, at, slip, k);
+  return table_value<S>(axis, manner, at, slip, piece - kinks.ends());
 }
 
 /// A friction coefficient never drives.

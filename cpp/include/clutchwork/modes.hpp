@@ -58,6 +58,7 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
     b.law_input = ws.u + sys.contact_law_input[c];
     b.law_input_slope = ws.du + sys.contact_law_input[c];
     b.shaped = is_shaped(b.kind);
+    b.pressed = ws.pressed[c] != 0;
     b.compliant = ws.compliant[c] != 0;
     if (b.compliant) b.sign = forward;
   }
@@ -142,12 +143,17 @@ T load_slope(const Workspace<T>& ws, int c) {
   });
 }
 
-/// Whether a contact is closed: a load now, or one that is about to rise from zero.
+/// Whether a contact is pressed: a load now, or one that is about to rise from zero.
 template <class T>
-bool is_loaded(const Workspace<T>& ws, int c) {
-  if (ws.fault[c] == cannot_unlock && ws.mode[c] == locked) return true;
+bool is_pressed(const Workspace<T>& ws, int c) {
   const double load = value(load_of(ws, c));
   return load != 0 ? load > 0 : value(load_slope(ws, c)) > 0;
+}
+
+/// Whether a contact can transmit: it is pressed, blocks one way, or cannot let go.
+template <class T>
+bool is_closed(const Workspace<T>& ws, int c) {
+  return ws.pressed[c] || contact_one_way(ws, c) || (ws.fault[c] == cannot_unlock && ws.mode[c] == locked);
 }
 
 /// Static torque that a contact can use in a decision: one that rises from zero counts as it is a nanosecond later.
@@ -265,9 +271,13 @@ int turned_back(const Workspace<T>& ws, const int* list, int n, const T* x, cons
   return -1;
 }
 
-/// Give every contact at zero slip its torque or its direction of slip. `located`: the contact whose guard was hit.
+/// How a decision ended: all contacts have their mode, none was found, or a freewheel gives way first.
+enum class Settled { yes, no, gives_way };
+
+/// Give every contact at zero slip its torque or its direction of slip. `located`: the contact whose guard was hit, or
+/// the freewheel that gives way.
 template <class T>
-bool settle_contacts(Workspace<T>& ws, int located) {
+Settled settle_contacts(Workspace<T>& ws, int& located) {
   const System& sys = ws.sys;
   const int nc = int(sys.contacts);
   const double tolerance = slip_tolerance(ws);
@@ -334,7 +344,7 @@ bool settle_contacts(Workspace<T>& ws, int located) {
     for (int a = 0; a < n; ++a) {
       if (is_rigid(ws, list[a])) p.lower[a] = p.upper[a] = T(0);
     }
-    if (!solve(p)) return false;
+    if (!solve(p)) return Settled::no;
 
     // of the bound torques that cannot hold, the one that gives way most starts to slip
     int first = -1;
@@ -349,7 +359,11 @@ bool settle_contacts(Workspace<T>& ws, int located) {
       // between prescribed speeds only what leaves zero within a microsecond is a departure
       const double small = is_rigid(ws, c) ? 1e6 * tolerance : larger(1e-10 * scale, 1e-12 * ws.effort * mobility);
       const bool noise = abs(acceleration) <= small;
-      if (p.bound[a] == 0 || noise || (contact_one_way(ws, c) && acceleration < 0)) continue;
+      if (p.bound[a] == 0 || noise) continue;
+      if (contact_one_way(ws, c) && acceleration < 0) {
+        located = c;
+        return Settled::gives_way;
+      }
       if (size > most) first = a, most = size;
     }
     if (first >= 0) {
@@ -362,11 +376,11 @@ bool settle_contacts(Workspace<T>& ws, int located) {
 
     for (int a = 0; a < n; ++a) ws.torque[sys.elements + list[a]] = p.x[a];
     const int back = turned_back(ws, list, n, p.x, released, q);
-    if (back < 0) return true;
+    if (back < 0) return Settled::yes;
     released[back] = -1;
     candidate[back] = 1;
   }
-  return false;
+  return Settled::no;
 }
 
 /// Heat of an impulse goes where the heat of its direction goes.

@@ -45,7 +45,7 @@ template <class T>
 void relax_open(Workspace<T>& ws) {
   const System& sys = ws.sys;
   for (int c = 0; c < sys.contacts; ++c) {
-    if (!ws.compliant[c] || ws.loaded[c]) continue;
+    if (!ws.compliant[c] || ws.pressed[c]) continue;
     const int n = states_of(sys.contact_kind[c], sys.contact_law[c], ws.params + sys.contact_law_param[c]);
     for (int i = 0; i < n; ++i) ws.state[sys.contact_state[c] + i] = T(0);
     ws.piece[sys.elements + c] = 0;
@@ -611,7 +611,8 @@ class Phase {
       default:
         ws_.located = hit.index;
         ws_.cause = Cause::input;
-        ws_.loaded[hit.index] = !ws_.loaded[hit.index] || contact_one_way(ws_, hit.index);
+        ws_.pressed[hit.index] = !ws_.pressed[hit.index];
+        ws_.loaded[hit.index] = is_closed(ws_, hit.index);
     }
   }
 

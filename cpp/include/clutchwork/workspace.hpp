@@ -53,6 +53,7 @@ struct Branch {
   int state, states;  ///< own states: offset and number
   int piece;          ///< smooth piece of the element or of the law
   int sign;           ///< direction of slip of a contact
+  bool pressed;       ///< a contact with a load; a freewheel without one still blocks
   bool compliant;     ///< a contact whose law never sticks: smooth over signed slip
   bool shaped;        ///< a contact whose torque per load is not the coefficient itself
 };
@@ -93,7 +94,8 @@ struct Workspace {
   // the state of the run
   double time = 0;
   T *v = nullptr, *state = nullptr, *angle = nullptr, *work = nullptr, *prescribed_work = nullptr;
-  int *mode = nullptr, *piece = nullptr, *loaded = nullptr, *forced = nullptr;
+  int *mode = nullptr, *piece = nullptr, *forced = nullptr;
+  int *pressed = nullptr, *loaded = nullptr;  ///< contacts with a load above zero; those that can transmit at all
   int *compliant = nullptr, *heading = nullptr;  ///< contacts with a law that never sticks; sign of a rate
   int *fault = nullptr, *faulty = nullptr;       ///< what has failed in a contact; contacts that can
   int n_faulty = 0, failed = -1;
@@ -208,7 +210,8 @@ std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   ws.n_directions = int(nd);
   a.take(ws.v, nv), a.take(ws.state, ns), a.take(ws.angle, s.nodes), a.take(ws.work, nd),
       a.take(ws.prescribed_work, np);
-  a.take(ws.mode, nc), a.take(ws.piece, nd), a.take(ws.loaded, nc), a.take(ws.forced, nc), a.take(ws.crowd, nd + s.inputs);
+  a.take(ws.mode, nc), a.take(ws.piece, nd), a.take(ws.loaded, nc), a.take(ws.pressed, nc);
+  a.take(ws.forced, nc), a.take(ws.crowd, nd + s.inputs);
   a.take(ws.compliant, nc), a.take(ws.heading, nd), a.take(ws.switching, nd), a.take(ws.chattering, nc);
   a.take(ws.bounded, nc), a.take(ws.fault, nc), a.take(ws.faulty, nc);
   const auto nx = s.shared;

@@ -21,12 +21,12 @@ struct Karnopp {
     return p.static_;
   }
   template <class T>
-  static int edges(const Params<T>&) {
-    return 1;
+  static int edges(const Params<T>& p) {
+    return stribeck_reach(p) > value(p.band) ? 2 : 1;
   }
   template <class T>
-  static double edge(const Params<T>& p, const double*, int) {
-    return value(p.band);
+  static double edge(const Params<T>& p, const double*, int i) {
+    return i == 0 ? value(p.band) : stribeck_reach(p);
   }
 };
 
