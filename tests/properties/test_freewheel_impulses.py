@@ -1,4 +1,4 @@
-"""Freewheels that collide, all at once: the speeds nearest to those before, in kinetic energy, at which none turns back."""
+"""Freewheels that collide, all at once: the speeds nearest in kinetic energy at which none turns back."""
 
 from __future__ import annotations
 
@@ -128,9 +128,7 @@ def jump(seed: int) -> str:
     nodes = shafts(d, inertia, speed)
     for i, (base, follower) in enumerate(pairs):
         d.add(cw.OneWayClutch(f"f{i}", base=nodes[base], follower=nodes[follower]))
-    d.add(
-        cw.PrescribedSpeed("m", shaft=nodes[driven], speed=cw.Step(offset=before, height=after - before, start=0.5))
-    )
+    d.add(cw.PrescribedSpeed("m", shaft=nodes[driven], speed=cw.Step(offset=before, height=after - before, start=0.5)))
     run = simulate(d, 1.0, times=[0.25, 0.75])
     if text := stopped(run):
         return text
@@ -141,7 +139,7 @@ def jump(seed: int) -> str:
     first = before + nearest(inertia[free], speed[free] - before, own, [])
     second = after + nearest(inertia[free], first - after, own, [])
     text = wrong(speeds(run, count, 0)[free], first, 200.0)
-    return text and f"start: {text}" or wrong(speeds(run, count, 1)[free], second, 200.0)
+    return (text and f"start: {text}") or wrong(speeds(run, count, 1)[free], second, 200.0)
 
 
 def moving(seed: int) -> str:

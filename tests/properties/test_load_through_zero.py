@@ -1,7 +1,7 @@
 """A load that passes zero is the same as one that ends there: the contact opens, and no accuracy is lost.
 
-Every random force exists twice: as a table that runs through zero, and as one that stays at zero for as long. The second
-needs no guard, so at tight tolerance it is the reference. Sines and products have integrals in closed form.
+Every random force exists twice: as a table that runs through zero, and as one that stays at zero for as long. The
+second needs no guard, so at tight tolerance it is the reference. Sines and products have integrals in closed form.
 """
 
 from __future__ import annotations

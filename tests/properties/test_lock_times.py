@@ -1,7 +1,7 @@
 """Two discs that a clutch engages: the time of the lock against quadrature of J dw/(T mu(w)), default options.
 
-The coefficient rises in the last rad/s before the slip vanishes. A step that runs over this rise locks too late, by more
-the narrower the rise is, and then the lock depends on where the steps happen to lie, that is on t_end.
+The coefficient rises in the last rad/s before the slip vanishes. A step that runs over it locks too late, and the
+lock depends on where the steps happen to lie, that is on t_end.
 """
 
 from __future__ import annotations
@@ -181,8 +181,8 @@ def gms(seed: int) -> str:
     """GMS never locks: the time at which its slip vanishes first, against a solution of its own.
 
     Until then every element slides once it has been wound up, so that all have the same share of the curve: with
-    z = f/share, dw/dt = -D z and dz/dt = C (1 - z/s(w)). Winding up element i takes the deflection d_i s(w0)/static, over
-    which it lacks half of its coefficient; what this leaves in speed is put into the start.
+    z = f/share, dw/dt = -D z and dz/dt = C (1 - z/s(w)). Winding up element i takes the deflection d_i s(w0)/static,
+    over which it lacks half of its coefficient; what this leaves in speed is put into the start.
     """
     rng = np.random.default_rng([seed, 2])
     fields, _ = stribeck_fields(rng)

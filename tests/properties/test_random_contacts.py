@@ -51,7 +51,9 @@ def bounds(made: Any, parts: list[Any]) -> str:
         worst = int(np.argmax(beyond))
         if beyond[worst] > slack:
             rows = int(np.sum(beyond > slack))
-            found.append(f"{part.name} ({part.kind}) by {beyond[worst]:.3g} N m at {made.time[worst]:.9g} s, {rows} rows")
+            found.append(
+                f"{part.name} ({part.kind}) by {beyond[worst]:.3g} N m at {made.time[worst]:.9g} s, {rows} rows"
+            )
     return "; ".join(found)
 
 

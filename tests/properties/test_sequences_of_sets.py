@@ -46,7 +46,7 @@ def state_of(modes: list[str]) -> str:
 
 
 def sequence(seed: int, rtol: float) -> Sequence:
-    """What the sets do, one after the other; a run that stops early ends with its status, so that it equals no other."""
+    """What the sets do, one after the other; a run that stops early ends with its status and equals no other."""
     model = driveline(seed, simple=True)
     places = {part.name: pair(part) for part in contacts(model)}
     run = simulate(model, T_END, **options(rtol))
@@ -54,7 +54,7 @@ def sequence(seed: int, rtol: float) -> Sequence:
     for name, (where, _) in places.items():
         modes.setdefault(where, {})[name] = "open"
     found: list[tuple[str, str]] = []
-    last, known = -math.inf, {where: "" for where in modes}
+    last, known = -math.inf, dict.fromkeys(modes, "")
 
     def note() -> None:
         now = {where: state_of(list(own.values())) for where, own in modes.items()}
@@ -100,5 +100,8 @@ def test_the_drivelines_are_worth_it() -> None:
     kinds = [state for seed in range(100) for _, state in exact(seed)]
     assert kinds.count("locked") > 100
     assert kinds.count("forward") + kinds.count("backward") > 100
-    twice = [len(parts) > len({pair(p)[0] for p in parts}) for parts in (contacts(driveline(s, simple=True)) for s in range(100))]
+    twice = [
+        len(parts) > len({pair(p)[0] for p in parts})
+        for parts in (contacts(driveline(s, simple=True)) for s in range(100))
+    ]
     assert np.mean(twice) > 0.5

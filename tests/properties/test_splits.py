@@ -1,4 +1,4 @@
-"""A clutch split into parallel ones with any shares moves as the one clutch, and each carries its share of the torque."""
+"""A clutch split into parallel ones with any shares moves as the one clutch; each carries its share of the torque."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ class Pair:
 
     def driveline(self, shares: tuple[float, ...]) -> cw.Driveline:
         d = cw.Driveline(f"split {self.seed}")
-        s = [d.shaft(f"s{i}", inertia=j, speed=w) for i, (j, w) in enumerate(zip(self.inertia, self.speed, strict=True))]
+        s = [
+            d.shaft(f"s{i}", inertia=j, speed=w) for i, (j, w) in enumerate(zip(self.inertia, self.speed, strict=True))
+        ]
         for i, share in enumerate(shares):
             ends = {"base": s[0], "follower": s[1]} if i % 2 == 0 else {"base": s[1], "follower": s[0]}
             d.add(cw.Clutch(f"c{i}", **ends, friction=self.law, gain=self.gain * share, pressure=self.pressure))
         far = s[0] if self.beside else s[2]
-        d.add(
-            cw.Clutch("strong", base=s[1], follower=far, friction=self.strong_law, gain=self.strong, pressure=1.0)
-        )
+        d.add(cw.Clutch("strong", base=s[1], follower=far, friction=self.strong_law, gain=self.strong, pressure=1.0))
         for i, (amplitude, frequency, phase) in enumerate(self.drives):
             sine = cw.Sine(amplitude=amplitude, frequency=frequency, phase=phase)
             d.add(cw.Torque(f"t{i}", shaft=s[i], base=s[2] if i == 0 else None, torque=sine))

@@ -1,4 +1,4 @@
-"""Plates whose load rises with the pressure and falls with the wear: the same motion as with that load as one signal."""
+"""Plates whose load rises with the pressure and falls with the wear move as with that load as one signal."""
 
 from __future__ import annotations
 
@@ -52,7 +52,10 @@ def tables(rng: np.random.Generator) -> Load:
         rows.append((times, rng.uniform(low, 1.0, len(times))))
     knots = np.unique(np.concatenate([times for times, _ in rows]))
     total = np.interp(knots, *rows[0]) - np.interp(knots, *rows[1])
-    up, down = (cw.Table([(float(t), float(y) / s) for t, y in zip(*row, strict=True)]) for row, s in zip(rows, (1, SHIFT), strict=True))
+    up, down = (
+        cw.Table([(float(t), float(y) / s) for t, y in zip(*row, strict=True)])
+        for row, s in zip(rows, (1, SHIFT), strict=True)
+    )
     one = cw.Table([(float(t), float(y)) for t, y in zip(knots, total, strict=True)])
     return {"normal_force": up, "wear": down, "touch_shift": SHIFT}, one, []
 

@@ -1,8 +1,8 @@
 """Random drivelines with 2 to 6 contacts, parallel ones, loops and freewheels among them, from a seed.
 
 Two to five shafts of 0.02 to 2 kg m2; contacts lie between neighbours, beside one another, and to the housing. Springs
-couple shafts that no contact couples, engines give 50 to 400 N m with a ripple, loads oppose the motion. Pressures fill,
-hold and empty along tables, or swing as sines that reach below zero.
+couple shafts that no contact couples, an engine gives 50 to 400 N m with a ripple, a load opposes the motion. Pressures
+fill, hold and empty along tables, or swing as sines that reach below zero.
 """
 
 from __future__ import annotations
@@ -41,7 +41,9 @@ def driveline(seed: int, *, simple: bool = False) -> cw.Driveline:
             omega = 2 * math.pi * log_uniform(rng, 5, 60)
             damping = 2 * log_uniform(rng, 0.005, 0.1) * reduced * omega
             stiffness = reduced * omega**2
-            d.add(cw.SpringDamper(f"k{i}", base=members[i], follower=members[i + 1], stiffness=stiffness, damping=damping))
+            d.add(
+                cw.SpringDamper(f"k{i}", base=members[i], follower=members[i + 1], stiffness=stiffness, damping=damping)
+            )
     ripple = {"amplitude": engine * float(rng.uniform(0, 0.5)), "frequency": log_uniform(rng, 0.3, 8)}
     d.add(cw.Torque("engine", shaft=members[0], torque=cw.Sine(offset=engine * float(rng.uniform(0.5, 1)), **ripple)))
     load = {"torque": engine * float(rng.uniform(0.1, 0.9)), "speed": log_uniform(rng, 0.5, 5)}
@@ -79,7 +81,9 @@ def _law(rng: np.random.Generator) -> Any:
         return cw.Coulomb(static=static, kinetic=kinetic)
     if rng.random() < 0.5:
         return cw.Stribeck(static=static, kinetic=kinetic, speed=log_uniform(rng, 1, 30))
-    return cw.Exponential(static=static, slow=kinetic, fast=kinetic * float(rng.uniform(0.5, 1)), speed=log_uniform(rng, 5, 100))
+    return cw.Exponential(
+        static=static, slow=kinetic, fast=kinetic * float(rng.uniform(0.5, 1)), speed=log_uniform(rng, 5, 100)
+    )
 
 
 def _pressure(rng: np.random.Generator, *, simple: bool) -> Any:
@@ -105,6 +109,10 @@ def _contact(rng: np.random.Generator, kind: str, name: str, ends: list[Any], en
         return cw.TorqueLimiter(name, base=base, follower=follower, friction=one, torque=torque, locked=False)
     pressure = _pressure(rng, simple=simple)
     if kind == "band":
-        share = cw.Table([(t, 0.5 * torque * x) for t, x in pressure.points]) if isinstance(pressure, cw.Table) else torque
+        share = (
+            cw.Table([(t, 0.5 * torque * x) for t, x in pressure.points]) if isinstance(pressure, cw.Table) else torque
+        )
         return cw.BandBrake(name, shaft=follower, base=base, friction=law, radius=1.0, wrap=3.0, force=share)
-    return cw.Clutch(name, base=base, follower=follower, friction=law, gain=torque / law.sliding(), normal_force=pressure)
+    return cw.Clutch(
+        name, base=base, follower=follower, friction=law, gain=torque / law.sliding(), normal_force=pressure
+    )
