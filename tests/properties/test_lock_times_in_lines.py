@@ -63,7 +63,7 @@ class Line:
         """Time and clutch of the first zero of a slip, and how near to zero a slip turned before."""
         speeds = self.speed
         sides = (float(np.sign(speeds[1] - speeds[0])), float(np.sign(speeds[2] - speeds[1])))
-        near = 6 * self.law.speed
+        near = 8 * self.law.speed
         rate = self.torque * self.law.static * sum(1 / j for j in self.inertia[:2])
         if not self.stiffness:
             rate += self.second * sum(1 / j for j in self.inertia[1:])
@@ -83,7 +83,8 @@ class Line:
         t, y, turns = 0.0, np.array([*speeds, 0.0]), np.inf
         inside = slip(t, y) < near
         while t < t_end:
-            step = 0.1 * self.law.speed / rate if inside else np.inf
+            # no stage of a step that starts outside gets to where the coefficient rises
+            step = (0.1 if inside else 2.0) * self.law.speed / rate
             part = solve_ivp(
                 self.rates(sides), (t, t_end), y, "DOP853", rtol=1e-11, atol=1e-11, max_step=step,
                 events=(slip, other, edge), first_step=min(step, 1e-5),
