@@ -26,10 +26,10 @@ def sweep(check: Callable[[int], str], seeds: int | Iterable[int]) -> None:
 
 
 def _checked(check: Callable[[int], str], seed: int) -> str:
-    # an error of the package in one case is a finding of that case, and hides no other
+    # an error or a warning in one case is a finding of that case, and hides no other
     try:
         return check(seed)
-    except (cw.ClutchworkError, ValueError, RuntimeError, IndexError) as error:
+    except (cw.ClutchworkError, ValueError, RuntimeError, IndexError, Warning) as error:
         return f"{type(error).__name__}: {error}"
 
 
