@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import isotonic_regression, nnls
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 import clutchwork as cw
 from support.amount import amount
@@ -20,22 +22,27 @@ def nearest(
 ) -> np.ndarray:
     """Speeds of least distance in kinetic energy; followers of `pushed` not slower than their base, `joined` equal.
 
-    The dual problem over the impulses, by nonnegative least squares; index -1 is a member at rest.
+    Members that must not be slower than each other turn as one. Between those the dual problem over the impulses has no
+    free direction, and nonnegative least squares solves it; index -1 is a member at rest.
     """
-    root = np.sqrt(inertia)
-
-    def row(base: int, follower: int) -> np.ndarray:
-        made = np.zeros(len(inertia))
-        if base >= 0:
-            made[base] -= 1 / root[base]
-        if follower >= 0:
-            made[follower] += 1 / root[follower]
-        return made
-
-    rows = [row(*pair) for pair in pushed] + [sign * row(*pair) for pair in joined for sign in (1, -1)]
-    matrix = np.array(rows).T
-    impulses, _ = nnls(matrix, -root * speed, maxiter=1000)
-    return np.asarray(speed + (matrix @ impulses) / root)
+    rest = len(inertia)
+    ahead = [*pushed, *joined, *((b, a) for a, b in joined)]
+    edges = np.array([[rest if end < 0 else end for end in pair] for pair in ahead], dtype=int).reshape(-1, 2)
+    graph = coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(rest + 1, rest + 1))
+    count, group = connected_components(graph, directed=True, connection="strong")
+    mass = np.bincount(group[:rest], inertia, count)
+    mean = np.bincount(group[:rest], inertia * speed, count) / np.where(mass > 0, mass, 1.0)
+    mean[group[rest]] = 0.0
+    root = np.where(mass > 0, np.sqrt(np.where(mass > 0, mass, 1.0)), np.inf)
+    root[group[rest]] = np.inf
+    between = {(int(a), int(b)) for a, b in group[edges] if a != b}
+    matrix = np.zeros((count, len(between)))
+    for column, (base, follower) in enumerate(sorted(between)):
+        matrix[base, column] -= 1 / root[base]
+        matrix[follower, column] += 1 / root[follower]
+    finite = np.where(np.isfinite(root), root, 0.0)
+    impulses = nnls(matrix, -finite * mean, maxiter=1000)[0] if between else np.zeros(0)
+    return np.asarray((mean + (matrix @ impulses) / root)[group[:rest]])
 
 
 def wrong(found: np.ndarray, exact: np.ndarray, scale: float) -> str:

@@ -106,6 +106,26 @@ int most_violated(const BoundedProblem<T>& p) {
   return worst;
 }
 
+/// Take the weight out again: Newton steps of the m free contacts with the exact matrix. One that meets a bound stays
+/// there, and the others are refined without it.
+template <class T>
+void refine(BoundedProblem<T>& p, int m) {
+  int steps = 0;
+  for (int round = 0; round < p.n + 3 && steps < 3; ++round) {
+    newton_step(p, m, false);
+    bool met = false;
+    for (int i = 0; i < p.n; ++i) {
+      if (p.bound[i] != 0) continue;
+      p.x[i] += p.slope[i];
+      if (p.x[i] > p.upper[i]) p.x[i] = p.upper[i], p.bound[i] = 1, met = true;
+      if (p.x[i] < p.lower[i]) p.x[i] = p.lower[i], p.bound[i] = -1, met = true;
+    }
+    steps = met ? 0 : steps + 1;
+    if (met) m = factor_free(p);
+    if (m < 0) return;
+  }
+}
+
 /// Primal active set on the regularised problem, then refinement on the free contacts; false: iteration cap reached.
 template <class T>
 bool solve(BoundedProblem<T>& p) {
@@ -136,13 +156,7 @@ bool solve(BoundedProblem<T>& p) {
       p.bound[release] = 0;
     }
   }
-  // take the weight out again: two refinements with the exact matrix, inside the bounds
-  for (int k = 0; k < 2; ++k) {
-    newton_step(p, m, false);
-    for (int i = 0; i < p.n; ++i) {
-      if (p.bound[i] == 0) p.x[i] = smaller(larger(p.x[i] + p.slope[i], p.lower[i]), p.upper[i]);
-    }
-  }
+  refine(p, m);
   for (int i = 0; i < p.n; ++i) p.trial[i] = slope_of(p, i);
   for (int i = 0; i < p.n; ++i) p.slope[i] = p.trial[i];
   return solved;

@@ -381,6 +381,8 @@ class Phase {
   using T = typename Form::Scalar;
   // a step may be repeated so often to end on an event
   static constexpr int most_landings = 4;
+  // of the tolerance: cuts come on top of steps, and there may be one every few steps
+  static constexpr double most_cut_error = 0.1;
 
   Workspace<T>& ws_;
   Form form_;
@@ -494,7 +496,7 @@ class Phase {
   /// Whether the step must be repeated to end at the share s, because its own estimate does not speak for that point.
   CLUTCHWORK_INLINE bool must_land(double s) {
     if (landings_ >= most_landings || s <= 0 || s >= 1) return false;
-    return !(error_until(form_, step_, s) <= 1);
+    return !(error_until(form_, step_, s) <= most_cut_error);
   }
 
   /// Repeat the step so that it ends there.
