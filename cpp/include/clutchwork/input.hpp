@@ -108,6 +108,16 @@ void signal_range(const Workspace<T>& ws, int i, double t, double& low, double& 
   }
 }
 
+/// Whether values of signals may come from outside at time t: what the signals do there waits for them.
+template <class T>
+bool awaits_values(const Workspace<T>& ws, double t) {
+  if (ws.next_knot < t) return false;
+  for (int i = 0; i < ws.sys.inputs; ++i) {
+    if (ws.sys.input_count[i] == 0) return true;
+  }
+  return false;
+}
+
 /// Values of all references at time t; only the varying ones are computed again.
 template <class T>
 CLUTCHWORK_INLINE void inputs_at(Workspace<T>& ws, double t) {

@@ -365,13 +365,16 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
   for (int i = 0; i < n; ++i) step.y0()[i] = ws.y[i];
   if constexpr (!Form::small) balance_massless(form, step);
   ws.fresh_phase = false;
-  emit_start(form, step, sink, fresh);
+  // at a knot the row is the right limit, which comes after it
+  if (ws.time < ws.next_knot) emit_start(form, step, sink, fresh);
   look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
-  double h = ws.last_step > 0 ? (fresh ? 0.25 * ws.last_step : ws.last_step) : first_step(form, step, t_end - ws.time);
+  // kept, so that a run takes the same steps whether or not it is asked for a row here
+  if (fresh) ws.last_step *= 0.25;
+  double h = ws.last_step > 0 ? ws.last_step : first_step(form, step, t_end - ws.time);
   bool rejected = false;
 
   while (true) {
-    if (ws.time >= ws.next_knot) {
+    if (ws.time >= ws.next_knot && !(ws.time >= t_end && awaits_values(ws, ws.time))) {
       rest_step(form, step);
       export_state(form, step.y0());
       note_before(form, step, 0.0);
