@@ -315,11 +315,7 @@ double signal_step(const Workspace<T>& ws) {
   double fastest = 0;
   for (int k = 0; k < ws.n_varying; ++k) {
     const Signal& signal = ws.signal[ws.ref_signal[ws.varying[k]]];
-    const double* c = signal.coef;
-    if (signal.linear || c[4] == 0) continue;
-    // a decay of 25 time constants has died
-    if (c[7] * (ws.time - signal.start) > 25) continue;
-    fastest = larger(fastest, larger(abs(c[5]), abs(c[7])));
+    if (!signal.linear) fastest = larger(fastest, segment_rate(signal.coef, ws.time - signal.start));
   }
   return fastest > 0 ? (ws.options.work ? 0.5 : 1.5) / fastest : infinity;
 }
