@@ -165,12 +165,23 @@ def test_a_speed_that_a_controller_sets_jumps_as_that_of_a_table() -> None:
     assert [float(r["p.work"][-1]) for r in runs] == pytest.approx([float(runs[0]["p.work"][-1])] * 2, rel=1e-9)
 
 
-def test_a_repeated_run_takes_the_same_path() -> None:
-    model = random_drivelines.describe(3)
-    run_of = run(stepped(model, as_sampled, 3))
-    again = run_of.at(run_of.time)
-    assert np.array_equal(again["c0.torque"].shape, run_of["c0.torque"].shape)
-    assert [e.time for e in again.events] == [e.time for e in run_of.events]
+@pytest.mark.parametrize("seed", range(8))
+def test_a_run_takes_the_same_steps_whether_or_not_rows_are_asked_for_between(seed: int) -> None:
+    """A run of bare steps reads a row after every call, one on a grid does not."""
+    steps = run(stepped(random_drivelines.describe(seed), as_sampled, seed), output="steps")
+    again = steps.at(steps.time)
+    assert again.statistics["steps"] == steps.statistics["steps"]
+    assert np.max(np.abs(again["s0.speed"] - steps["s0.speed"])) <= 1e-12 * np.max(np.abs(steps["s0.speed"]))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_rows_on_a_grid_are_those_of_a_table(seed: int) -> None:
+    """Also at the instants of the steps, once or with both limits."""
+    model, times = random_drivelines.describe(seed), np.repeat(np.arange(1, 90) / 128, np.arange(1, 90) % 3 % 2 + 1)
+    table, sampled = (run(stepped(model, make, seed), times=times) for make in (as_table, as_sampled))
+    for name in ("s0.speed", "c0.torque", "c0.pressure", "c1.torque", "t.torque"):
+        scale = np.max(np.abs(table[name]))
+        assert np.max(np.abs(sampled[name] - table[name])) <= 1e-9 * scale, name
 
 
 def test_a_controller_that_fails_hands_over_its_error_and_the_trajectory_so_far() -> None:
