@@ -223,9 +223,13 @@ int cw_set_option(cw_run* run, const char* name, double value) {
 int cw_set_input(cw_run* run, std::int64_t input, double value) {
   Workspace<double>& ws = run->ws;
   if (input < 0 || input >= ws.sys.inputs || ws.sys.input_count[input] != 0) return 0;
-  if (ws.signal[input].held == value) return 1;
+  // what the other signals do at this instant has waited for it
+  if (ws.signal[input].held == value && ws.next_knot > ws.time) return 1;
   ws.signal[input].held = value;
-  ws.input_changed = true;
+  // a step is a knot
+  ws.next_knot = -infinity;
+  // before the first step the value belongs to the start, which is decided anew
+  if (ws.statistics.steps + ws.statistics.rejected == 0) ws.started = false;
   return 1;
 }
 

@@ -78,9 +78,9 @@ FIELDS = (
     (
         "segment_coef",
         "f8",
-        ("segments", 8),
-        "c0..c3, amplitude, omega, phase, decay: with s = t - start,"
-        " c0 + c1 s + c2 s^2 + c3 s^3 + amplitude exp(-decay s) sin(omega s + phase)",
+        ("segments", 12),
+        "c0..c3, then amplitude, omega, phase, decay of two waves: with s = t - start,"
+        " c0 + c1 s + c2 s^2 + c3 s^3, and amplitude exp(-decay s) sin(omega s + phase) of each wave",
     ),
     ("params", "f8", ("params",), "parameters of all components; a curve is (first point, number of points)"),
     ("points", "f8", ("points", 3), "x, y, slope to the next point"),

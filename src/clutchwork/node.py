@@ -103,7 +103,8 @@ class Law:
 class Segment(NamedTuple):
     """One piece of a signal.
 
-    With s = t - start its value is c0 + c1 s + c2 s^2 + c3 s^3 + amplitude exp(-decay s) sin(omega s + phase).
+    With s = t - start its value is c0 + c1 s + c2 s^2 + c3 s^3 + amplitude exp(-decay s) sin(omega s + phase), and a
+    second wave of the same form.
     """
 
     start: float
@@ -115,6 +116,15 @@ class Segment(NamedTuple):
     omega: float = 0.0
     phase: float = 0.0
     decay: float = 0.0
+    amplitude_2: float = 0.0
+    omega_2: float = 0.0
+    phase_2: float = 0.0
+    decay_2: float = 0.0
+
+    @property
+    def waves(self) -> tuple[tuple[float, float, float, float], ...]:
+        """Amplitude, omega, phase and decay of each wave that is there."""
+        return tuple(wave for wave in (self[5:9], self[9:13]) if wave[0] != 0.0)
 
 
 @dataclass(frozen=True)

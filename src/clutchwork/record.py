@@ -125,12 +125,10 @@ def _stretch(recording: Recording, stop: float, times: Array) -> None:
 
 
 def _part(grid: Array, begin: float, stop: float, last: bool) -> Array:
-    """Instants of one stretch: its own end belongs to it only at the end of the run, or as left limit."""
-    first = int(np.searchsorted(grid, begin, "left"))
-    if begin > 0.0 and int(np.searchsorted(grid, begin, "right")) - first > 1:
+    """Instants of one stretch: of its end once, the left limit as at any event; what is left is of the next one."""
+    first, end = int(np.searchsorted(grid, begin, "left")), int(np.searchsorted(grid, stop, "left"))
+    if begin > 0.0 and first < len(grid) and grid[first] == begin:
         first += 1
     if last:
         return grid[first:]
-    end = int(np.searchsorted(grid, stop, "left"))
-    doubled = int(np.searchsorted(grid, stop, "right")) - end > 1
-    return grid[first : end + doubled]
+    return grid[first : end + int(end < len(grid) and grid[end] == stop)]

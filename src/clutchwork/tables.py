@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+from math import inf
 from typing import TYPE_CHECKING
 
 from clutchwork.node import Law
@@ -10,10 +12,23 @@ from clutchwork.schema import choice, family
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from clutchwork.node import Points
+
 # points that each interpolation needs along every axis
 FEWEST = {"linear": 2, "smooth": 3}
 
 Found = list[tuple[str, str, str]]
+
+
+def beyond_the_ends() -> str:
+    """The choice that every table of coefficients has of what it does beyond its ends."""
+    chosen: str = choice(
+        "beyond the ends: continued by the slope there until it falls to zero, kept at the nearest value, or the run"
+        " ends with an error",
+        choices=("linear", "nearest", "error"),
+        default="nearest",
+    )
+    return chosen
 
 
 @family
@@ -29,11 +44,7 @@ class Tabulated(Law):
         choices=("linear", "smooth"),
         default="linear",
     )
-    extrapolation: str = choice(
-        "beyond the ends: continued by the slope there, kept at the nearest value, or the run ends with an error",
-        choices=("linear", "nearest", "error"),
-        default="linear",
-    )
+    extrapolation: str = beyond_the_ends()
 
 
 # no lining works below this temperature [K]: the numbers are in degrees Celsius
@@ -85,3 +96,41 @@ def slip_axis(field: str, first: float, unit: str) -> Found:
         return []
     fault = f"starts at {first:g} {unit}, must start at 0"
     return [(field, fault, "give the coefficient at vanishing slip; negative slip mirrors positive")]
+
+
+# beyond this slip [rad/s] and this temperature [K] nobody continues a table
+FASTEST, HOTTEST = 1e4, 2000.0
+KEEP = 'give points up to there, or extrapolation "nearest" or "error"'
+
+
+def continued(field: str, tables: Sequence[Points], unit: str, extrapolation: str, interpolation: str) -> Found:
+    """The first places where tables that are continued linearly fall to zero, over the slip or the temperature."""
+    if extrapolation != "linear" or few_points(field, min(map(len, tables)), interpolation):
+        return []
+    smooth = interpolation == "smooth"
+    upper = min(vanishing(points, smooth) for points in tables)
+    ends = [upper] if upper <= (HOTTEST if unit == "K" else FASTEST) else []
+    if unit == "K":
+        # the same from the other end
+        lower = max(-vanishing([(-x, y) for x, y in reversed(points)], smooth) for points in tables)
+        ends += [lower] if lower >= 0.0 else []
+    fault = "continued linearly falls to zero at {:g} {}, where the contact transmits nothing"
+    return [(field, fault.format(end, unit), KEEP) for end in ends]
+
+
+def vanishing(points: Points, smooth: bool) -> float:
+    """Where a table that is continued by its last slope falls to zero; infinite where it never does."""
+    (x, y), secants = points[-1], [(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(points)]
+    slope = secants[-1]
+    if smooth:
+        width, before = points[-1][0] - points[-2][0], points[-2][0] - points[-3][0]
+        slope = end_slope(secants[-1], secants[-2], width, before)
+    return x - y / slope if slope < 0.0 else inf
+
+
+def end_slope(near: float, following: float, width: float, next_width: float) -> float:
+    """Slope of a smooth table at an end, docs/theory/clutches.md."""
+    slope = ((2.0 * width + next_width) * near - width * following) / (width + next_width)
+    if slope * near <= 0.0:
+        return 0.0
+    return 3.0 * near if near * following <= 0.0 and abs(slope) > abs(3.0 * near) else slope

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import cmath
 from dataclasses import dataclass
+from itertools import chain
 from math import comb, exp, pi, sin
 
 from clutchwork.node import Segment, Signal
+
+# amplitude, omega, phase, decay
+Wave = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -37,20 +42,18 @@ def piece_value(piece: Segment, time: float) -> float:
     """Value of one piece at a time [s]."""
     s = time - piece.start
     smooth = piece.c0 + s * (piece.c1 + s * (piece.c2 + s * piece.c3))
-    return smooth + (
-        piece.amplitude * exp(-piece.decay * s) * sin(piece.omega * s + piece.phase) if piece.amplitude else 0
-    )
+    return smooth + sum(size * exp(-decay * s) * sin(omega * s + phase) for size, omega, phase, decay in piece.waves)
 
 
 def low_pass(signal: Signal, cutoff: float) -> Filtered:
     """Exact response of dy/dt = 2 pi cutoff (signal - y), y(0) = signal(0).
 
-    ValueError for signals whose response is no sum of a polynomial and one exponential: sines, pulses, functions.
+    ValueError for signals whose response is no cubic with two waves: pulses, and values from outside.
     """
-    pieces = signal.segments()
-    if not pieces or signal.repeats() > 0.0 or any(piece.amplitude for piece in pieces):
-        raise ValueError("only constants, steps, ramps, tables and columns can pass the filter exactly")
-    rate, made = 2 * pi * cutoff, list[Segment]()
+    pieces, rate = signal.segments(), 2 * pi * cutoff
+    if not pieces or signal.repeats() > 0.0 or not all(_passes(piece, rate) for piece in pieces):
+        raise ValueError("only constants, steps, ramps, tables, columns and sines can pass the filter exactly")
+    made = list[Segment]()
     state = value(signal, 0.0)
     for piece, end in zip(pieces, [*(piece.start for piece in pieces[1:]), None], strict=True):
         if end is not None and end <= 0.0:
@@ -61,22 +64,40 @@ def low_pass(signal: Signal, cutoff: float) -> Filtered:
     return Filtered(tuple(made))
 
 
+def _passes(piece: Segment, rate: float) -> bool:
+    """One wave, which does not decay at the rate of the filter itself: that would be resonance."""
+    return len(piece.waves) < 2 and all(complex(rate - decay, omega) != 0 for _, omega, _, decay in piece.waves)
+
+
 def _moved(piece: Segment, start: float) -> Segment:
-    """The same polynomial written about another start; one that begins later is held constant before."""
+    """The same function written about another start; one that begins later is held constant before."""
     if piece.start > start:
-        return Segment(start, piece.c0)
+        return Segment(start, piece_value(piece, piece.start))
     s, c = start - piece.start, piece[1:5]
     moved = [sum(c[j] * comb(j, i) * s ** (j - i) for j in range(i, 4)) for i in range(4)]
-    return Segment(start, *moved)
+    waves = [(size * exp(-decay * s), omega, phase + omega * s, decay) for size, omega, phase, decay in piece.waves]
+    return Segment(start, *moved, *chain(*waves))
 
 
 def _filtered(piece: Segment, rate: float, state: float) -> Segment:
-    """Particular solution u - u'/rate + u''/rate^2 - u'''/rate^3 plus what is left of the state, decaying."""
+    """Particular solution of cubic and wave, and what is left of the state, decaying.
+
+    Of a cubic u that is u less its first derivative over rate, plus its second over rate^2, less its third over
+    rate^3.
+    """
     steady = list(piece[1:5])
     derivative = steady
     for order in (1, 2, 3):
         derivative = [(k + 1) * c for k, c in enumerate(derivative[1:])]
         for k, c in enumerate(derivative):
             steady[k] += (-1) ** order * c / rate**order
-    c0, c1, c2, c3 = steady
-    return Segment(piece.start, c0, c1, c2, c3, amplitude=state - c0, phase=pi / 2, decay=rate)
+    waves = [_answer(wave, rate) for wave in piece.waves]
+    left = state - steady[0] - sum(size * sin(phase) for size, _, phase, _ in waves)
+    return Segment(piece.start, *steady, *chain(*waves, (left, 0.0, pi / 2, rate)))
+
+
+def _answer(wave: Wave, rate: float) -> Wave:
+    """A wave behind the filter: exp((i omega - decay) s) becomes rate/(rate + i omega - decay) times that."""
+    size, omega, phase, decay = wave
+    gain = rate / complex(rate - decay, omega)
+    return size * abs(gain), omega, phase + cmath.phase(gain), decay

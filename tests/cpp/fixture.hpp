@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/c_api.h>
+#include <clutchwork/input.hpp>
 
 #include <clutchwork/registry.gen.hpp>
 #include <initializer_list>
@@ -60,9 +61,9 @@ inline Numbers joined(std::initializer_list<Numbers> parts) {
   return all;
 }
 
-/// From `time` on: c0 + c1 s + c2 s^2 + c3 s^3 + amplitude exp(-decay s) sin(omega s + phase).
+/// From `time` on: c0 + c1 s + c2 s^2 + c3 s^3, and amplitude exp(-decay s) sin(omega s + phase) of two waves.
 struct Segment {
-  double time, coef[8];
+  double time, coef[segment_size];
 };
 
 /// A reference to what is no signal: a shared state, the rate or the heat of an element or a contact.
@@ -87,7 +88,7 @@ class Model {
     input_period_.push_back(period), input_value_.push_back(value);
     for (const Segment& s : segments) {
       segment_time_.push_back(s.time);
-      segment_coef_.insert(segment_coef_.end(), s.coef, s.coef + 8);
+      segment_coef_.insert(segment_coef_.end(), s.coef, s.coef + segment_size);
     }
     return int(input_first_.size()) - 1;
   }

@@ -424,9 +424,11 @@ def test_a_smooth_map_has_continuous_slopes_both_ways_and_stays_between_its_corn
 
 
 @feature("tables: extrapolation linear")
+@pytest.mark.filterwarnings("ignore:.*falls to zero:clutchwork.ModelWarning")
 @pytest.mark.parametrize("interpolation", ["linear", "smooth"])
 def test_extrapolation_linear(interpolation: str) -> None:
-    law = cw.FrictionTable(static=0.35, kinetic=[(0.0, 0.3), (50.0, 0.25), (100.0, 0.2)], interpolation=interpolation)
+    points = [(0.0, 0.3), (50.0, 0.25), (100.0, 0.2)]
+    law = cw.FrictionTable(static=0.35, kinetic=points, interpolation=interpolation, extrapolation="linear")
     assert coefficient(law, 130.0) == pytest.approx(0.17, rel=1e-12)
     # never below zero
     assert coefficient(law, 400.0) == 0.0

@@ -32,6 +32,10 @@ template <class T>
 bool start(Workspace<T>& ws) {
   const System& sys = ws.sys;
   if (!prepare_geometry(ws)) return false;
+  ws.statistics = {};
+  ws.n_events = 0;
+  ws.failed = -1;
+  ws.input_changed = false;
   for (int i = 0; i < sys.speeds; ++i) ws.v[i] = T(sys.initial_speed[i]);
   for (int i = 0; i < sys.states; ++i) ws.state[i] = T(sys.initial_state[i]);
   for (int i = 0; i < sys.nodes; ++i) ws.angle[i] = T(sys.initial_angle[i]);
@@ -60,19 +64,18 @@ bool start(Workspace<T>& ws) {
   return true;
 }
 
-/// Signals or parameters were set from outside: decide the modes anew, like at a knot.
+/// Parameters were set from outside: decide the modes anew.
 template <class T>
 Status take_outside(Workspace<T>& ws) {
   ws.input_changed = false;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int k = ws.branch_of[ws.sys.elements + c];
     ws.mode_before[c] = ws.mode[c];
-    ws.torque_before[c] = ws.mode[c] == locked ? ws.torque[ws.sys.elements + c] : T(0);
+    ws.torque_before[c] = ws.slip_slope[c] = T(0);
     if (k >= 0 && k < ws.n_branches)
-      ws.torque_before[c] +=
-          contact_torque(ws, ws.branch[k], rate_of(ws, ws.branch[k].direction), ws.state, ws.scratch);
-    ws.slip_slope[c] = T(0);
+      ws.torque_before[c] = contact_torque(ws, ws.branch[k], rate_of(ws, ws.branch[k].direction), ws.state, ws.scratch);
   }
+  locked_torques(ws, ws.here.multiplier, [&](int c, T x) { ws.torque_before[c] += x; });
   for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];
   load_inputs(ws, ws.time);
   input_slopes_at(ws, ws.time);

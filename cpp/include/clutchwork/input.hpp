@@ -4,10 +4,35 @@
 /// Signals over time: segments between knots, read through references so that a component finds its inputs in a row.
 namespace clutchwork {
 
+/// Numbers of a segment: a cubic and two waves, amplitude exp(-decay s) sin(omega s + phase). The second one is there
+/// only beside a first one: what has passed a filter is a wave and what is left of the start.
+inline constexpr int segment_size = 12;
+
+/// A wave of a segment, its numbers at w.
+CLUTCHWORK_INLINE double wave_value(const double* w, double s) {
+  return w[0] * (w[3] != 0 ? exp(-w[3] * s) : 1.0) * (w[1] != 0 ? sin(w[1] * s + w[2]) : sin(w[2]));
+}
+CLUTCHWORK_INLINE double wave_slope(const double* w, double s) {
+  const double phase = w[1] * s + w[2];
+  return w[0] * exp(-w[3] * s) * (w[1] * cos(phase) - w[3] * sin(phase));
+}
+inline double wave_integral(const double* w, double s) {
+  const double norm = w[1] * w[1] + w[3] * w[3];
+  if (norm == 0) return w[0] * sin(w[2]) * s;
+  auto part = [&](double at) {
+    return -exp(-w[3] * at) * (w[3] * sin(w[1] * at + w[2]) + w[1] * cos(w[1] * at + w[2]));
+  };
+  return w[0] * (part(s) - part(0)) / norm;
+}
+inline bool wave_varies(const double* w) { return w[0] != 0 && (w[1] != 0 || w[3] != 0); }
+
 /// Value of a segment s seconds after its start.
 CLUTCHWORK_INLINE double segment_value(const double* c, double s) {
   double x = c[0] + s * (c[1] + s * (c[2] + s * c[3]));
-  if (c[4] != 0) x += c[4] * (c[7] != 0 ? exp(-c[7] * s) : 1.0) * (c[5] != 0 ? sin(c[5] * s + c[6]) : sin(c[6]));
+  if (c[4] != 0) {
+    x += wave_value(c + 4, s);
+    if (c[8] != 0) x += wave_value(c + 8, s);
+  }
   return x;
 }
 
@@ -15,8 +40,8 @@ CLUTCHWORK_INLINE double segment_value(const double* c, double s) {
 CLUTCHWORK_INLINE double segment_slope(const double* c, double s) {
   double x = c[1] + s * (2 * c[2] + s * 3 * c[3]);
   if (c[4] != 0) {
-    const double phase = c[5] * s + c[6];
-    x += c[4] * exp(-c[7] * s) * (c[5] * cos(phase) - c[7] * sin(phase));
+    x += wave_slope(c + 4, s);
+    if (c[8] != 0) x += wave_slope(c + 8, s);
   }
   return x;
 }
@@ -24,11 +49,17 @@ CLUTCHWORK_INLINE double segment_slope(const double* c, double s) {
 /// Integral of a segment from its start to s seconds later.
 inline double segment_integral(const double* c, double s) {
   double x = s * (c[0] + s * (c[1] / 2 + s * (c[2] / 3 + s * c[3] / 4)));
-  if (c[4] == 0) return x;
-  const double w = c[5], d = c[7], norm = w * w + d * d;
-  if (norm == 0) return x + c[4] * sin(c[6]) * s;
-  auto part = [&](double at) { return -exp(-d * at) * (d * sin(w * at + c[6]) + w * cos(w * at + c[6])); };
-  return x + c[4] * (part(s) - part(0)) / norm;
+  if (c[4] != 0) {
+    x += wave_integral(c + 4, s);
+    if (c[8] != 0) x += wave_integral(c + 8, s);
+  }
+  return x;
+}
+
+/// Fastest rate [1/s] of the waves of a segment s seconds after its start; a decay of 25 time constants has died.
+inline double segment_rate(const double* c, double s) {
+  auto rate = [&](const double* w) { return w[0] == 0 || w[3] * s > 25 ? 0.0 : larger(abs(w[1]), abs(w[3])); };
+  return c[4] == 0 ? 0.0 : larger(rate(c + 4), rate(c + 8));
 }
 
 /// Start of segment k of signal i, the repeated ones included (k counts on through the cycles).
@@ -57,18 +88,19 @@ void seek(Workspace<T>& ws, int i, double t) {
   const bool started = segment_start(sys, i, signal.segment) <= t;
   const int k = int(signal.segment % sys.input_count[i]);
   signal.start = segment_start(sys, i, signal.segment);
-  signal.coef = sys.segment_coef + 8 * (sys.input_first[i] + k);
+  signal.coef = sys.segment_coef + segment_size * (sys.input_first[i] + k);
   signal.knot = segment_exists(sys, i, signal.segment + 1) ? segment_start(sys, i, signal.segment + 1) : infinity;
   signal.idle = false;
   // before its start a periodic signal rests at the value of its last segment
   if (!started && sys.input_period[i] > 0) {
-    signal.coef = sys.segment_coef + 8 * (sys.input_first[i] + sys.input_count[i] - 1);
+    signal.coef = sys.segment_coef + segment_size * (sys.input_first[i] + sys.input_count[i] - 1);
     signal.knot = signal.start;
     signal.idle = true;
   }
   const double* c = signal.coef;
-  signal.varying = !signal.idle && (c[1] != 0 || c[2] != 0 || c[3] != 0 || (c[4] != 0 && (c[5] != 0 || c[7] != 0)));
-  signal.linear = c[2] == 0 && c[3] == 0 && (c[4] == 0 || (c[5] == 0 && c[7] == 0));
+  const bool waves = wave_varies(c + 4) || wave_varies(c + 8);
+  signal.varying = !signal.idle && (c[1] != 0 || c[2] != 0 || c[3] != 0 || waves);
+  signal.linear = c[2] == 0 && c[3] == 0 && !waves;
 }
 
 /// Value of signal i at time t on its present segment.
@@ -101,11 +133,21 @@ void signal_range(const Workspace<T>& ws, int i, double t, double& low, double& 
   if (signal.linear) {
     const double end = signal.knot < infinity ? signal_value(ws, i, signal.knot) : c[1] > 0 ? infinity : -infinity;
     low = smaller(low, end), high = larger(high, end);
-  } else if (c[1] == 0 && c[2] == 0 && c[3] == 0 && c[7] >= 0) {
-    low = c[0] - abs(c[4]), high = c[0] + abs(c[4]);
+  } else if (c[1] == 0 && c[2] == 0 && c[3] == 0 && c[7] >= 0 && c[11] >= 0) {
+    low = c[0] - abs(c[4]) - abs(c[8]), high = c[0] + abs(c[4]) + abs(c[8]);
   } else {
     low = -infinity, high = infinity;
   }
+}
+
+/// Whether values of signals may come from outside at time t: what the signals do there waits for them.
+template <class T>
+bool awaits_values(const Workspace<T>& ws, double t) {
+  if (ws.next_knot < t) return false;
+  for (int i = 0; i < ws.sys.inputs; ++i) {
+    if (ws.sys.input_count[i] == 0) return true;
+  }
+  return false;
 }
 
 /// Values of all references at time t; only the varying ones are computed again.

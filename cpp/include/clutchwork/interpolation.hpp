@@ -126,31 +126,83 @@ CLUTCHWORK_INLINE double room_inside(const Axis& axis, double x) {
 /// The same for a slip, which passes zero: its table starts there.
 CLUTCHWORK_INLINE double room_for_slip(const Axis& axis, double slip) { return (1 + 1e-9) * axis.last() - abs(slip); }
 
+/// No kink there.
+inline constexpr double nowhere = 1e300;
+
+/// Slip at which a table that is continued linearly beyond its end falls to zero.
+template <class At_>
+CLUTCHWORK_INLINE double vanishing_slip(const Axis& axis, const Manner& manner, At_&& at) {
+  const int last = axis.count - 1;
+  if (last < 1) return nowhere;
+  const double secant = (at(last) - at(last - 1)) / axis.width(last - 1);
+  const double slope = manner.smooth() ? smooth_slope<double>(axis, at, last) : secant;
+  return slope < 0 ? axis.last() - at(last) / slope : nowhere;
+}
+
 /// Kinks of a table over the slip: its inner points, where a smooth one changes its curvature and no step may run over
-/// what lies between them, and its ends where it keeps their values.
+/// what lies between them, its ends where it keeps their values, and where its continuation falls to zero.
 struct Kinks {
   Axis axis;
   Manner manner;
+  bool falls = false;  ///< whether the table ends at zero, once there
+  double zero = nowhere;
 
   int inner() const { return axis.count < 3 ? 0 : axis.count - 2; }
-  int ends() const { return int(manner.kept()); }
-  int count() const { return inner() + 2 * ends(); }
+  int ends() const { return int(manner.kept() && axis.count > 1); }
+  int zeros() const { return int(falls && manner.extrapolation == Extrapolation::linear); }
+  int count() const { return inner() + 2 * ends() + zeros(); }
   double at(int i) const {
     // an end at zero is no kink, for slips are not below
-    if (manner.kept() && i == 0) return axis[0] > 0 ? axis[0] : -1e300;
+    if (ends() > 0 && i == 0) return axis[0] > 0 ? axis[0] : -nowhere;
     i -= ends();
-    return i < inner() ? axis[i + 1] : axis.last();
+    if (i < inner()) return axis[i + 1];
+    return ends() > 0 ? axis.last() : zero;
   }
 };
 
 /// Value over a slip on one of the pieces between the kinks.
 template <class S, class At_>
-CLUTCHWORK_INLINE S slip_value(const Axis& axis, const Manner& manner, At_&& at, S slip, int piece) {
-  const Kinks kinks{axis, manner};
-  if (manner.kept() && piece == 0) return at(0);
-  if (manner.kept() && piece == kinks.count()) return at(axis.count - 1);
-  return table_value<S>(axis, manner, at, slip, piece - kinks.ends());
+CLUTCHWORK_INLINE S slip_value(const Kinks& kinks, At_&& at, S slip, int piece) {
+  const Axis& axis = kinks.axis;
+  if (kinks.ends() > 0 && piece == 0) return at(0);
+  if (kinks.ends() > 0 && piece == kinks.count()) return at(axis.count - 1);
+  if (kinks.zeros() > 0 && piece == kinks.count()) return S(0);
+  return table_value<S>(axis, kinks.manner, at, slip, piece - kinks.ends());
 }
+
+/// Law with one table of the kinetic coefficient over the slip, `kinetic` of its parameters.
+template <class Law>
+struct SlipTable {
+  template <class P>
+  static Kinks kinks(const P& p, const double* points) {
+    const Axis axis = axis_of(p.kinetic, points);
+    return {axis, Law::manner(p), true, vanishing_slip(axis, Law::manner(p), [&](int i) { return axis.x[3 * i + 1]; })};
+  }
+  template <class P, class S>
+  static S slide(const P& p, const At<S>& at) {
+    const Axis axis = axis_of(p.kinetic, at.points);
+    return slip_value<S>({axis, Law::manner(p), true}, [&](int i) { return S(axis.x[3 * i + 1]); }, at.rate, at.piece);
+  }
+  template <class P, class T>
+  static T hold(const P& p, const At<T>&) {
+    return p.static_;
+  }
+  /// Below zero where the table is left, which `seen` did.
+  template <class P, class T>
+  static T outside(const P& p, const At<T>& at, T& seen) {
+    seen = at.rate;
+    if (Law::manner(p).extrapolation != Extrapolation::error) return T(1);
+    return T(room_for_slip(axis_of(p.kinetic, at.points), value(at.rate)));
+  }
+  template <class P>
+  static int edges(const P& p) {
+    return Kinks{Axis{nullptr, int(value(p.kinetic.count))}, Law::manner(p), true}.count();
+  }
+  template <class P>
+  static double edge(const P& p, const double* points, int i) {
+    return kinks(p, points).at(i);
+  }
+};
 
 /// A friction coefficient never drives.
 template <class S>

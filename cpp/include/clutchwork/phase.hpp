@@ -317,11 +317,7 @@ double signal_step(const Workspace<T>& ws) {
   double fastest = 0;
   for (int k = 0; k < ws.n_varying; ++k) {
     const Signal& signal = ws.signal[ws.ref_signal[ws.varying[k]]];
-    const double* c = signal.coef;
-    if (signal.linear || c[4] == 0) continue;
-    // a decay of 25 time constants has died
-    if (c[7] * (ws.time - signal.start) > 25) continue;
-    fastest = larger(fastest, larger(abs(c[5]), abs(c[7])));
+    if (!signal.linear) fastest = larger(fastest, segment_rate(signal.coef, ws.time - signal.start));
   }
   return fastest > 0 ? (ws.options.work ? 0.5 : 1.5) / fastest : infinity;
 }
@@ -430,9 +426,12 @@ class Phase {
     for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = ws_.y[i];
     if constexpr (!Form::small) balance_massless(form_, step_);
     ws_.fresh_phase = false;
-    emit_start(form_, step_, sink_, fresh);
+    // at a knot the row is the right limit, which comes after it
+    if (ws_.time < ws_.next_knot) emit_start(form_, step_, sink_, fresh);
     look_here();
-    h_ = ws_.last_step > 0 ? (fresh ? 0.25 * ws_.last_step : ws_.last_step) : first_step(form_, step_, t_end_ - ws_.time);
+    // kept, so that a run takes the same steps whether or not it is asked for a row here
+    if (fresh) ws_.last_step *= 0.25;
+    h_ = ws_.last_step > 0 ? ws_.last_step : first_step(form_, step_, t_end_ - ws_.time);
   }
 
   CLUTCHWORK_INLINE void look_here() { look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here); }
@@ -445,7 +444,7 @@ class Phase {
 
   /// Whether the phase is over before the next step: a knot that changes the modes, the end, no room, no budget.
   CLUTCHWORK_INLINE bool ends() {
-    if (ws_.time >= ws_.next_knot) {
+    if (ws_.time >= ws_.next_knot && !(ws_.time >= t_end_ && awaits_values(ws_, ws_.time))) {
       rest_step(form_, step_);
       export_state(form_, step_.y0());
       note_before(form_, step_, 0.0);

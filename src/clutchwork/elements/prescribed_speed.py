@@ -12,7 +12,7 @@ class PrescribedSpeed(Component):
 
     Use it for a speed-controlled test bench or a shaft whose speed was measured; its torque is part of the result.
     A jump of the speed becomes an impulse. With `cutoff` the speed follows the signal through a first-order
-    low pass, d(speed)/dt = 2 pi cutoff (signal - speed).
+    low pass, d(speed)/dt = 2 pi cutoff (signal - speed), solved exactly; pulses and functions cannot pass it.
     """
 
     shaft: Node = port("shaft whose speed is given")

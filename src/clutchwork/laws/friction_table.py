@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from clutchwork.node import Points
 from clutchwork.schema import Role, component, curve, param
-from clutchwork.tables import Found, Tabulated, crossing, few_points, not_positive, slip_axis
+from clutchwork.tables import Found, Tabulated, continued, crossing, few_points, not_positive, slip_axis
 
 
 @component(Role.LAW)
@@ -31,6 +31,10 @@ class FrictionTable(Tabulated):
         found = few_points("kinetic", len(slips), self.interpolation) + slip_axis("kinetic", slips[0], "rad/s")
         found += not_positive("kinetic", values, "rad/s", slips)
         return found + crossing([self.static] * len(slips), values, "rad/s", slips)
+
+    def advice(self) -> Found:
+        """A continuation that falls to zero."""
+        return continued("kinetic", [self.kinetic], "rad/s", self.extrapolation, self.interpolation)
 
     def sliding(self) -> float:
         """Kinetic coefficient at vanishing slip."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import exp, tanh
 from typing import ClassVar
 
 from clutchwork.node import Law
@@ -54,11 +55,26 @@ class Mykhalevych(Law):
 
     def advice(self) -> Found:
         """Properties that are rarely wanted, as (quantity, what is so, remedy)."""
-        fall = 1.0 - self.kinetic / self.static
-        if self.passive or self.viscous >= AT_THE_ANGLE * fall:
+        if self.passive:
             return []
-        message = (
-            "is too small to be dissipative: it must be >= 1.52 (1 - kinetic/static)"
-            f" = {AT_THE_ANGLE * fall:g} around the elastic angle, and >= {AT_REST * fall:g} at rest"
-        )
-        return [("viscous", message, "raise it, or give passive = true")]
+        found, fall = list[tuple[str, str, str]](), 1.0 - self.kinetic / self.static
+        driving = self._driving() if self.reset == "saturate" else None
+        if driving is not None:
+            message = f"is too small: fully wound up, the coefficient is below zero from a slip of {driving:g} rad/s on"
+            found.append(("range", message, "raise it, or viscous, or kinetic; or give passive = true"))
+        if self.viscous < AT_THE_ANGLE * fall:
+            message = (
+                "is too small to be dissipative: it must be >= 1.52 (1 - kinetic/static)"
+                f" = {AT_THE_ANGLE * fall:g} around the elastic angle, and >= {AT_REST * fall:g} at rest"
+            )
+            found.append(("viscous", message, "raise it, or give passive = true"))
+        return found
+
+    def _driving(self) -> float | None:
+        """The slip [rad/s] at which the coefficient of a contact that is fully wound up turns negative, if it does."""
+        # beyond 8 speeds nothing is left of the fall, and what is viscous only grows
+        for x in (0.01 * number for number in range(1, 801)):
+            wound = self.static * tanh(self.range + self.viscous * x)
+            if wound - (self.static - self.kinetic) * (1.0 - exp(-x * x)) < -1e-9 * self.static:
+                return x * self.speed
+        return None

@@ -13,7 +13,8 @@ class Sampled(Signal):
     """Controller: `function(time, readings)` gives the value every `period` seconds, held in between.
 
     Use it for a control law that reads speeds and sets a pressure. `readings` maps names of signals, such as
-    "engine.speed" [rad/s] and "c1.torque" [N m], to their values at that time. A model file cannot hold one.
+    "engine.speed" [rad/s] and "c1.torque" [N m], to their values just before that time. The first call, at 0 s, reads
+    the start with all such values 0. A step of the value acts as a step of a `Table`. A model file cannot hold one.
     """
 
     function: Callable[[float, Mapping[str, float]], float] = function(

@@ -8,12 +8,15 @@ have an empty entry.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import clutchwork as cw
 
-from .signals import UnsupportedError
+from .pieces import UnsupportedError, bessel_speed, integral, product, scaled
+from .signals import as_signal, levels
 
 if TYPE_CHECKING:
     from .model import Builder
@@ -65,23 +68,73 @@ def _speed_dependent(b: Builder, name: str, e: Mapping[str, Any], at: At) -> lis
 
 
 def _speed(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
-    cutoff = {} if e.get("exact", False) else {"cutoff": float(e["f_crit"])}
-    return [cw.PrescribedSpeed(name, shaft=at("flange"), base=at("support"), speed=b.signal(e["w_ref"]), **cutoff)]
+    if e.get("exact", False):
+        return _motion(name, at, b.signal(e["w_ref"]))
+    # the filter takes no train of pulses
+    speed = as_signal(b.pieces(e["w_ref"]), b.t_end) if b.kind(e["w_ref"]) == "pulse" else b.signal(e["w_ref"])
+    return _motion(name, at, speed, cutoff=float(e["f_crit"]))
+
+
+def _motion(name: str, at: At, speed: Any, **other: float) -> list[Any]:
+    return [cw.PrescribedSpeed(name, shaft=at("flange"), base=at("support"), speed=speed, **other)]
+
+
+def constant_speed(e: Mapping[str, Any]) -> float:
+    """The value of a constant speed, by any of its names."""
+    return float(next(e[key] for key in ("w_fixed", "v_fixed", "w", "v") if key in e))
 
 
 def _constant_speed(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
-    value = e.get("w_fixed", e.get("v_fixed", e.get("w")))
-    return [cw.PrescribedSpeed(name, shaft=at("flange"), base=at("support"), speed=float(value))]
+    return _motion(name, at, constant_speed(e))
+
+
+def _accelerate(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    return _motion(name, at, as_signal(integral(b.pieces(e["a_ref"]), b.start_speed(name)), b.t_end))
+
+
+def position_signal(e: Mapping[str, Any]) -> Any:
+    """The signal that a flange follows."""
+    return e["phi_ref"] if "phi_ref" in e else e["s_ref"]
+
+
+def _position(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    wanted = b.pieces(position_signal(e))
+    if e.get("exact", False):
+        speed = tuple(piece.slope() for piece in wanted)
+    else:
+        place = b.start_place(f"{name}.flange") - b.start_place(f"{name}.support")
+        speed = bessel_speed(wanted, float(e["f_crit"]), place, b.start_speed(name))
+    return _motion(name, at, as_signal(speed, b.t_end))
+
+
+def _sign_torque(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    """2/(1 + exp(-w/(0.01 w0))) - 1 = tanh(w/(0.02 w0))."""
+    if e.get("reg", "exp") != "exp":
+        raise UnsupportedError(f"sign_torque with {e['reg']}")
+    ends = {"shaft": at("flange"), "base": at("support")}
+    return [cw.ResistingTorque(name, torque=-float(e["tau_nominal"]), speed=0.02 * float(e["w0"]), **ends)]
+
+
+def _rolling_resistance(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    """A brake whose coefficient rises from 0 to 1 at v0 and stays there."""
+    if e.get("reg", "linear") != "linear":
+        raise UnsupportedError(f"rolling_resistance with {e['reg']}")
+    slope = levels(b.pieces(e.get("inclination", 0.0)), lambda y: math.cos(math.atan(y)))
+    force = scaled(product(b.pieces(e["cr"]), slope), float(e["fWeight"]))
+    law = cw.CoefficientTable(static=0.0, kinetic=[(0.0, 0.0), (float(e["v0"]), 1.0)])
+    ends = {"friction": law, "gain": 1.0, "normal_force": as_signal(force, b.t_end)}
+    return [cw.Clutch(name, base=at("support"), follower=at("flange"), **ends)]
 
 
 def _friction(e: Mapping[str, Any], table: str, least_peak: float = 0.0) -> tuple[Any, float]:
-    """(law, scale): the table divided by its value at rest, with the peak above it."""
+    """(law, scale): the table divided by its largest value, with the peak above its value at rest."""
     points = [(float(x), float(y)) for x, y in e[table]]
-    scale = points[0][1]
-    static = max(float(e.get("peak", 1.0)), least_peak)
+    scale = max(y for _, y in points) or 1.0
+    peak = max(float(e.get("peak", 1.0)), least_peak)
     if len(points) == 1:
-        return cw.Coulomb(static=static, kinetic=1.0), scale
-    return cw.CoefficientTable(static=static, kinetic=[(x, y / scale) for x, y in points]), scale
+        return cw.Coulomb(static=peak, kinetic=1.0), scale
+    law = cw.CoefficientTable(static=0.0, kinetic=[(x, y / scale) for x, y in points], extrapolation="linear")
+    return replace(law, static=peak * law.sliding()), scale
 
 
 def _contact(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
@@ -120,6 +173,17 @@ def _gear(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
     return [cw.Gear(name, ratio=float(e["ratio"]), **ends)]
 
 
+def _lossy_gear(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    """Without losses a gear, without efficiencies a gear and a bearing at its input."""
+    rows = [[float(x) for x in row] for row in e["loss_table"]]
+    gear = _gear(b, name, e, at)
+    if any(row[1:] != [1.0, 1.0, 0.0, 0.0] for row in rows):
+        friction, scale = _friction({"tau_pos": [(row[0], row[3]) for row in rows]}, "tau_pos")
+        bearing = cw.BearingFriction(name, shaft=at("flange_a"), base=at("support"), friction=friction, torque=scale)
+        gear = [replace(gear[0], name=f"{name}_gear"), bearing]
+    return gear
+
+
 def _planetary(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
     return [cw.Planetary(name, sun=at("sun"), ring=at("ring"), carrier=at("carrier"), ratio=float(e["ratio"]))]
 
@@ -147,11 +211,16 @@ ENTRIES: dict[str, Entry] = {
     "quadratic_speed_dependent_torque": _speed_dependent,
     "speed": _speed,
     "constant_speed": _constant_speed,
+    "accelerate": _accelerate,
+    "position": _position,
+    "sign_torque": _sign_torque,
+    "rolling_resistance": _rolling_resistance,
     "clutch": _contact,
     "one_way_clutch": _contact,
     "brake": _brake,
     "bearing_friction": _bearing,
     "ideal_gear": _gear,
+    "lossy_gear": _lossy_gear,
     "ideal_planetary": _planetary,
     "ideal_rolling_wheel": _wheel,
     "ideal_gear_r2t": _wheel,
@@ -159,5 +228,13 @@ ENTRIES: dict[str, Entry] = {
 
 
 def missing(case: Mapping[str, Any]) -> list[str]:
-    """Element types of the case that have no entry."""
-    return sorted({e["type"] for e in case["elements"].values()} - set(ENTRIES))
+    """What the elements of the case are that has no entry."""
+    found = {e["type"] for e in case["elements"].values()} - set(ENTRIES)
+    if any(e["type"] == "lossy_gear" and not _plain_losses(e) for e in case["elements"].values()):
+        found.add("lossy_gear with efficiencies")
+    return sorted(found)
+
+
+def _plain_losses(e: Mapping[str, Any]) -> bool:
+    """Whether a gear loses a torque that depends on its speed alone."""
+    return all(float(row[1]) == float(row[2]) == 1.0 and float(row[3]) == float(row[4]) for row in e["loss_table"])

@@ -58,9 +58,9 @@ def measure(path: str, elements: Mapping[str, Any], network: Network) -> tuple[i
 
 
 def start(
-    case: Mapping[str, Any], network: Network, prescribed: Mapping[str, float]
+    case: Mapping[str, Any], network: Network, sources: Mapping[tuple[str, int], float]
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """(positions, speeds) of every node at the start; `prescribed` gives the speed of each `speed` element."""
+    """(positions, speeds) of every node at the start; sources by element and order, 0 or 1."""
     elements, nodes = case["elements"], network.nodes()
     index = {node: i for i, node in enumerate(nodes)}
     systems: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
@@ -80,8 +80,8 @@ def start(
     for path, value in case["initial"].items():
         order, row, constant = measure(path, elements, network)
         state(order, row, float(value) - constant)
-    for name, value in prescribed.items():
-        state(1, {f"{name}.flange": 1.0, f"{name}.support": -1.0}, value)
+    for (name, order), value in sources.items():
+        state(order, {f"{name}.flange": 1.0, f"{name}.support": -1.0}, value)
     for name, element in elements.items():
         for row in rows_of_gears(name, element):
             state(0, row, 0.0)

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 
 import clutchwork as cw
+from clutchwork.schema import Role
 
-from .elements import ENTRIES, missing
+from .elements import ENTRIES, constant_speed, missing, position_signal
 from .initial import measure, start
 from .network import FLANGES, GROUND, TWO, Network
-from .signals import UnsupportedError, first_value, signal
+from .pieces import Pieces, UnsupportedError
+from .signals import describe, first_value, pieces, signal
 
 MODE_COLUMNS = ("mode", "startForward", "startBackward", "stuck")
 TRANSLATION = {"mass", "rod", "mass_with_stop_and_friction", "elasto_gap", "rolling_resistance"}
@@ -37,31 +39,52 @@ class Builder:
         self.case = case
         self.elements: Mapping[str, Mapping[str, Any]] = case["elements"]
         self.network = Network(self.elements, case["connections"])
-        self.positions, self.speeds = start(case, self.network, self._prescribed())
+        self.t_end = float(case["stop_time"])
+        self.positions, self.speeds = start(case, self.network, self._sources())
         self.driveline = cw.Driveline(case["name"])
         self.nodes = self._make_nodes()
         for name, element in self.elements.items():
             for part in ENTRIES[element["type"]](self, name, element, self._at(name)):
                 self.driveline.add(part)
 
-    def signal(self, name: str, scale: float = 1.0) -> Any:
+    def signal(self, name: Any, scale: float = 1.0) -> Any:
         """A signal of the case."""
-        return signal(self.case["signals"], name, scale)
+        return signal(self.case["signals"], name, self.t_end, scale)
+
+    def pieces(self, name: Any) -> Pieces:
+        """A signal of the case in pieces."""
+        return pieces(self.case["signals"], name, self.t_end)
+
+    def kind(self, name: Any) -> str:
+        """Type of a signal."""
+        return str(describe(self.case["signals"], name)["type"])
 
     def start_distance(self, name: str) -> float:
         """flange_b - flange_a at the start."""
-        a, b = f"{name}.flange_a", f"{name}.flange_b"
-        return self._start_position(b) - self._start_position(a)
+        return self.start_place(f"{name}.flange_b") - self.start_place(f"{name}.flange_a")
 
-    def _start_position(self, flange: str) -> float:
+    def start_place(self, flange: str) -> float:
+        """Position of a flange at the start."""
         return self.positions[self.network.node(flange)] + self.network.offset(flange)
 
-    def _prescribed(self) -> dict[str, float]:
-        return {
-            name: first_value(self.case["signals"], e["w_ref"])
-            for name, e in self.elements.items()
-            if e["type"] == "speed"
-        }
+    def start_speed(self, name: str) -> float:
+        """Speed of a source at the start, relative to its support."""
+        flange, support = (self.speeds[self.network.node(f"{name}.{port}")] for port in ("flange", "support"))
+        return flange - support
+
+    def _sources(self) -> dict[tuple[str, int], float]:
+        """Positions (0) and speeds (1) at the start that sources give."""
+        signals, known, made = self.case["signals"], set(self.case["initial"]), dict[tuple[str, int], float]()
+        for name, e in self.elements.items():
+            if e["type"] == "speed":
+                made[name, 1] = first_value(signals, e["w_ref"])
+            if e["type"] == "constant_speed":
+                made[name, 1] = constant_speed(e)
+            if e["type"] == "position" and not {f"{name}.phi", f"{name}.s"} & known:
+                made[name, 0] = first_value(signals, position_signal(e))
+            if e["type"] == "position" and e.get("exact", False):
+                made[name, 1] = pieces(signals, position_signal(e), 0.0)[0].slope()(0.0)
+        return made
 
     def _at(self, name: str) -> Callable[[str], cw.Node]:
         return lambda port: self.nodes[self.network.node(f"{name}.{port}")]
@@ -95,7 +118,7 @@ class Builder:
         marked = set()
         for name, e in self.elements.items():
             if e["type"] in TRANSLATION:
-                marked.add(self.network.node(f"{name}.flange_a"))
+                marked.add(self.network.node(f"{name}.{FLANGES.get(e['type'], TWO)[0]}"))
             if "flangeT" in FLANGES.get(e["type"], ()):
                 marked.add(self.network.node(f"{name}.flangeT"))
         for path in self.case["initial"]:
@@ -140,8 +163,9 @@ class Builder:
         for output in self.case["outputs"]:
             if output["signal"].rpartition(".")[2] not in (*MODE_COLUMNS, "lossPower"):
                 outputs[output["csv"]] = self.kinematic(output["signal"])
-        friction = ("clutch", "brake", "bearing_friction", "one_way_clutch")
-        contacts = tuple(name for name, e in self.elements.items() if e["type"] in friction)
+        friction = {"clutch", "brake", "bearing_friction", "one_way_clutch", "lossy_gear"}
+        made = {contact.name for contact in self.driveline.elements if contact.role is Role.CONTACT}
+        contacts = tuple(name for name, e in self.elements.items() if e["type"] in friction and name in made)
         return Model(self.driveline, outputs, contacts)
 
 

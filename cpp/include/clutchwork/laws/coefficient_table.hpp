@@ -1,33 +1,21 @@
 #pragma once
-#include <clutchwork/component.hpp>
+#include <clutchwork/interpolation.hpp>
 
 namespace clutchwork::laws {
 
-/// Coefficient over slip as a table, continued linearly beyond its end.
-struct CoefficientTable {
+/// Coefficient over slip as a table, linear between its points. docs/theory/clutches.md
+struct CoefficientTable : SlipTable<CoefficientTable> {
   template <class T>
   struct Params {
     T static_;         ///< [1]
     Curve<T> kinetic;  ///< rad/s -> 1
+    T extrapolation;   ///< [1]
   };
   static constexpr int states = 0;
 
-  template <class T, class S>
-  static S slide(const Params<T>& p, const At<S>& at) {
-    return curve_value(p.kinetic, at.points, at.rate, at.piece);
-  }
   template <class T>
-  static T hold(const Params<T>& p, const At<T>&) {
-    return p.static_;
-  }
-
-  template <class T>
-  static int edges(const Params<T>& p) {
-    return curve_edges(p.kinetic);
-  }
-  template <class T>
-  static double edge(const Params<T>& p, const double* points, int i) {
-    return curve_edge(p.kinetic, points, i);
+  static Manner manner(const Params<T>& p) {
+    return {Interpolation::linear, Extrapolation(int(value(p.extrapolation)))};
   }
 };
 

@@ -51,7 +51,7 @@ struct FrictionMap {
     const Axis speeds = axis_of(p.speeds, at.points), all = axis_of(p.kinetic, at.points);
     return over_temperature(p, at, [&](int i) {
       auto kinetic = [&](int j) { return S(all[i * speeds.count + j]); };
-      return slip_value<S>(speeds, manner(p), kinetic, at.rate, at.piece);
+      return slip_value<S>({speeds, manner(p)}, kinetic, at.rate, at.piece);
     });
   }
   /// The kinetic coefficient is a floor: continued far enough, the lines of a table may cross.
