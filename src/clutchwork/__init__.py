@@ -20,11 +20,14 @@ from typing import TYPE_CHECKING, Any
 from clutchwork import elements as elements
 from clutchwork import laws as laws
 from clutchwork import signals as signals
+from clutchwork.calls import explain
 from clutchwork.driveline import Driveline as Driveline
 from clutchwork.errors import ClutchworkError as ClutchworkError
 from clutchwork.errors import ModelError as ModelError
 from clutchwork.errors import ModelWarning as ModelWarning
+from clutchwork.errors import OptionError as OptionError
 from clutchwork.errors import Problem as Problem
+from clutchwork.errors import UseError as UseError
 from clutchwork.errors import near
 from clutchwork.layout import layout_text
 from clutchwork.node import Domain as Domain
@@ -131,6 +134,8 @@ _PACKAGES = ("fit", "rig")
 
 _DECLARED = {cls.__name__: cls for kinds in REGISTRY.values() for cls in kinds.values()}
 globals().update(_DECLARED)
+for _declared in _DECLARED.values():
+    explain(_declared)
 
 _FIXED = (
     "ClutchworkError",
@@ -141,10 +146,12 @@ _FIXED = (
     "ModelError",
     "ModelWarning",
     "Node",
+    "OptionError",
     "Problem",
     "Rate",
     "Signal",
     "ThermalNode",
+    "UseError",
 )
 __all__ = sorted([*_FIXED, *_LAZY, *_DECLARED])
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from clutchwork import massless
 from clutchwork.errors import Problem, near
 from clutchwork.rational import ONE, Echelon, Row, eliminate, plus, smallest
+from clutchwork.shown import listed, shown
 from clutchwork.structure import Kinematics, Model, RigidRow
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def _wanted_places(model: Model, wanted: Sequence[str]) -> tuple[list[Problem], 
     names = [node.name for node in model.nodes]
     unknown = [name for name in wanted if name not in names]
     problems = [
-        Problem("independent", "", "is not a shaft" + near(name, names), repr(name), f"choose from {', '.join(names)}")
+        Problem("independent", "", "is not a shaft" + near(name, names), shown(name), f"choose from {listed(names)}")
         for name in unknown
     ]
     return problems, [names.index(name) for name in wanted if name in names]
@@ -115,7 +116,7 @@ def _choice_problems(model: Model, made: Kinematics, wanted: Sequence[str]) -> I
         if name not in free:
             others = [names[column] for column in made.speeds[names.index(name)] if column < len(names)]
             message = f"follows from {', '.join(others) or 'the prescribed speeds'}"
-            yield Problem("independent", "", message, repr(name), "leave it out")
+            yield Problem("independent", "", message, shown(name), "leave it out")
     missing = [name for name in free if name not in wanted]
     if missing:
         yield Problem("independent", "", f"misses {', '.join(missing)}", remedy=f"{len(free)} speeds are independent")

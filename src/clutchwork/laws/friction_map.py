@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from clutchwork.node import SignalLike
 from clutchwork.schema import Role, component, numbers, signal
-from clutchwork.tables import Found, Tabulated, cold, crossing, few_points, slip_axis
+from clutchwork.tables import Found, Tabulated, crossing, few_points, slip_axis
 
 
 @component(Role.LAW)
@@ -60,10 +60,6 @@ class FrictionMap(Tabulated):
             fault = f"has {shape}, must have {rows} rows, one for each temperature, of {columns} numbers"
             return [("kinetic", fault, "give a row over the speeds for each temperature")]
         return []
-
-    def advice(self) -> Found:
-        """Temperatures that cannot be meant."""
-        return cold("temperatures", self.temperatures)
 
     def sliding(self) -> float | None:
         """None: it depends on the temperature."""

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from clutchwork.node import Law
 from clutchwork.schema import Role, State, choice, component, flag, param
+from clutchwork.speech import say
 from clutchwork.stribeck import Found, static_problems
 
 # least inner friction over 1 - kinetic/static: largest (1 - exp(-x^2))/x, and that over the slope of tanh at 1
@@ -61,4 +62,4 @@ class Mykhalevych(Law):
             "is too small to be dissipative: it must be >= 1.52 (1 - kinetic/static)"
             f" = {AT_THE_ANGLE * fall:g} around the elastic angle, and >= {AT_REST * fall:g} at rest"
         )
-        return [("viscous", message, "raise it, or give passive = true")]
+        return [("viscous", message, f"raise it, or give {say('passive = true', 'passive=True')}")]

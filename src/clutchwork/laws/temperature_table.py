@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from clutchwork.node import Points, SignalLike
 from clutchwork.schema import Role, component, curve, signal
-from clutchwork.tables import Found, Tabulated, cold, crossing, few_points, not_positive
+from clutchwork.tables import Found, Tabulated, crossing, few_points, not_positive
 
 
 @component(Role.LAW)
@@ -33,10 +33,6 @@ class TemperatureTable(Tabulated):
         if places != others:
             return [*found, ("kinetic", "has other temperatures than static", "give both at the same temperatures")]
         return found + crossing(static, kinetic, "K", places)
-
-    def advice(self) -> Found:
-        """Temperatures that cannot be meant."""
-        return cold("static", [temperature for temperature, _ in self.static])
 
     def sliding(self) -> float | None:
         """None: it depends on the temperature."""
