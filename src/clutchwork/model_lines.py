@@ -41,12 +41,13 @@ class Lines:
     def placed(self, problem: Problem, data: Any) -> Problem:
         """A problem with its line, where that is known."""
         match = _PATH.match(problem.path)
-        if match is None or not isinstance(data, Mapping):
+        if match is None or not self._keys or not isinstance(data, Mapping):
             return problem
         kind, number = match[1], int(match[2] or 0)
         if match[3] is not None:
             entries = data.get(kind)
-            names = [entry.get("name") if isinstance(entry, Mapping) else None for entry in entries or ()]
+            listed = entries if isinstance(entries, list) else []
+            names = [entry.get("name") if isinstance(entry, Mapping) else None for entry in listed]
             number = names.index(match[3]) + 1 if match[3] in names else -1
         key = re.split(r"[., ]", problem.quantity, maxsplit=1)[0]
         line = self._keys.get((kind, number, key)) or self._heads.get((kind, number), 0)
