@@ -98,7 +98,12 @@ def _scan(file: BinaryIO, wanted: Wanted) -> bool:
         bare = (ends == starts) | ((ends == starts + 1) & (codes[starts] == RETURN))
         alike = alike and bool(np.all((commas == cells) | bare))
         # Python reads 1_0 as ten, a spreadsheet does not
-        alike = alike and b'"' not in block and b"_" not in block.partition(b"\n")[2] and block.count(b"\r") == block.count(b"\r\n")
+        alike = (
+            alike
+            and b'"' not in block
+            and b"_" not in block.partition(b"\n")[2]
+            and block.count(b"\r") == block.count(b"\r\n")
+        )
     return alike and count > 1
 
 

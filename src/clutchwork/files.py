@@ -26,16 +26,15 @@ def open_regular(path: str | Path, most: int) -> BinaryIO:
         number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0))
     except ValueError as error:
         raise UnfitFileError("no file can have this name") from error
-    try:
-        found = os.fstat(number)
-        if not stat.S_ISREG(found.st_mode):
-            raise UnfitFileError("is not a regular file")
-        if found.st_size > most:
-            raise UnfitFileError(f"has {found.st_size} bytes, more than {most}")
+    found = os.fstat(number)
+    if not stat.S_ISREG(found.st_mode):
+        fault = "is not a regular file"
+    elif found.st_size > most:
+        fault = f"has {found.st_size} bytes, more than {most}"
+    else:
         return os.fdopen(number, "rb")
-    except BaseException:
-        os.close(number)
-        raise
+    os.close(number)
+    raise UnfitFileError(fault)
 
 
 def read_regular(path: str | Path, most: int) -> bytes:

@@ -20,7 +20,7 @@ METHODS: dict[str, int] = {"auto": 0, "rodas5p": 1, "dopri5": 2}
 OUTPUTS = ("smooth", "steps")
 
 # A grid finer than this does not fit into memory together with its signals.
-MOST_ROWS = 20_000_000
+MOST_ROWS = 10_000_000
 # no run lasts that long
 MOST_COUNTED = 10**15
 
@@ -53,12 +53,11 @@ class Options:
 
     def __post_init__(self) -> None:
         """Refuse values that make no sense, with what to write instead, all of them at once."""
-        found = [fault for name in ("rtol", "atol") if (fault := _not_positive(name, getattr(self, name)))]
-        for name in ("first_step", "max_step", "dt"):
-            if getattr(self, name) is not None:
-                found.append(_not_positive(name, getattr(self, name), " s"))
-        for name, most in (("max_steps", MOST_COUNTED), ("max_events", MOST_COUNTED), ("points", MOST_ROWS)):
-            found.append(_not_whole(name, getattr(self, name), most))
+        found = [_not_positive(name, getattr(self, name)) for name in ("rtol", "atol")]
+        lengths = [(name, getattr(self, name)) for name in ("first_step", "max_step", "dt")]
+        found += [_not_positive(name, value, " s") for name, value in lengths if value is not None]
+        counts = (("max_steps", MOST_COUNTED), ("max_events", MOST_COUNTED), ("points", MOST_ROWS))
+        found += [_not_whole(name, getattr(self, name), most) for name, most in counts]
         found += [_no_flag(name, getattr(self, name)) for name in ("angles", "work")]
         if isinstance(self.rtol, Real) and 0.0 < self.rtol < 1e-14:
             found.append(f"rtol is {float(self.rtol):g}: double precision carries no more than 1e-14")
@@ -114,7 +113,11 @@ def _not_positive(name: str, value: object, unit: str = "") -> str:
     number = _as_number(value)
     if number is None:
         return f"{name} is {shown(value)}: it must be a number" + (f" in{unit}" if unit else "")
-    return "" if math.isfinite(number) and number > 0.0 else f"{name} is {number:g}{unit}: it must be a finite number above 0"
+    return (
+        ""
+        if math.isfinite(number) and number > 0.0
+        else f"{name} is {number:g}{unit}: it must be a finite number above 0"
+    )
 
 
 def _not_whole(name: str, value: object, most: int) -> str:

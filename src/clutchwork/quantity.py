@@ -30,7 +30,9 @@ def in_si(value: Any, unit: str, others: tuple[str, ...] = (), factor: float = 1
     if isinstance(value, Mapping):
         unknown = [key for key in value if key not in ("value", "unit")]
         if unknown or "value" not in value:
-            raise QuantityError("must be a number", shown(dict(value)), 'write a number, or {value = 1.0, unit = "..."}')
+            raise QuantityError(
+                "must be a number", shown(dict(value)), 'write a number, or {value = 1.0, unit = "..."}'
+            )
         if "unit" in value:
             factor = factor_to_si(value["unit"], unit, others, dict(value))
         if isinstance(value["value"], Mapping):

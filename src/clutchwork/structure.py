@@ -9,8 +9,8 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.checks import label, ports
-from clutchwork.number_checks import as_float
 from clutchwork.node import Component, Domain, Node
+from clutchwork.number_checks import as_float
 from clutchwork.rational import ONE, Row, exact, plus
 from clutchwork.schema import Role
 

@@ -147,11 +147,11 @@ class System:
         try:
             content, *texts = archive.read(path, ("content", "model", "independent"))
             model, independent = map(json.loads, texts)
-            if not isinstance(independent, list) or not all(isinstance(name, str) for name in independent):
-                raise ValueError("its independent speeds are no names")
         except (ValueError, RecursionError, OSError) as error:
             why = reason(error) if isinstance(error, OSError) else shortened(str(error))
             raise SystemFormatError(f"{path}: no System can be read: {why}; write it with System.save") from None
+        if not isinstance(independent, list) or not all(isinstance(name, str) for name in independent):
+            raise SystemFormatError(f"{path}: its independent speeds are no names; write it with System.save")
         named = Driveline.from_dict(model).assemble(independent=independent)
         plain = cls.from_bytes(content, named.name)
         if any(plain.arrays[name].shape != array.shape for name, array in named.arrays.items()):

@@ -166,7 +166,11 @@ def _foreign(target: Any, value: Any, known: Known) -> tuple[str, str, str]:
     if target.name in known.parts or any(thing.name == target.name for thing in known.added.values()):
         remedy = "give the one that was added, or add this one under a name of its own"
         return "is not the one that was added to this driveline under this name", _words(value), remedy
-    remedy = "add it: d.add(...), and keep what that hands back" if isinstance(target, Component) else "create it in this one"
+    remedy = (
+        "add it: d.add(...), and keep what that hands back"
+        if isinstance(target, Component)
+        else "create it in this one"
+    )
     return "was not added to this driveline", _words(value), remedy
 
 

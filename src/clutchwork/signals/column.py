@@ -48,7 +48,9 @@ class Column(Signal):
             found = self.points
         except FileError as error:
             return error.problems
-        steep = next((a for a, b in pairwise(found) if b[0] > a[0] and not isfinite((b[1] - a[1]) / (b[0] - a[0]))), None)
+        steep = next(
+            (a for a, b in pairwise(found) if b[0] > a[0] and not isfinite((b[1] - a[1]) / (b[0] - a[0]))), None
+        )
         if steep is None and all(isfinite(y) for _, y in found):
             return []
         return [("path", f"{shown(self.path)} has values that change too fast", "leave out times that nearly coincide")]

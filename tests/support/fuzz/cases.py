@@ -107,10 +107,7 @@ def csv_file(folder: Path, random: Random) -> None:
 def saved_system(folder: Path, random: Random) -> None:
     """A damaged archive of a System, with or without right checksums."""
     whole = random.choice(archives(folder))
-    if random.random() < 0.5:
-        whole = mutate.data(whole, random)
-    else:
-        whole = _repacked(whole, random)
+    whole = mutate.data(whole, random) if random.random() < 0.5 else _repacked(whole, random)
     path = folder / "system"
     path.write_bytes(whole)
     cw.System.load(path).to_bytes()

@@ -1,6 +1,6 @@
 """Run random cases in a process of its own, which has little memory and ends what takes long.
 
-    PYTHONPATH=tests python -m support.fuzz.worker model_file 0 20000
+PYTHONPATH=tests python -m support.fuzz.worker model_file 0 20000
 """
 
 from __future__ import annotations
