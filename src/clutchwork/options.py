@@ -122,7 +122,7 @@ def _not_positive(name: str, value: object, unit: str = "") -> str:
 
 def _not_whole(name: str, value: object, most: int) -> str:
     number = _as_number(value)
-    if number is None or not number.is_integer():
+    if number is None or math.isnan(number) or (math.isfinite(number) and not number.is_integer()):
         return f"{name} is {shown(value)}: it must be a whole number"
     if number < 1:
         return f"{name} is {shown(value)}: it must be at least 1"

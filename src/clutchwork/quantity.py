@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from clutchwork.schema import Spec
 
 
+# units of temperature that no factor leads to kelvin from
+OTHER_ZERO = ("degC", "C", "degF", "F")
+
+
 class QuantityError(ClutchworkError, ValueError):
     """A value that is no quantity of the wanted unit."""
 
@@ -61,6 +65,9 @@ def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), whole: obj
     except ValueError as error:
         word = str(error)
         remedy = f"give it in {wanted}"
+        if word in OTHER_ZERO:
+            remedy = f"{remedy}; temperatures are in K; 0 degC is 273.15 K"
+            raise QuantityError(f"is in {word}, whose zero is another", value, remedy) from None
         raise QuantityError(f"has the unknown unit {shown(word)}{near(word, units.known())}", value, remedy) from None
     if all(powers != units.parse(name).powers for name in (unit, *others)):
         raise QuantityError("is in a unit that does not fit", value, f"give it in {wanted}")

@@ -62,6 +62,8 @@ def simulate(
     A controller that raises ends in `SimulationError`, which holds the trajectory so far too.
     """
     t_end = end_time(t_end)
+    if options is not None and not isinstance(options, Options):
+        raise UseError("simulate", [f"options is {shown(options)}: it must be cw.Options(...)"])
     chosen = (options or Options()).changed(changes)
     if not isinstance(model, System) and not hasattr(model, "assemble"):
         raise UseError("simulate", [_no_model(model)])

@@ -7,6 +7,7 @@ import json
 import os
 import zipfile
 from itertools import pairwise
+from xml.sax.saxutils import escape
 
 import numpy as np
 import pytest
@@ -181,6 +182,8 @@ def test_odd_names_work_everywhere(tmp_path, capsys, name):
     legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
     labels = [text.get_text().strip() for legend in legends for text in legend.get_texts()]
     assert name in labels
+    # drawn as it is, not as a formula
+    assert escape(name) in (tmp_path / "run.svg").read_text().replace("&quot;", '"')
     d.save(tmp_path / "model.toml")
     assert main(["run", str(tmp_path / "model.toml"), "--t-end", "0.1", "--ratio", f"{name}/other"]) == 0
     assert name in capsys.readouterr().out
