@@ -7,7 +7,6 @@ import inspect
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeVar
 
-from clutchwork.checks import wanted
 from clutchwork.errors import UseError, near, nearest
 from clutchwork.schema import specs
 from clutchwork.shown import listed, shown
@@ -58,6 +57,9 @@ def _name(args: tuple[Any, ...], named: Mapping[str, Any]) -> str:
 
 def _meanings(cls: type) -> dict[str, str]:
     """What each field asks for; that of the unit of what a signal drives is left open."""
+    # only where a call is wrong
+    from clutchwork.checks import wanted
+
     return {
         item.name: f"give {wanted(spec, spec.unit).replace(' in [*]', '').replace(' and [*]', '')}: {spec.doc}"
         for item, spec in specs(cls)
