@@ -13,7 +13,7 @@ from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain
-from math import isfinite
+from math import inf, isfinite
 from operator import itemgetter
 from pathlib import Path
 from typing import BinaryIO
@@ -49,17 +49,30 @@ class Wanted:
         return FileError([(quantity, f"{shown(self.path)} {message}", remedy)])
 
 
-def read(path: Path, wanted: Wanted) -> Array:
-    """Times and values, one row each; FileError names all that is wrong with the file, up to a few mistakes."""
+def read(path: Path, wanted: Wanted, scale: float) -> Array:
+    """Times and scaled values, one row each; FileError names what is wrong with the file, up to a few mistakes."""
     try:
         with open_regular(path, MOST_BYTES) as file:
-            return _read(file, wanted)
+            return _scaled(_read(file, wanted), scale, wanted)
     except FileNotFoundError:
         raise wanted.error("path", "does not exist", f"put the file into {path.parent}") from None
     except OSError as error:
         raise wanted.error("path", f"cannot be read: {reason(error)}", "give a CSV text file") from None
     except (UnicodeDecodeError, csv.Error):
         raise wanted.error("path", "cannot be read: it is no text in UTF-8", "give a CSV text file") from None
+
+
+def _scaled(table: Array, scale: float, wanted: Wanted) -> Array:
+    """The values times a factor, all finite and so are the slopes between them."""
+    with np.errstate(all="ignore"):
+        made = table * [1.0, scale]
+        step = np.diff(made, axis=0)
+        slopes = np.divide(step[:, 1], step[:, 0], out=np.zeros(len(step)), where=step[:, 0] > 0.0)
+    if not np.all(np.isfinite(slopes)) or not np.all(np.isfinite(made)):
+        raise wanted.error(
+            "path", "has values that are too large, or change too fast", "leave out times that nearly coincide"
+        )
+    return made
 
 
 def _read(file: BinaryIO, wanted: Wanted) -> Array:
@@ -161,22 +174,16 @@ def _at_once(lines: Iterator[list[str]], places: tuple[int, int]) -> Array | Non
 
 
 def _by_cells(lines: Iterator[list[str]], header: list[str], places: tuple[int, int], wanted: Wanted) -> Array:
+    """Rows one after another, with the line of each; the first few mistakes are named."""
     numbers, kept, faults = array("d"), array("q"), list[tuple[str, str, str]]()
     for line in lines:
-        # lines that are empty, as at the end of many files, carry nothing
-        if not any(cell.strip() for cell in line):
+        pair = _pair(line, len(header), places)
+        number: int = lines.line_num  # type: ignore[attr-defined]
+        if pair is not None:
+            numbers.extend(pair)
+            kept.append(number)
             continue
-        where = f"line {lines.line_num} of {shown(wanted.path)}"  # type: ignore[attr-defined]
-        if any(cell.strip() for cell in line[len(header) :]):
-            message = f"{where} has {len(line)} cells, the first line names {len(header)} columns"
-            faults.append(("path", message, "give one cell for each column; a decimal comma makes two of one"))
-        for place, quantity in zip(places, ("time", "column"), strict=True):
-            value, fault = _number(line[place].strip() if place < len(line) else "")
-            numbers.append(value)
-            if fault:
-                message = f"{where}: the cell in column {shown(header[place])} {fault}"
-                faults.append((quantity, message, "write a number, with a point for the decimals"))
-        kept.append(lines.line_num)  # type: ignore[attr-defined]
+        faults += _line_faults(line, header, places, f"line {number} of {shown(wanted.path)}")
         if len(faults) >= MOST_FAULTS:
             break
     table = np.array(numbers).reshape(-1, 2)
@@ -190,12 +197,31 @@ def _by_cells(lines: Iterator[list[str]], header: list[str], places: tuple[int, 
     return table
 
 
-def _number(cell: str) -> tuple[float, str]:
-    """Value of a cell and what is wrong with it."""
+def _pair(line: list[str], width: int, places: tuple[int, int]) -> tuple[float, float] | None:
+    """Time and value of a line; None where anything is wrong with it, or nothing is written."""
     try:
-        value = float(cell.replace("_", "?"))
-    except ValueError:
-        value = float("nan")
-    if isfinite(value):
-        return value, ""
-    return 0.0, "is not a finite number" if cell else "is empty, not a finite number"
+        time, value = (line[place] for place in places)
+        # Python reads 1_0 as ten, a spreadsheet does not
+        pair = (float(time), float(value)) if "_" not in time and "_" not in value else (inf, inf)
+    except (ValueError, IndexError):
+        return None
+    sound = isfinite(pair[0]) and isfinite(pair[1]) and (len(line) <= width or not any(map(str.strip, line[width:])))
+    return pair if sound else None
+
+
+def _line_faults(
+    line: list[str], header: list[str], places: tuple[int, int], where: str
+) -> Iterator[tuple[str, str, str]]:
+    """What is wrong with a line; one that is empty, as at the end of many files, carries nothing."""
+    cells = [cell.strip() for cell in line]
+    if not any(cells):
+        return
+    if any(cells[len(header) :]):
+        message = f"{where} has {len(line)} cells, the first line names {len(header)} columns"
+        yield "path", message, "give one cell for each column; a decimal comma makes two of one"
+    for place, quantity in zip(places, ("time", "column"), strict=True):
+        cell = cells[place] if place < len(cells) else ""
+        if _pair([cell], 1, (0, 0)) is None:
+            fault = "is not a finite number" if cell else "is empty, not a finite number"
+            message = f"{where}: the cell in column {shown(header[place])} {fault}"
+            yield quantity, message, "write a number, with a point for the decimals"

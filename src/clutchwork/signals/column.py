@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from dataclasses import field
 from functools import cached_property
-from itertools import pairwise
-from math import isfinite
 from pathlib import Path
+from typing import Any
 
 from clutchwork.errors import FileError
 from clutchwork.node import Segment, Signal
 from clutchwork.schema import Role, component, param, text
-from clutchwork.shown import shown
 from clutchwork.signals.table import pieces
 
 
@@ -30,13 +28,17 @@ class Column(Signal):
     folder: str = field(default="", kw_only=True, repr=False, compare=False)
 
     @cached_property
-    def points(self) -> tuple[tuple[float, float], ...]:
-        """(time, value) pairs as read from the file."""
+    def _table(self) -> Any:
+        """Times and values as read from the file, a row each."""
         # numpy is no need of the build, which imports this declaration
         from clutchwork.column_file import Wanted, read
 
-        table = read(Path(self.folder, self.path), Wanted(self.path, self.time, self.column))
-        return tuple(zip(table[:, 0].tolist(), (self.scale * table[:, 1]).tolist(), strict=True))
+        return read(Path(self.folder, self.path), Wanted(self.path, self.time, self.column), self.scale)
+
+    @cached_property
+    def points(self) -> tuple[tuple[float, float], ...]:
+        """(time, value) pairs as read from the file."""
+        return tuple(map(tuple, self._table.tolist()))
 
     @cached_property
     def _pieces(self) -> tuple[Segment, ...]:
@@ -45,15 +47,10 @@ class Column(Signal):
     def problems(self) -> list[tuple[str, str, str]]:
         """What is wrong with the file, as (quantity, what is wrong, remedy)."""
         try:
-            found = self.points
+            _ = self._table
         except FileError as error:
             return error.problems
-        steep = next(
-            (a for a, b in pairwise(found) if b[0] > a[0] and not isfinite((b[1] - a[1]) / (b[0] - a[0]))), None
-        )
-        if steep is None and all(isfinite(y) for _, y in found):
-            return []
-        return [("path", f"{shown(self.path)} has values that change too fast", "leave out times that nearly coincide")]
+        return []
 
     def segments(self) -> tuple[Segment, ...]:
         """One linear piece between every two times, constant ones outside."""
