@@ -27,6 +27,7 @@ from clutchwork.errors import ModelError as ModelError
 from clutchwork.errors import ModelWarning as ModelWarning
 from clutchwork.errors import OptionError as OptionError
 from clutchwork.errors import Problem as Problem
+from clutchwork.errors import UnknownName as UnknownName
 from clutchwork.errors import UseError as UseError
 from clutchwork.errors import near
 from clutchwork.layout import layout_text
@@ -134,8 +135,8 @@ _PACKAGES = ("fit", "rig")
 
 _DECLARED = {cls.__name__: cls for kinds in REGISTRY.values() for cls in kinds.values()}
 globals().update(_DECLARED)
-for _declared in _DECLARED.values():
-    explain(_declared)
+for _made in (*_DECLARED.values(), Driveline, HeatFlow, Node, Rate, ThermalNode):
+    explain(_made)
 
 _FIXED = (
     "ClutchworkError",
@@ -151,6 +152,7 @@ _FIXED = (
     "Rate",
     "Signal",
     "ThermalNode",
+    "UnknownName",
     "UseError",
 )
 __all__ = sorted([*_FIXED, *_LAZY, *_DECLARED])

@@ -5,12 +5,14 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import is_dataclass
 from typing import Any, TypeVar
 
 from clutchwork.errors import UseError, near, nearest
 from clutchwork.schema import specs
 from clutchwork.shown import listed, shown
 
+OWNERS = ("self", "cls")
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -60,6 +62,8 @@ def _meanings(cls: type) -> dict[str, str]:
     # only where a call is wrong
     from clutchwork.checks import wanted
 
+    if not is_dataclass(cls):
+        return {}
     return {
         item.name: f"give {wanted(spec, spec.unit).replace(' in [*]', '').replace(' and [*]', '')}: {spec.doc}"
         for item, spec in specs(cls)
@@ -74,7 +78,7 @@ def _problems(
     if any(p.kind is p.VAR_POSITIONAL for p in parameters):
         return
     by_place = [p.name for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
-    known = [p.name for p in parameters if p.name != "self" and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
+    known = [p.name for p in parameters if p.name not in OWNERS and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
     open_ended = any(p.kind is p.VAR_KEYWORD for p in parameters)
     unknown = [] if open_ended else [name for name in named if name not in known]
     given = {*by_place[: len(args)], *named}
@@ -83,7 +87,7 @@ def _problems(
     if spare:
         # those that must be given first
         rest = sorted((p for p in parameters if p.name in known), key=lambda p: p.default is not p.empty)
-        yield _spare(spare, [p for p in by_place if p != "self"], [p.name for p in rest if p.name not in given])
+        yield _spare(spare, [p for p in by_place if p not in OWNERS], [p.name for p in rest if p.name not in given])
     for name in set(by_place[: len(args)]) & set(named):
         yield f"{name} is given twice, by place and by keyword; give it once"
     for name in unknown:

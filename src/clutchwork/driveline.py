@@ -156,12 +156,16 @@ class Driveline:
             return {}
 
     @classmethod
+    @explained("cw.Driveline.load")
     def load(cls, path: str | Path) -> Driveline:
         """Read a model file, TOML or JSON; ModelError lists all its mistakes."""
+        if not isinstance(path, str | Path):
+            raise UseError("cw.Driveline.load", [f"{shown(path)} is no path; give the name of a TOML or JSON file"])
         from clutchwork.model_file import load
 
         return load(path)
 
+    @explained("d.save")
     def save(self, path: str | Path) -> None:
         """Write a model file, TOML or JSON by its ending."""
         from clutchwork.model_file import save

@@ -30,9 +30,9 @@ def kinematics(
     rows = list(model.rigid_rows())
     order = _order(model, places)
     echelon = eliminate((row.coefficients for row in rows), order)
+    # what contradicting gears leave is looked at all the same
     problems += _contradictions(model, rows, echelon)
-    if problems:
-        return None, problems
+    sound = not problems
     made = _solve(model, echelon)
     # springs in series through a shaft without inertia give further rows
     series, unbalanced = massless.series_rows(model, made)
@@ -42,7 +42,8 @@ def kinematics(
         echelon = eliminate((row.coefficients for row in rows), order)
         made = _solve(model, echelon)
         made.loose = loose
-    problems += [*unbalanced, *_choice_problems(model, made, wanted), *massless.problems(model, made, incomplete)]
+    problems += [*unbalanced, *(_choice_problems(model, made, wanted) if sound else ())]
+    problems += massless.problems(model, made, incomplete)
     made.notes += _redundant(rows, echelon) + [f"{row.owner}: its springs act in series" for row in series.values()]
     return (None if problems else made), problems
 

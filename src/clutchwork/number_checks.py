@@ -39,7 +39,7 @@ def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         return
     # the unit of a bare number says nothing beside it
     unit = "" if at.unit == "1" else at.unit
-    number, given = as_float(value), f"{value if isinstance(value, float) else shown(value)} {unit}".strip()
+    number, given = as_float(value), f"{shown(value) if isinstance(value, int) else as_float(value)} {unit}".strip()
     if not isfinite(number):
         yield at.problem("must be finite", value=given, remedy="give a number")
     elif not spec.allows(number):

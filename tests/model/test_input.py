@@ -454,6 +454,21 @@ def test_the_gears_of_a_large_model_are_not_cut_off_silently(tmp_path, capsys):
     assert json.loads(capsys.readouterr().out)["gears_untried_from"] == 6
 
 
+def test_contradicting_gears_hide_no_missing_inertia():
+    d = cw.Driveline("gears")
+    a, b, bare = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0), d.shaft("bare")
+    d.add(cw.Gear("g1", input=a, output=b, ratio=2.0))
+    d.add(cw.Gear("g2", input=a, output=b, ratio=3.0))
+    d.add(cw.Gear("g3", input=a, output=d.shaft("c", inertia=1.0), ratio=0.0))
+    d.add(cw.Torque("t", shaft=bare, torque=1.0))
+    found = [str(problem) for problem in d.check()]
+    assert [words.split(":")[0] for words in found] == [
+        'cw.Gear("g3")',
+        'cw.Gear("g1") and cw.Gear("g2")',
+        'shaft "bare"',
+    ]
+
+
 def test_values_from_which_nothing_can_be_computed():
     d = cw.Driveline("huge")
     shaft, other = d.shaft("a", inertia=1.0, speed=1e200), d.shaft("b", inertia=1.0)

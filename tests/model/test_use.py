@@ -123,6 +123,12 @@ def test_shafts_and_masses():
         (lambda: d.add_node("a"), "is no shaft or mass"),
         (lambda: d.add_thermal("a"), "is no thermal node"),
         (lambda: d.simulate(), "t_end is missing"),
+        (lambda: cw.Driveline(nmae="x"), "cw.Driveline(): 1 problem"),
+        (lambda: cw.Driveline("a", "b"), "only name may be"),
+        (lambda: cw.Driveline.load(), "path is missing; give path=..."),
+        (lambda: cw.Driveline.load(3), "3 is no path; give the name of a TOML or JSON file"),
+        (lambda: cw.Node("a", inertai=1.0), "did you mean 'inertia'?"),
+        (lambda: cw.HeatFlow(element=1.0), "element is not known here; known are of"),
         (lambda: cw.simulate(d, 1.0, options=1e-6), "options is 1e-06: it must be cw.Options(...)"),
         (lambda: d.simulate(1.0, 1e-6), "by place, only t_end may be"),
     ):
