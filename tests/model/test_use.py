@@ -90,11 +90,11 @@ def test_values_by_place_are_told_their_keywords(cls):
 
 def test_all_mistakes_of_a_call_come_at_once():
     with pytest.raises(cw.UseError) as caught:
-        cw.Clutch("c", gian=1.0, presure=2.0, nonsense=3.0)
+        cw.Clutch("c", gian=1.0, pressures=2.0, nonsense=3.0)
     words = [problem.split(";")[0] for problem in caught.value.problems]
     assert words == [
         "gian is not known here",
-        "presure is not known here",
+        "pressures is not known here",
         "nonsense is not known here",
         "base is missing",
         "follower is missing",
@@ -116,14 +116,14 @@ def test_shafts_and_masses():
         (lambda: d.shaft(), "name is missing"),
         (lambda: d.mass("m", inertia=1.0), "known are name, mass, speed, position"),
         (lambda: d.thermal("t"), "capacity is missing"),
-        (lambda: d.ambient("t", temprature=1.0), "did you mean 'temperature'?"),
-        (lambda: d.assemble(independant=()), "did you mean 'independent'?"),
+        (lambda: d.ambient("t", temperatures=1.0), "did you mean 'temperature'?"),
+        (lambda: d.assemble(independents=()), "did you mean 'independent'?"),
         (lambda: d.shaft("a", name="b"), "name is given twice"),
         (lambda: d.add("clutch"), "is no element; add one such as cw.Clutch"),
         (lambda: d.add_node("a"), "is no shaft or mass"),
         (lambda: d.add_thermal("a"), "is no thermal node"),
         (lambda: d.simulate(), "t_end is missing"),
-        (lambda: cw.Driveline(nmae="x"), "cw.Driveline(): 1 problem"),
+        (lambda: cw.Driveline(names="x"), "cw.Driveline(): 1 problem"),
         (lambda: cw.Driveline("a", "b"), "only name may be"),
         (lambda: cw.Driveline.load(), "path is missing; give path=..."),
         (lambda: cw.Driveline.load(3), "3 is no path; give the name of a TOML or JSON file"),
@@ -154,8 +154,8 @@ def test_options():
     d = _driveline()
     for options, words in (
         ({"rtoll": 1e-3}, "no option 'rtoll'; did you mean 'rtol'?"),
-        ({"max_stps": 1, "metod": "auto"}, "no option 'metod'; did you mean 'method'?"),
-        ({"progres": print}, "did you mean 'progress'?"),
+        ({"max_stps": 1, "methods": "auto"}, "no option 'methods'; did you mean 'method'?"),
+        ({"progress_": print}, "did you mean 'progress'?"),
     ):
         with pytest.raises(cw.UseError) as caught:
             cw.simulate(d, 1.0, **options)
@@ -329,6 +329,17 @@ def test_every_temperature_of_the_registry_is_watched(cls, name):
         d._elements[0] = replace(d.elements[0], **{name: _celsius(getattr(d.elements[0], name) or 300.0)})
     found = _warned(d)
     assert any(f"{name} " in words and "too cold to be meant" in words for words in found)
+
+
+@pytest.mark.parametrize("cls", [*samples.declared(*samples.ELEMENT_ROLES), *REGISTRY[Role.LAW].values()], ids=_name)
+def test_temperatures_in_kelvin_are_not_warned_of(cls):
+    if cls.role is Role.LAW:
+        d = cw.Driveline()
+        shaft, lining = d.shaft("a", inertia=1.0), d.thermal("lining", capacity=1.0)
+        d.add(cw.Brake("b", shaft=shaft, friction=samples.law(cls), gain=1.0, pressure=1.0, heat=lining))
+    else:
+        d = samples.driveline(cls)
+    assert not any("too cold" in words for words in _warned(d))
 
 
 def test_temperatures_of_thermal_nodes():

@@ -116,3 +116,15 @@ def test_a_dog_clutch_beside_a_damper_runs():
     assert run["b.speed"][-1] == pytest.approx(run["a.speed"][-1], rel=0.05)
     # 1 kg m2 against 2 N m s/rad
     assert run["a.speed"][-1] == pytest.approx(5.0 * np.exp(-2.0 * 0.5), rel=0.05)
+
+
+@pytest.mark.parametrize("cls", [cw.Damper, cw.DogClutch, cw.SpringDamper], ids=_name)
+def test_the_work_of_what_is_lossy_is_heat(cls):
+    d = cw.Driveline(cls.__name__)
+    a, b = d.shaft("a", inertia=0.4, speed=1.0), d.shaft("b", inertia=0.7, speed=-1.0)
+    engaged = {"engaged": True, "command": 1.0} if cls is cw.DogClutch else {}
+    d.add(replace(_sample(cls), base=a, follower=b, **engaged))
+    energy = d.simulate(0.5, rtol=1e-9).energy
+    assert set(energy.heat) == {"x"}
+    assert energy.sources == {}
+    assert energy.heat["x"] > 0.0
