@@ -6,7 +6,6 @@ import csv
 import json
 import os
 import re
-import zipfile
 from itertools import pairwise
 from xml.sax.saxutils import escape
 
@@ -14,12 +13,11 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork import archive, column_file, files, model_file
+from clutchwork import model_file
 from clutchwork.cli import main
 from clutchwork.errors import MOST_LINES, ModelFileError, near
 from clutchwork.options import MOST_ROWS, Options
 from clutchwork.shown import MOST_NAMES, listed, printable, shortened, shown
-from clutchwork.system import SystemFormatError
 from support import samples
 from support.fuzz import mutate
 
@@ -189,186 +187,6 @@ def test_odd_names_work_everywhere(tmp_path, capsys, name):
     d.save(tmp_path / "model.toml")
     assert main(["run", str(tmp_path / "model.toml"), "--t-end", "0.1", "--ratio", f"{name}/other"]) == 0
     assert name in capsys.readouterr().out
-
-
-# --- CSV files ---
-
-
-def _column(tmp_path, text, **more):
-    data = text if isinstance(text, bytes) else text.encode()
-    (tmp_path / "p.csv").write_bytes(data)
-    return cw.Column("p.csv", more.pop("column", "p"), folder=str(tmp_path), **more)
-
-
-@pytest.mark.parametrize("quote", ["", '"'])
-@pytest.mark.parametrize("end", ["\n", "\r\n"])
-@pytest.mark.parametrize("last", ["", "\n", "\n\n\n"])
-def test_both_ways_of_reading_agree(tmp_path, quote, end, last):
-    rows = [(0.1 * k, 3.7 * k**2) for k in range(500)]
-    text = "\n".join(["time, p ,note", *(f"{quote}{t!r}{quote}, {y!r} ,x" for t, y in rows)]) + last
-    assert _column(tmp_path, text.replace("\n", end)).points == tuple(rows)
-
-
-def test_plain_files_are_read_at_once(tmp_path, monkeypatch):
-    monkeypatch.setattr(column_file, "_by_cells", None)
-    text = "time,p\n" + "".join(f"{k},{k}\n" for k in range(300_000))
-    assert len(_column(tmp_path, text).points) == 300_000
-
-
-def test_the_first_few_bad_cells_are_named(tmp_path):
-    text = "time,p,q\n" + "".join(f"{k},{'x' if k > 3 else k},1\n" for k in range(100))
-    found = _column(tmp_path, text).problems()
-    assert len(found) == column_file.MOST_FAULTS
-    assert [words for _, words, _ in found][:2] == [
-        "line 6 of 'p.csv': the cell in column 'p' is not a finite number",
-        "line 7 of 'p.csv': the cell in column 'p' is not a finite number",
-    ]
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("time,p,p\n0,1,5\n", "has 2 columns 'p'"),
-        ("time,time,p\n0,1,5\n", "has 2 columns 'time'"),
-        ("time,p\n0,0\n1,2,5\n", "line 3 of 'p.csv' has 3 cells, the first line names 2 columns"),
-        ('time,p\n0,0\n1,"2",5\n', "line 3 of 'p.csv' has 3 cells"),
-        ("time,p\n0,0\n2,1\n1,1\n", "line 4 of 'p.csv': its time is before that of line 3"),
-        ("time,p\n0,0\n1,1_0\n", "is not a finite number"),
-        ("time,p\n0,0\n1,1e999\n", "is not a finite number"),
-        ("time,p\n0,0\n1\n", "is empty"),
-        ("time,p\n0,0\n1e-320,1e300\n", "change too fast"),
-        ("time,p\n0,0\n1\0,1\n", "no text"),
-        (b"time,p\n0,\xff\n", "no text in UTF-8"),
-        ("time,p\n" + "1" * 2_000_000, "has a line of more than"),
-        ("time,p\n0," + "1" * 200_000 + "\n", "cannot be read"),
-        ("\n0,1\n", "is empty"),
-    ],
-)
-def test_what_is_wrong_with_a_csv_file(tmp_path, text, words):
-    assert any(words in message for _, message, _ in _column(tmp_path, text).problems())
-
-
-def test_a_million_and_more_lines(tmp_path, monkeypatch):
-    monkeypatch.setattr(column_file, "MOST_LINES", 1000)
-    text = "time,p\n" + "".join(f"{k},{k}\n" for k in range(1000))
-    assert _column(tmp_path, text).problems() == []
-    assert "more than 1000 lines" in _column(tmp_path, text + "1001,1\n").problems()[0][1]
-
-
-@pytest.mark.parametrize("path", ["/dev/zero", "/dev/stdin", "pipe", ".", "a\0b", "x" * 5000, "\ud800"])
-def test_columns_are_of_regular_files(tmp_path, path):
-    os.mkfifo(tmp_path / "pipe")
-    (problem,) = cw.Column(path, "p", folder=str(tmp_path)).problems()
-    assert "cannot be read" in problem[1]
-
-
-@pytest.mark.parametrize(
-    "content",
-    [
-        "secret one\nsecret two\n",
-        "secret,time\nsecret,secret\n",
-        "time,p\n1,secret\nsecret,1\n",
-        "secret;secret\n1;2\n",
-    ],
-)
-def test_errors_never_tell_the_content_of_other_files(tmp_path, content, capsys):
-    (tmp_path / "other").write_text(content)
-    for column, time in (("p", "time"), ("q", "t"), ("time", "time")):
-        signal = f'{{type = "column", path = "other", column = "{column}", time = "{time}"}}'
-        element = f'[[element]]\nname = "t"\ntype = "torque"\nshaft = "a"\ntorque = {signal}\n'
-        (tmp_path / "model.toml").write_text(f'[[shaft]]\nname = "a"\ninertia = 1\n{element}')
-        assert main(["check", str(tmp_path / "model.toml")]) in (0, 3)
-        # names of columns are told where one that was asked for is there
-        said = capsys.readouterr().err
-        is_asked = {"p", "time"} & set(content.partition("\n")[0].split(","))
-        assert "secret" not in said or ("the columns are" in said and is_asked)
-
-
-# --- saved systems ---
-
-
-def _saved(tmp_path):
-    d, clutch = _two()
-    d.add(clutch)
-    d.assemble().save(tmp_path / "system")
-    return tmp_path / "system"
-
-
-def _repacked(path, **changed):
-    with zipfile.ZipFile(path) as stored:
-        parts = {name: stored.read(name) for name in stored.namelist()}
-    archive.write(path, parts | changed)
-    return path
-
-
-def test_a_saved_system_reads_back(tmp_path):
-    path = _saved(tmp_path)
-    d, clutch = _two()
-    d.add(clutch)
-    assert cw.System.load(path).to_bytes() == d.assemble().to_bytes()
-    assert cw.System.load(_repacked(path)).to_bytes() == cw.System.load(path).to_bytes()
-
-
-@pytest.mark.parametrize(
-    "changed",
-    [
-        {"content": b""},
-        {"content": b"CLUTCHWK" + b"\xff" * 500},
-        {"model": b"[" * 100_000},
-        {"model": b"{}"},
-        {"model": b"\xff"},
-        {"independent": b"5"},
-        {"independent": b"[5]"},
-        {"independent": b'["nobody"]'},
-        {"more": b""},
-    ],
-    ids=str,
-)
-def test_an_archive_with_other_parts(tmp_path, changed):
-    with pytest.raises((SystemFormatError, cw.ModelError)):
-        cw.System.load(_repacked(_saved(tmp_path), **changed))
-
-
-def test_arrays_of_another_model(tmp_path):
-    d, clutch = _two()
-    d.add(clutch)
-    d.shaft("third", inertia=1.0)
-    with pytest.raises(SystemFormatError, match="do not fit its model"):
-        cw.System.load(_repacked(_saved(tmp_path), content=d.assemble().to_bytes()))
-
-
-def test_archives_that_unpack_to_much(tmp_path, monkeypatch):
-    path = _repacked(_saved(tmp_path), model=b" " * 10_000_000)
-    monkeypatch.setattr(archive, "MOST_BYTES", 1_000_000)
-    with pytest.raises(SystemFormatError, match="unpacks to more than"):
-        cw.System.load(path)
-    monkeypatch.setattr(archive, "MOST_BYTES", 100)
-    with pytest.raises(SystemFormatError, match="more than 100"):
-        cw.System.load(path)
-
-
-def test_every_byte_of_an_archive_is_checked(tmp_path):
-    whole = _saved(tmp_path).read_bytes()
-    good = cw.System.load(tmp_path / "system").to_bytes()
-    for place in range(0, len(whole), 7):
-        (tmp_path / "bad").write_bytes(whole[:place] + bytes([whole[place] ^ 0x55]) + whole[place + 1 :])
-        try:
-            assert cw.System.load(tmp_path / "bad").to_bytes() == good
-        except SystemFormatError:
-            continue
-
-
-def test_archives_are_regular_files(tmp_path):
-    for path in ("/dev/zero", tmp_path, tmp_path / "none"):
-        with pytest.raises(SystemFormatError, match="no System can be read"):
-            cw.System.load(path)
-
-
-def test_the_reader_stops_at_its_limit(tmp_path):
-    (tmp_path / "x").write_bytes(b"x" * 100)
-    assert files.read_regular(tmp_path / "x", 100) == b"x" * 100
-    with pytest.raises(files.UnfitFileError):
-        files.read_regular(tmp_path / "x", 99)
 
 
 # --- work without end ---
