@@ -132,12 +132,16 @@ class Driveline:
         with the most inertia. ModelError lists all mistakes, warnings are those of `check`.
         """
         from clutchwork.assemble import assemble
+        from clutchwork.model_checks import TOO_FAR_APART
 
         problems = self.check()
         if problems:
             raise ModelError(problems, self.name)
         with words_of_files(self.from_file):
-            return assemble(self.name, self._nodes, self._elements, independent, self._source(), self._thermal)
+            try:
+                return assemble(self.name, self._nodes, self._elements, independent, self._source(), self._thermal)
+            except ArithmeticError:
+                raise ModelError([TOO_FAR_APART], self.name) from None
 
     @explained("d.simulate")
     def simulate(self, t_end: float, **options: Any) -> Trajectory:

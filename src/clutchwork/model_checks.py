@@ -52,8 +52,7 @@ def model_problems(
     try:
         return problems + structure_problems(nodes, moving, [*incomplete, *_touched(broken)])
     except ArithmeticError:
-        remedy = "correct inertias, ratios and speeds of unusual size"
-        return [*problems, Problem("driveline", "", "has numbers too far apart to compute with", remedy=remedy)]
+        return [*problems, TOO_FAR_APART]
 
 
 def _parts(elements: Sequence[Component], thermal: Sequence[ThermalNode]) -> tuple[Parts, dict[int, list[Problem]]]:
@@ -103,6 +102,12 @@ def node_problems(node: Node) -> list[Problem]:
     return problems
 
 
+TOO_FAR_APART = Problem(
+    "driveline",
+    "",
+    "has numbers too far apart to compute with",
+    remedy="correct inertias, ratios, speeds and signals of unusual size",
+)
 NO_NAME, GIVE_NAME = "must be a text", "give a text that can be printed, on one line and without blanks at its ends"
 LONGEST_NAME = 200
 

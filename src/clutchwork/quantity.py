@@ -50,7 +50,7 @@ def in_si(value: Any, unit: str, others: tuple[str, ...] = (), factor: float = 1
             )
         if not parts[1]:
             raise QuantityError("is a text without unit", shown(value), "write the number without quotes")
-        return parts[0] * factor_to_si(parts[1], unit, others, value)
+        return parts[0] * factor_to_si(parts[1], unit, others, value) + 0.0
     return value if whole else _times(value, factor)
 
 
@@ -116,7 +116,8 @@ def _times(value: Any, factor: float) -> Any:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
     try:
-        return value * factor
+        # minus zero becomes zero, so that what is written reads back to the same bits
+        return value * factor + 0.0
     except OverflowError:
         # an integer beyond all floats, which the checks that follow refuse
         return value

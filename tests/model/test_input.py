@@ -316,3 +316,19 @@ def test_options_are_checked_all_at_once():
     with pytest.raises(cw.OptionError) as caught:
         Options(rtol=-1.0, max_steps=2.5, method="rodas", points=1e9, angles="no", dt=0.1, times=[0.0])
     assert len(caught.value.problems) == 6
+
+
+def test_advice_that_cannot_be_computed():
+    d = cw.Driveline("huge")
+    elements = [(1e-4, 0.4), (2e-4, 0.6)]
+    law = cw.Leuven(static=0.2, kinetic=0.1, speed=1.0, elements=elements, order=1e300)
+    d.add(cw.Brake("b", shaft=d.shaft("a", inertia=1.0), friction=law, gain=1.0, pressure=1.0))
+    with pytest.warns(cw.ModelWarning, match="no number can be computed"):
+        d.check()
+
+
+def test_minus_zero_is_zero(tmp_path):
+    data = {"shaft": [{"name": "a", "inertia": 1.0, "speed": -0.0, "angle": "-0.0 rad"}]}
+    d = cw.Driveline.from_dict(data)
+    d.save(tmp_path / "model.json")
+    assert cw.Driveline.load(tmp_path / "model.json").assemble().to_bytes() == d.assemble().to_bytes()
