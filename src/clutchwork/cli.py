@@ -1,8 +1,8 @@
 """The command line: run | check | demo | rig | fit | export | --version.
 
 Exit codes: 0 done; 1 the run stopped early (what was asked for is written up to there); 2 the command line or an
-option is wrong; 3 the model is wrong, every mistake is listed; 4 a file, such as the model, is missing or cannot be read
-or written, or a package is missing; 130 interrupted.
+option is wrong; 3 the model is wrong, every mistake is listed; 4 a file, such as the model, is missing or cannot be
+read or written, or a package is missing; 130 interrupted.
 """
 
 from __future__ import annotations
