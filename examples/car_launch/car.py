@@ -72,6 +72,9 @@ def car(controllers: Mapping[str, Mapping[str, cw.Signal]], **changes: Mapping[s
         made.add_node(node)
     for thermal in read.thermal_nodes:
         made.add_thermal(thermal)
-    for element in read.elements:
-        made.add(replace(element, **controllers.get(element.name, {})))
+    anew = {element.name: replace(element, **controllers.get(element.name, {})) for element in read.elements}
+    # what presses the clutch is the spring that was made anew, not the one of the file
+    anew["clutch"] = replace(anew["clutch"], **{"normal_force": anew["spring"], **controllers.get("clutch", {})})
+    for element in anew.values():
+        made.add(element)
     return made

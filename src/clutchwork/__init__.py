@@ -20,11 +20,15 @@ from typing import TYPE_CHECKING, Any
 from clutchwork import elements as elements
 from clutchwork import laws as laws
 from clutchwork import signals as signals
+from clutchwork.calls import explain
 from clutchwork.driveline import Driveline as Driveline
 from clutchwork.errors import ClutchworkError as ClutchworkError
 from clutchwork.errors import ModelError as ModelError
 from clutchwork.errors import ModelWarning as ModelWarning
+from clutchwork.errors import OptionError as OptionError
 from clutchwork.errors import Problem as Problem
+from clutchwork.errors import UnknownName as UnknownName
+from clutchwork.errors import UseError as UseError
 from clutchwork.errors import near
 from clutchwork.layout import layout_text
 from clutchwork.node import Domain as Domain
@@ -131,6 +135,8 @@ _PACKAGES = ("fit", "rig")
 
 _DECLARED = {cls.__name__: cls for kinds in REGISTRY.values() for cls in kinds.values()}
 globals().update(_DECLARED)
+for _made in (*_DECLARED.values(), Driveline, HeatFlow, Node, Rate, ThermalNode):
+    explain(_made)
 
 _FIXED = (
     "ClutchworkError",
@@ -141,10 +147,13 @@ _FIXED = (
     "ModelError",
     "ModelWarning",
     "Node",
+    "OptionError",
     "Problem",
     "Rate",
     "Signal",
     "ThermalNode",
+    "UnknownName",
+    "UseError",
 )
 __all__ = sorted([*_FIXED, *_LAZY, *_DECLARED])
 

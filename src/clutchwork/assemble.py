@@ -82,7 +82,7 @@ def assemble(
         independent=tuple(model.nodes[n].name for n in made.independent),
         parameters=pools.places,
         notes=tuple(made.notes),
-        warnings=tuple(str(advice) for advice in model_advice(components)),
+        warnings=tuple(str(advice) for advice in model_advice(components, thermal)),
         model=source or {},
     )
 

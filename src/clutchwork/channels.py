@@ -17,10 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork import heat_channels, reactions
-from clutchwork.errors import near
+from clutchwork.errors import UnknownName, near
 from clutchwork.forms import LOCKED as LOCKED
 from clutchwork.forms import Affine, Column, Form, Linear, Mode, Power, Slip, Total
 from clutchwork.node import Domain
+from clutchwork.shown import shown
 from clutchwork.wiring import HOUSING, Branch, Wiring
 
 Array = NDArray[Any]
@@ -59,7 +60,7 @@ class Channels(Mapping[str, Channel]):
         try:
             return self._channels[name]
         except KeyError:
-            raise KeyError(self._unknown(name)) from None
+            raise UnknownName(self._unknown(name)) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._channels)
@@ -72,9 +73,9 @@ class Channels(Mapping[str, Channel]):
 
     def _unknown(self, name: str) -> str:
         for ending, option in self._left_out.items():
-            if name.endswith(ending):
+            if isinstance(name, str) and name.endswith(ending):
                 return f"{name} was not computed: run with {option}=True"
-        return f"no signal {name!r}{near(name, list(self._channels))}"
+        return f"no signal {shown(name)}{near(name, self._channels)}; `names` lists all of them"
 
     def _all(self) -> Iterator[tuple[str, Channel]]:
         yield from self._nodes()

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import MISSING
+from math import inf, isfinite
 from numbers import Real
 from typing import Any
 
@@ -15,7 +16,9 @@ from clutchwork.node import Component, Domain, Law, Node, Signal, ThermalNode, i
 from clutchwork.number_checks import At as At
 from clutchwork.number_checks import curve_problems, list_problems
 from clutchwork.number_checks import number_problems as number_problems
-from clutchwork.schema import REGISTRY, Role, Spec, inputs, specs
+from clutchwork.schema import Role, Spec, inputs, specs
+from clutchwork.shown import shown
+from clutchwork.speech import kinds_of, path_of, say
 
 
 class Broken:
@@ -27,13 +30,14 @@ BROKEN = Broken()
 
 def label(component: Component) -> str:
     """Path of an element in messages."""
-    return f'element "{component.name}" ({type(component).kind})'  # type: ignore[attr-defined]
+    return path_of(component)
 
 
 def component_problems(component: Component) -> Iterator[Problem]:
     """All mistakes of one element, its friction law and its signals."""
     at = At(label(component), "")
     found = list(object_problems(component, at))
+    found = found or list(_beyond_numbers(component, at))
     yield from found
     if hasattr(component, "friction"):
         from clutchwork.law_checks import locked_problems
@@ -45,6 +49,22 @@ def component_problems(component: Component) -> Iterator[Problem]:
             yield at.inner(name).problem(message, remedy=remedy)
 
 
+def _beyond_numbers(component: Any, at: At) -> Iterator[Problem]:
+    """Values that are allowed one by one, and from which nothing can be computed."""
+    try:
+        for part in component.parts():
+            yield from _beyond_numbers(part, at) if isinstance(part, Component) and part.name != component.name else ()
+            capacity = getattr(part, "capacity", None)
+            if capacity is not None and not 0.0 < capacity < inf:
+                raise OverflowError
+        if hasattr(component, "initial_states"):
+            starts, scales = component.initial_states(), component.state_scales()
+            if not all(map(isfinite, (*starts, *scales))) or 0.0 in scales:
+                raise OverflowError
+    except ArithmeticError:
+        yield at.problem("has values from which no number can be computed", remedy="correct those of unusual size")
+
+
 def object_problems(thing: Any, at: At) -> Iterator[Problem]:
     """All mistakes of a declared object: an element, a law or a signal."""
     found = list(value_problems(type(thing), vars(thing), at))
@@ -53,8 +73,11 @@ def object_problems(thing: Any, at: At) -> Iterator[Problem]:
     inside = tuple(f"{at.inner(item.name).quantity}." for item, _ in specs(type(thing), "law"))
     rules = getattr(thing, "problems", None)
     if rules is not None and all(problem.quantity.startswith(inside) for problem in found):
-        for name, message, remedy in rules():
-            yield at.inner(name).problem(message, remedy=remedy)
+        try:
+            for name, message, remedy in rules():
+                yield at.inner(name).problem(message, remedy=remedy)
+        except ArithmeticError:
+            yield at.problem("has values from which no number can be computed", remedy="correct those of unusual size")
 
 
 def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
@@ -63,19 +86,20 @@ def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Pro
         place = at.inner(item.name, at.unit if spec.unit == "*" else spec.unit)
         value = values.get(item.name, item.default)
         if value is MISSING:
-            yield place.problem("is missing", remedy=f"give {_wanted(spec, place.unit)}: {spec.doc}")
+            yield place.problem("is missing", remedy=f"give {wanted(spec, place.unit)}: {spec.doc}")
         elif value is not BROKEN and not (value is None and spec.optional):
             yield from CHECKS[spec.what](value, spec, place)
     yield from _choice_problems(cls, values, at)
 
 
-def _wanted(spec: Spec, unit: str) -> str:
+def wanted(spec: Spec, unit: str) -> str:
+    """What a field asks for, in words."""
     if spec.choices:
         return f"one of {', '.join(spec.choices)}"
     return {
         "port": "a shaft",
         "thermal": "a thermal node",
-        "law": f"a friction law ({', '.join(REGISTRY[Role.LAW])})",
+        "law": f"a friction law ({kinds_of(Role.LAW)})",
         "curve": f"points in [{spec.unit_x}] and [{unit}]",
         "numbers": f"a list of numbers in [{unit}]",
         "text": "a text",
@@ -97,30 +121,32 @@ def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if spec.choices:
         if value not in spec.choices:
             message = "is not known" + near(value, spec.choices)
-            yield at.problem(message, value=repr(value), remedy=f"known are {', '.join(spec.choices)}")
+            yield at.problem(message, value=shown(value), remedy=f"known are {', '.join(spec.choices)}")
     elif not spec.flag:
         yield from number_problems(value, spec, at)
     elif not isinstance(value, bool) and value not in (0, 1):
-        yield at.problem("must be true or false", value=repr(value), remedy=spec.doc)
+        yield at.problem("must be true or false", value=shown(value), remedy=spec.doc)
 
 
 def _port(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not isinstance(value, Node):
-        remedy = "give what `shaft`, `mass` or `housing` of the driveline handed out"
-        yield at.problem("must be a shaft, a mass or the housing", value=repr(value), remedy=remedy)
+        in_python = "give what `shaft`, `mass` or `housing` of the driveline handed out"
+        remedy = say("give the name of one", in_python)
+        yield at.problem("must be a shaft, a mass or the housing", value=shown(value), remedy=remedy)
     elif spec.domain and not value.fixed and value.domain is not Domain(spec.domain):
         wanted = "a shaft" if spec.domain == "rotation" else "a mass"
-        yield at.problem(f"must be {wanted}", value=repr(value.name), remedy=f"{spec.doc} is in {spec.domain}")
+        yield at.problem(f"must be {wanted}", value=shown(value.name), remedy=f"{spec.doc} is in {spec.domain}")
 
 
 def _thermal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not isinstance(value, ThermalNode):
-        remedy = f"give what `thermal` or `ambient` of the driveline handed out: {spec.doc}"
+        in_python = f"give what `thermal` or `ambient` of the driveline handed out: {spec.doc}"
+        remedy = say(f"give the name of one: {spec.doc}", in_python)
         yield at.problem("must be a thermal node or an ambient", value=_shown(value), remedy=remedy)
 
 
 def _shown(value: Any) -> str:
-    return repr(value.name if isinstance(value, Node | Component) else value)
+    return shown(value.name if isinstance(value, Node | Component) else value)
 
 
 def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
@@ -130,14 +156,16 @@ def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield from number_problems(value, spec, at)
     # whether a reference leads to something of that unit is checked where the driveline is known
     elif not is_reference(value):
-        remedy = f"give one of {', '.join(REGISTRY[Role.SIGNAL])}"
-        yield at.problem(f"must be a number in [{at.unit}] or a signal", value=repr(value), remedy=remedy)
+        remedy = f"give one of {kinds_of(Role.SIGNAL)}"
+        if callable(value):
+            remedy = "a function is a controller: give cw.Sampled(function, period), with the period in s"
+        yield at.problem(f"must be a number in [{at.unit}] or a signal", value=shown(value), remedy=remedy)
 
 
 def _law(value: Any, _: Spec, at: At) -> Iterator[Problem]:
     if not isinstance(value, Law):
-        remedy = f"give one of {', '.join(REGISTRY[Role.LAW])}"
-        yield at.problem("must be a friction law", value=repr(value), remedy=remedy)
+        remedy = f"give one of {kinds_of(Role.LAW)}"
+        yield at.problem("must be a friction law", value=shown(value), remedy=remedy)
         return
     from clutchwork.law_checks import law_problems
 
@@ -146,12 +174,12 @@ def _law(value: Any, _: Spec, at: At) -> Iterator[Problem]:
 
 def _text(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not isinstance(value, str) or not value:
-        yield at.problem("must be a text", value=repr(value), remedy=spec.doc)
+        yield at.problem("must be a text", value=shown(value), remedy=spec.doc)
 
 
 def _function(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not callable(value):
-        yield at.problem("must be a Python function", value=repr(value), remedy=spec.doc)
+        yield at.problem("must be a Python function", value=shown(value), remedy=spec.doc)
 
 
 CHECKS: dict[str, Callable[[Any, Spec, At], Iterator[Problem]]] = {
@@ -191,14 +219,14 @@ def connection_problems(component: Component, nodes: Sequence[Node]) -> Iterator
     for name, node in joined.items():
         if not node.fixed and id(node) not in known:
             found = near(node.name, [n.name for n in nodes])
-            yield at.inner(name).problem("is of another driveline", repr(node.name), f"create it in this one{found}")
+            yield at.inner(name).problem("is of another driveline", shown(node.name), f"create it in this one{found}")
     moving = {name: node for name, node in joined.items() if not node.fixed}
     if not moving:
         yield at.problem("joins nothing but the housing", remedy="attach a port to a shaft")
     elif len(joined) == 2 and len({id(node) for node in joined.values()}) == 1:
         names = " and ".join(joined)
         yield at.problem(
-            f"{names} are both on {next(iter(joined.values())).name!r}", remedy="attach them to two shafts"
+            f"{names} are both on {shown(next(iter(joined.values())).name)}", remedy="attach them to two shafts"
         )
     free = [name for _item, spec in specs(type(component), "port") if not spec.domain for name in [_item.name]]
     if len({moving[name].domain for name in free if name in moving}) > 1:

@@ -1,8 +1,8 @@
 """The command line: run | check | demo | rig | fit | export | --version.
 
 Exit codes: 0 done; 1 the run stopped early (what was asked for is written up to there); 2 the command line or an
-option is wrong; 3 the model is wrong, every mistake is listed; 4 a file cannot be read or written, or a package is
-missing; 130 interrupted.
+option is wrong; 3 the model is wrong, every mistake is listed; 4 a file, such as the model, is missing or cannot be
+read or written, or a package is missing; 130 interrupted.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.errors import ModelError, ModelWarning
+from clutchwork.errors import ModelError, ModelFileError, ModelWarning
 from clutchwork.options import METHODS, Options, end_time
 from clutchwork.progress import Bar
 
@@ -34,12 +34,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     asked = parser().parse_args(arguments)
     try:
         return int(asked.command(asked))
+    except ModelFileError as error:
+        return _fail(asked, FILE, str(error), [str(problem) for problem in error.problems])
     except ModelError as error:
         return _fail(asked, MODEL, str(error), [str(problem) for problem in error.problems])
     except (OSError, ImportError) as error:
         return _fail(asked, FILE, str(error))
     except (ValueError, TypeError, KeyError) as error:
-        return _fail(asked, USAGE, str(error.args[0] if error.args else error))
+        return _fail(asked, USAGE, str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error))
     except KeyboardInterrupt:
         return _fail(asked, INTERRUPTED, "interrupted")
 
@@ -191,11 +193,13 @@ def _shafts(system: System, asked: str | None) -> tuple[str, str] | None:
     if asked is None:
         return input_and_output(wiring(system))
     names = [node.name for node in wiring(system).nodes]
-    upper, _, lower = asked.partition("/")
-    for name in (upper, lower):
-        if name not in names:
-            raise ValueError(f"--ratio {asked}: no shaft {name!r}{near(name, names)}; write it as input/output")
-    return upper, lower
+    # a name may hold a slash itself
+    cuts = [(asked[:place], asked[place + 1 :]) for place, sign in enumerate(asked) if sign == "/"]
+    for upper, lower in cuts:
+        if upper in names and lower in names:
+            return upper, lower
+    missing = next((name for name in (cuts[0] if cuts else (asked,)) if name not in names), asked)
+    raise ValueError(f"--ratio {asked}: no shaft {missing!r}{near(missing, names)}; write it as input/output")
 
 
 def _fail(asked: argparse.Namespace, code: int, message: str, problems: Sequence[str] = ()) -> int:

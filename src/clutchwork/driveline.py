@@ -6,8 +6,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from clutchwork.errors import ModelError, Problem, warn
+from clutchwork.calls import explained
+from clutchwork.errors import ModelError, Problem, UseError, warn
 from clutchwork.node import HOUSING, Component, Domain, Node, Signal, ThermalNode
+from clutchwork.shown import shown
+from clutchwork.speech import words_of_files
 
 if TYPE_CHECKING:
     from clutchwork.system import System
@@ -29,6 +32,7 @@ class Driveline:
         self.simulation: dict[
             str, Any
         ] = {}  # settings of a run as in [simulation] of a model file: t_end, dt, rtol ...
+        self.from_file = False  # messages use the words of model files
         self._nodes: list[Node] = []
         self._thermal: list[ThermalNode] = []
         self._elements: list[Component] = []
@@ -53,6 +57,7 @@ class Driveline:
         """What does not move: the base of brakes and the support of gears."""
         return HOUSING
 
+    @explained("d.shaft")
     def shaft(self, name: str, *, inertia: float = 0.0, speed: float | None = None, angle: float = 0.0) -> Node:
         """Add a shaft.
 
@@ -61,6 +66,7 @@ class Driveline:
         """
         return self.add_node(Node(name, Domain.ROTATION, inertia, speed, angle))
 
+    @explained("d.mass")
     def mass(self, name: str, *, mass: float = 0.0, speed: float | None = None, position: float = 0.0) -> Node:
         """Add a mass that moves along a line.
 
@@ -68,11 +74,15 @@ class Driveline:
         """
         return self.add_node(Node(name, Domain.TRANSLATION, mass, speed, position))
 
+    @explained("d.add_node")
     def add_node(self, node: Node) -> Node:
         """Add a shaft or a mass that was made elsewhere."""
+        if not isinstance(node, Node):
+            raise UseError("d.add_node", [f"{shown(node)} is no shaft or mass; add a cw.Node, or call d.shaft(...)"])
         self._nodes.append(node)
         return node
 
+    @explained("d.thermal")
     def thermal(self, name: str, *, capacity: float, temperature: float = 300.0) -> ThermalNode:
         """Add a mass that holds heat and has one temperature.
 
@@ -80,19 +90,23 @@ class Driveline:
         """
         return self.add_thermal(ThermalNode(name, capacity, temperature))
 
+    @explained("d.ambient")
     def ambient(self, name: str, *, temperature: float | Signal = 300.0) -> ThermalNode:
         """Add surroundings whose temperature [K], a number or a signal, does not depend on the heat they take."""
         return self.add_thermal(ThermalNode(name, None, temperature))
 
+    @explained("d.add_thermal")
     def add_thermal(self, node: ThermalNode) -> ThermalNode:
         """Add a thermal mass or an ambient that was made elsewhere."""
+        if not isinstance(node, ThermalNode):
+            raise UseError("d.add_thermal", [f"{shown(node)} is no thermal node; add a cw.ThermalNode"])
         self._thermal.append(node)
         return node
 
     def add(self, element: E) -> E:
-        """Add an element and hand it back; TypeError for what is none."""
+        """Add an element and hand it back; UseError, a TypeError, for what is none."""
         if not isinstance(element, Component):
-            raise TypeError(f"{element!r} is no element; add one such as clutchwork.Clutch(...)")
+            raise UseError("d.add", [f"{shown(element)} is no element; add one such as cw.Clutch(...)"])
         self._elements.append(element)
         return element
 
@@ -103,11 +117,14 @@ class Driveline:
         """
         from clutchwork.model_checks import model_advice, model_problems
 
-        problems = model_problems(self._nodes, self._elements, self._thermal)
-        for advice in model_advice(self._elements):
-            warn(advice)
+        with words_of_files(self.from_file):
+            problems = model_problems(self._nodes, self._elements, self._thermal, driveline=self.name)
+            advice = model_advice(self._elements, self._thermal)
+        for one in advice:
+            warn(one)
         return problems
 
+    @explained("d.assemble")
     def assemble(self, independent: Sequence[str] = ()) -> System:
         """Reduce the driveline to its independent speeds.
 
@@ -115,12 +132,18 @@ class Driveline:
         with the most inertia. ModelError lists all mistakes, warnings are those of `check`.
         """
         from clutchwork.assemble import assemble
+        from clutchwork.model_checks import TOO_FAR_APART
 
         problems = self.check()
         if problems:
             raise ModelError(problems, self.name)
-        return assemble(self.name, self._nodes, self._elements, independent, self._source(), self._thermal)
+        with words_of_files(self.from_file):
+            try:
+                return assemble(self.name, self._nodes, self._elements, independent, self._source(), self._thermal)
+            except ArithmeticError:
+                raise ModelError([TOO_FAR_APART], self.name) from None
 
+    @explained("d.simulate")
     def simulate(self, t_end: float, **options: Any) -> Trajectory:
         """Assemble and run up to t_end [s]; options as for `clutchwork.simulate`."""
         from clutchwork.simulation import simulate
@@ -137,12 +160,16 @@ class Driveline:
             return {}
 
     @classmethod
+    @explained("cw.Driveline.load")
     def load(cls, path: str | Path) -> Driveline:
         """Read a model file, TOML or JSON; ModelError lists all its mistakes."""
+        if not isinstance(path, str | Path):
+            raise UseError("cw.Driveline.load", [f"{shown(path)} is no path; give the name of a TOML or JSON file"])
         from clutchwork.model_file import load
 
         return load(path)
 
+    @explained("d.save")
     def save(self, path: str | Path) -> None:
         """Write a model file, TOML or JSON by its ending."""
         from clutchwork.model_file import save

@@ -137,12 +137,13 @@ def _thermal(wiring: Wiring, ends: NDArray[np.float64], lost: float) -> dict[str
 
 def is_spring(branch: Branch) -> bool:
     """Whether an element stores elastic energy: its state is stiffness times twist."""
-    return any(name == SPRING_STATE for name, *_ in branch.states)
+    passive = branch.component.passive()
+    return passive is not None and bool(passive.stiffness)
 
 
 def is_lossy(branch: Branch) -> bool:
     """Whether an element turns work into heat: it has a damping, or a thermal node takes what it makes."""
-    return hasattr(branch.component, "damping") or _share(branch.component) > 0.0
+    return branch.component.lossy or _share(branch.component) > 0.0
 
 
 def is_source(branch: Branch) -> bool:

@@ -11,7 +11,9 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.errors import UnknownName, near
 from clutchwork.layout import EVENT, MODES
+from clutchwork.shown import listed, shown
 from clutchwork.text import columns
 
 CAUSES = ("start", "slip zero", "torque limit", "input", "other event", "impulse", "restart", "passing", "fault")
@@ -41,8 +43,10 @@ class Event:
 class Events(Sequence[Event]):
     """The events of a run in order of time; print it to read it."""
 
-    def __init__(self, events: Sequence[Event] = ()) -> None:
+    def __init__(self, events: Sequence[Event] = (), contacts: Sequence[str] | None = None) -> None:
+        """Events in order of time; `contacts` are the names that `of` knows, by default those of the events."""
         self._events = tuple(events)
+        self._contacts = None if contacts is None else tuple(contacts)
 
     @overload
     def __getitem__(self, index: int) -> Event: ...
@@ -50,7 +54,7 @@ class Events(Sequence[Event]):
     def __getitem__(self, index: slice) -> Events: ...
     def __getitem__(self, index: int | slice) -> Event | Events:
         if isinstance(index, slice):
-            return Events(self._events[index])
+            return Events(self._events[index], self._contacts)
         return self._events[index]
 
     def __len__(self) -> int:
@@ -66,17 +70,23 @@ class Events(Sequence[Event]):
         return hash(self._events)
 
     def of(self, element: str) -> Events:
-        """The events of one contact."""
-        return Events([event for event in self if event.element == element])
+        """The events of one contact; UnknownName, a KeyError, with near names when there is none of that name."""
+        known = [event.element for event in self] if self._contacts is None else self._contacts
+        if element not in known and element != "":
+            remedy = f"contacts are {listed(dict.fromkeys(known))}" if known else "there is no contact"
+            raise UnknownName(f"no contact {shown(element)}{near(element, known)}; {remedy}")
+        return Events([event for event in self if event.element == element], self._contacts)
 
     def changes(self) -> Events:
         """Without entries that change no torque: the state at the start, an open contact whose slip passes zero."""
         quiet = ("start", "passing")
-        return Events([event for event in self if event.before != event.after and event.cause not in quiet])
+        chosen = [event for event in self if event.before != event.after and event.cause not in quiet]
+        return Events(chosen, self._contacts)
 
     def at_start(self) -> Events:
         """Impulses at time zero."""
-        return Events([event for event in self if event.time == 0.0 and event.cause == "impulse"])
+        chosen = [event for event in self if event.time == 0.0 and event.cause == "impulse"]
+        return Events(chosen, self._contacts)
 
     @property
     def times(self) -> NDArray[np.float64]:
@@ -107,7 +117,7 @@ def from_rows(rows: NDArray[np.float64], contacts: Sequence[str]) -> Events:
     at = {name: column for column, (name, _) in enumerate(EVENT)}
     # contacts that change in one instant stand in their own order
     order = np.lexsort((rows[:, at["contact"]], rows[:, at["time"]]))
-    return Events([_event(rows[i], at, contacts) for i in order])
+    return Events([_event(rows[i], at, contacts) for i in order], contacts)
 
 
 def _event(row: NDArray[np.float64], at: dict[str, int], contacts: Sequence[str]) -> Event:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import importlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,8 @@ def to_csv(run: Trajectory, path: Path, names: tuple[str, ...]) -> None:
     heads = ["time [s]", *(f"{name} [{run.units[name]}]" if run.units[name] else name for name in names)]
     cells = [column.tolist() for column in table]
     with path.open("w", encoding="utf-8", newline="") as file:
-        file.write(",".join(heads) + "\n")
+        # names may hold commas and quotes
+        csv.writer(file, lineterminator="\n").writerow(heads)
         file.writelines(",".join(map(str, line)) + "\n" for line in zip(*cells, strict=True))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.errors import ClutchworkError
+from clutchwork.errors import ClutchworkError, caller
 from clutchwork.layout import STATUS
 from clutchwork.schema import specs
 
@@ -68,4 +68,4 @@ def report_faults(run: Trajectory) -> None:
         contact = contacts.get(event.element)
         if event.cause == "fault" and getattr(contact, "report", "") == "warning":
             what = str(getattr(contact, "fault", "")).replace("_", " ")
-            warnings.warn(FaultWarning(f"{event.element!r} {what} from {event.time:.9g} s on"), stacklevel=3)
+            warnings.warn(FaultWarning(f"{event.element!r} {what} from {event.time:.9g} s on"), stacklevel=caller())

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import accumulate
+from itertools import accumulate, chain
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from clutchwork import waveform
 from clutchwork.checks import ports, thermal_ports
-from clutchwork.node import Signal, ThermalNode, is_reference
+from clutchwork.node import Segment, Signal, ThermalNode, is_reference
 from clutchwork.parts import role
 from clutchwork.schema import Role, inputs
 from clutchwork.signals.constant import Constant
@@ -94,15 +96,16 @@ class Wires:
         base = dict(zip(SORTS, accumulate(sizes, initial=0), strict=True))
         pieces = [item.signal.segments() for item in self.inputs]
         counts = [len(part) for part in pieces]
-        flat = [piece for part in pieces for piece in part]
+        numbers = chain.from_iterable(piece for part in pieces for piece in part)
+        flat = np.fromiter(numbers, float).reshape(-1, len(Segment._fields))
         return {
             "input_refs": [base[sort] + number for sort, number in self.refs],
             "input_first": [sum(counts[:k]) for k in range(len(counts))],
             "input_count": counts,
             "input_period": [item.signal.repeats() for item in self.inputs],
             "input_value": [waveform.value(item.signal, 0.0) for item in self.inputs],
-            "segment_time": [piece.start for piece in flat],
-            "segment_coef": [piece[1:] for piece in flat],
+            "segment_time": flat[:, 0],
+            "segment_coef": flat[:, 1:],
         }
 
 

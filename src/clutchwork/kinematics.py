@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from clutchwork import massless
 from clutchwork.errors import Problem, near
 from clutchwork.rational import ONE, Echelon, Row, eliminate, plus, smallest
+from clutchwork.shown import listed, shown
 from clutchwork.structure import Kinematics, Model, RigidRow
 
 if TYPE_CHECKING:
@@ -29,9 +30,9 @@ def kinematics(
     rows = list(model.rigid_rows())
     order = _order(model, places)
     echelon = eliminate((row.coefficients for row in rows), order)
+    # what contradicting gears leave is looked at all the same
     problems += _contradictions(model, rows, echelon)
-    if problems:
-        return None, problems
+    sound = not problems
     made = _solve(model, echelon)
     # springs in series through a shaft without inertia give further rows
     series, unbalanced = massless.series_rows(model, made)
@@ -41,7 +42,8 @@ def kinematics(
         echelon = eliminate((row.coefficients for row in rows), order)
         made = _solve(model, echelon)
         made.loose = loose
-    problems += [*unbalanced, *_choice_problems(model, made, wanted), *massless.problems(model, made, incomplete)]
+    problems += [*unbalanced, *(_choice_problems(model, made, wanted) if sound else ())]
+    problems += massless.problems(model, made, incomplete)
     made.notes += _redundant(rows, echelon) + [f"{row.owner}: its springs act in series" for row in series.values()]
     return (None if problems else made), problems
 
@@ -50,7 +52,7 @@ def _wanted_places(model: Model, wanted: Sequence[str]) -> tuple[list[Problem], 
     names = [node.name for node in model.nodes]
     unknown = [name for name in wanted if name not in names]
     problems = [
-        Problem("independent", "", "is not a shaft" + near(name, names), repr(name), f"choose from {', '.join(names)}")
+        Problem("independent", "", "is not a shaft" + near(name, names), shown(name), f"choose from {listed(names)}")
         for name in unknown
     ]
     return problems, [names.index(name) for name in wanted if name in names]
@@ -115,7 +117,7 @@ def _choice_problems(model: Model, made: Kinematics, wanted: Sequence[str]) -> I
         if name not in free:
             others = [names[column] for column in made.speeds[names.index(name)] if column < len(names)]
             message = f"follows from {', '.join(others) or 'the prescribed speeds'}"
-            yield Problem("independent", "", message, repr(name), "leave it out")
+            yield Problem("independent", "", message, shown(name), "leave it out")
     missing = [name for name in free if name not in wanted]
     if missing:
         yield Problem("independent", "", f"misses {', '.join(missing)}", remedy=f"{len(free)} speeds are independent")

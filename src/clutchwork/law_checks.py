@@ -52,7 +52,12 @@ def component_advice(component: Component) -> Iterator[Problem]:
     if not isinstance(law, Law) or any(object_problems(law, place)):
         return
     units = {item.name: spec.unit for item, spec in specs(type(law))}
-    for name, message, remedy in law.advice():
+    try:
+        found = law.advice()
+    except ArithmeticError:
+        yield place.problem("has values from which no number can be computed", remedy="correct those of unusual size")
+        return
+    for name, message, remedy in found:
         given = getattr(law, name)
         # a table is shown by what is said of it
         value = f"{given:g} {units[name]}".removesuffix(" 1") if isinstance(given, Real) else ""

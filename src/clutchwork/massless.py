@@ -27,15 +27,18 @@ def _acting(model: Model, made: Kinematics, speed: int) -> list[tuple[Any, Row, 
 
 
 def _is_idle(component: Any) -> bool:
-    return component.kind == "damper" and not _damping(component)
+    passive = component.passive()
+    return passive is not None and not any(passive)
 
 
 def _is_spring(component: Any) -> bool:
-    return component.kind in ("spring", "spring_damper") and not _damping(component)
+    passive = component.passive()
+    return passive is not None and passive.stiffness > 0.0 and not passive.damping
 
 
-def _damping(component: Any) -> float:
-    return float(getattr(component, "damping", 0.0))
+def _damps(component: Any) -> bool:
+    passive = component.passive()
+    return passive is not None and passive.damping > 0.0
 
 
 def series_rows(model: Model, made: Kinematics) -> tuple[dict[int, RigidRow], list[Problem]]:
@@ -63,7 +66,7 @@ def _unbalanced(owner: str, acting: list[tuple[Any, Row, Fraction]]) -> Iterator
 
 def problems(model: Model, made: Kinematics, incomplete: frozenset[str]) -> Iterator[Problem]:
     """Speeds without inertia that no damping determines, or on which a contact acts."""
-    dampers = [made.over(row) for component, row in model.acting if _damping(component) > 0.0]
+    dampers = [made.over(row) for component, row in model.acting if _damps(component)]
     damped = eliminate(dampers, sorted(made.massless)).solved
     for speed in sorted(made.massless):
         if any(model.nodes[place].name in incomplete for place in made.moved_by(speed)):

@@ -11,8 +11,11 @@ from clutchwork.law_checks import component_advice
 from clutchwork.node import HOUSING, Component, Domain, Node, ThermalNode
 from clutchwork.parts import Parts, Sensor, take_apart
 from clutchwork.schema import Spec
+from clutchwork.shown import shown
+from clutchwork.speech import say
 from clutchwork.start import start
 from clutchwork.structure import Model
+from clutchwork.temperatures import temperature_advice
 from clutchwork.thermal_checks import Known, Within, node_kind, port_problems, reference_problems, thermal_problems
 
 if TYPE_CHECKING:
@@ -24,12 +27,14 @@ def model_problems(
     elements: Sequence[Component],
     thermal: Sequence[ThermalNode] = (),
     incomplete: Sequence[str] = (),
+    driveline: object = "driveline",
 ) -> list[Problem]:
     """All mistakes of a model: of single nodes and elements, then of the structure as far as that can be seen.
 
     Nothing is said about the inertia of nodes in `incomplete`, which belong to elements that are not there.
     """
-    problems = [problem for node in nodes for problem in node_problems(node)]
+    problems = [] if is_name(driveline) else [Problem("driveline", "name", NO_NAME, shown(driveline), GIVE_NAME)]
+    problems += [problem for node in nodes for problem in node_problems(node)]
     problems += [problem for node in thermal for problem in thermal_problems(node)]
     parts, found = _parts(elements, thermal)
     within = Within({node.name for node in parts.thermal}, {e.name for e in elements if found[id(e)]})
@@ -41,10 +46,13 @@ def model_problems(
     problems += name_problems(nodes, elements, sound)
     # what refers to an element with mistakes is looked at once those are mended
     if not broken and not incomplete:
-        known = Known.of(nodes, sound)
+        known = Known.of(nodes, thermal, elements, sound)
         problems += [problem for part in sound.components for problem in reference_problems(part, known)]
     moving = [part for part in sound.components if not isinstance(part, Sensor)]
-    return problems + structure_problems(nodes, moving, [*incomplete, *_touched(broken)])
+    try:
+        return problems + structure_problems(nodes, moving, [*incomplete, *_touched(broken)])
+    except ArithmeticError:
+        return [*problems, TOO_FAR_APART]
 
 
 def _parts(elements: Sequence[Component], thermal: Sequence[ThermalNode]) -> tuple[Parts, dict[int, list[Problem]]]:
@@ -53,9 +61,10 @@ def _parts(elements: Sequence[Component], thermal: Sequence[ThermalNode]) -> tup
     return take_apart([element for element in elements if not found[id(element)]], thermal), found
 
 
-def model_advice(elements: Sequence[Component]) -> list[Problem]:
-    """What the friction laws of a model allow and is rarely wanted: the warnings about it."""
-    return [advice for element in elements for advice in component_advice(element)]
+def model_advice(elements: Sequence[Component], thermal: Sequence[ThermalNode] = ()) -> list[Problem]:
+    """What a model allows and is rarely wanted: the warnings about it."""
+    found = [advice for element in elements for advice in component_advice(element)]
+    return [*found, *temperature_advice(elements, thermal)]
 
 
 def _touched(elements: Sequence[Component]) -> list[str]:
@@ -93,6 +102,21 @@ def node_problems(node: Node) -> list[Problem]:
     return problems
 
 
+TOO_FAR_APART = Problem(
+    "driveline",
+    "",
+    "has numbers too far apart to compute with",
+    remedy="correct inertias, ratios, speeds and signals of unusual size",
+)
+NO_NAME, GIVE_NAME = "must be a text", "give a text that can be printed, on one line and without blanks at its ends"
+LONGEST_NAME = 200
+
+
+def is_name(name: object) -> bool:
+    """Whether a name can stand in tables, pictures and on a terminal."""
+    return isinstance(name, str) and 0 < len(name) <= LONGEST_NAME and name == name.strip() and name.isprintable()
+
+
 def name_problems(nodes: Sequence[Node], elements: Sequence[Component], parts: Parts) -> list[Problem]:
     """Names that are no text, reserved or given twice, those of parts included."""
     problems, seen = [], {HOUSING.name: "the housing"}
@@ -105,12 +129,11 @@ def name_problems(nodes: Sequence[Node], elements: Sequence[Component], parts: P
     inner = [part for part in parts.components if id(part) not in added and part.name not in wholes]
     things += [(label(part), part.name) for part in inner]
     for path, name in things:
-        if not isinstance(name, str) or not name or name != name.strip():
-            remedy = "give a text without blanks at its ends"
-            problems.append(Problem(path, "name", "must be a text", repr(name), remedy))
+        if not is_name(name):
+            problems.append(Problem(path, "name", NO_NAME, shown(name), GIVE_NAME))
         elif name in seen:
             remedy = "choose another name: results are found by it"
-            problems.append(Problem(path, "name", f"is taken by {seen[name]}", repr(name), remedy))
+            problems.append(Problem(path, "name", f"is taken by {seen[name]}", shown(name), remedy))
         else:
             seen[name] = path
     return problems
@@ -122,7 +145,8 @@ def structure_problems(
     """What is wrong with the structure of a driveline whose single elements are right."""
     model = Model(tuple(nodes), tuple(components))
     if not nodes:
-        return [Problem("driveline", "", "has no shaft", remedy='add one: d.shaft("engine", inertia=0.2)')]
+        remedy = say("add one: [[shaft]]", 'add one: d.shaft("engine", inertia=0.2)')
+        return [Problem("driveline", "", "has no shaft", remedy=remedy)]
     made, problems = kinematics(model, incomplete=frozenset(incomplete))
     if made is not None:
         *_, problems = start(model, made)

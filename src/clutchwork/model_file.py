@@ -28,36 +28,51 @@ Nothing in a model file is evaluated.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.errors import ModelError, Problem
+from clutchwork.errors import ModelError, ModelFileError, Problem
+from clutchwork.files import read_regular, reason
 from clutchwork.model_checks import model_problems
+from clutchwork.model_lines import Lines
 from clutchwork.model_reader import FORMAT, Reader
 from clutchwork.model_writer import Writer, toml
 from clutchwork.node import Domain
+from clutchwork.shown import shortened, shown
+from clutchwork.speech import words_of_files
 from clutchwork.thermal_checks import node_kind
 
 if TYPE_CHECKING:
     from clutchwork.driveline import Driveline
+
+# more belongs into CSV files
+MOST_BYTES = 10_000_000
 
 
 def load(path: str | Path) -> Driveline:
     """Read a model file; ModelError lists all its mistakes."""
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_regular(path, MOST_BYTES).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        problem = Problem("file", "", f"cannot be read: {reason}", remedy="give a TOML or JSON file in UTF-8")
-        raise ModelError([problem], str(path)) from None
-    return from_dict(_parsed(path, text), path.parent, str(path))
+        why = reason(error) if isinstance(error, OSError) else "it is no text in UTF-8"
+        problem = Problem("file", "", f"cannot be read: {why}", remedy="give a TOML or JSON file in UTF-8")
+        raise ModelFileError([problem], str(path)) from None
+    return _from_text(path, text.replace("\r\n", "\n"))
+
+
+def _from_text(path: Path, text: str) -> Driveline:
+    if path.suffix.lower() not in (".toml", ".json"):
+        problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename it")
+        raise ModelError([problem], str(path))
+    with tolerable(str(path)):
+        data = _parsed(path, text)
+    return from_dict(data, path.parent, str(path), Lines(text, path.suffix.lower()))
 
 
 def _parsed(path: Path, text: str) -> Any:
-    if path.suffix.lower() not in (".toml", ".json"):
-        problem = Problem("file", "", "must end in .toml or .json", repr(path.name), "rename it")
-        raise ModelError([problem], str(path))
     try:
         if path.suffix.lower() == ".json":
             return json.loads(text, object_pairs_hook=_once, parse_constant=_no_constant)
@@ -65,15 +80,25 @@ def _parsed(path: Path, text: str) -> Any:
 
         return tomllib.loads(text)
     except ValueError as error:
-        problem = Problem("file", "", f"is no {path.suffix[1:].upper()}: {error}", remedy="correct that place")
-        raise ModelError([problem], str(path)) from None
+        fault = f"is no {path.suffix[1:].upper()}: {shortened(str(error))}"
+        raise ModelError([Problem("file", "", fault, remedy="correct that place")], str(path)) from None
+
+
+@contextmanager
+def tolerable(source: str) -> Iterator[None]:
+    """Refuse data so deep that Python cannot follow it."""
+    try:
+        yield
+    except RecursionError:
+        remedy = "a model file needs four levels, and elements that follow each other's states no more than a few dozen"
+        raise ModelError([Problem("file", "", "is nested too deeply", remedy=remedy)], source) from None
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     made: dict[str, Any] = {}
     for key, value in pairs:
         if key in made:
-            raise ValueError(f"key {key!r} stands twice in one object")
+            raise ValueError(f"key {shown(key)} stands twice in one object")
         made[key] = value
     return made
 
@@ -82,18 +107,21 @@ def _no_constant(name: str) -> float:
     raise ValueError(f"{name} is no number of a model file")
 
 
-def from_dict(data: Any, folder: str | Path = "", source: str = "") -> Driveline:
+def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines | None = None) -> Driveline:
     """A driveline from the content of a model file; CSV paths are relative to the folder."""
     reader = Reader(str(folder))
-    driveline = reader.driveline(data)
-    problems = reader.problems + _problems(driveline, reader.incomplete)
+    with tolerable(source), words_of_files():
+        driveline = reader.driveline(data)
+        problems = reader.problems + _problems(driveline, reader.incomplete)
     if problems:
-        raise ModelError(problems, source or driveline.name)
+        placed = [lines.placed(problem, data) for problem in problems] if lines else problems
+        raise ModelError(placed, source or driveline.name)
+    driveline.from_file = True
     return driveline
 
 
 def _problems(driveline: Driveline, incomplete: list[str]) -> list[Problem]:
-    return model_problems(driveline.nodes, driveline.elements, driveline.thermal_nodes, incomplete)
+    return model_problems(driveline.nodes, driveline.elements, driveline.thermal_nodes, incomplete, driveline.name)
 
 
 def save(driveline: Driveline, path: str | Path) -> None:
@@ -105,7 +133,7 @@ def save(driveline: Driveline, path: str | Path) -> None:
     elif path.suffix.lower() == ".toml":
         text = toml(data)
     else:
-        problem = Problem("file", "", "must end in .toml or .json", repr(path.name), "rename it")
+        problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename it")
         raise ModelError([problem], str(path))
     path.write_text(text, encoding="utf-8")
 

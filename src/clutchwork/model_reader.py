@@ -14,6 +14,8 @@ from clutchwork.model_references import References
 from clutchwork.model_values import Values
 from clutchwork.node import Component, Domain, Node, ThermalNode
 from clutchwork.schema import REGISTRY, Role, Spec
+from clutchwork.shown import listed, shown
+from clutchwork.speech import element_path
 from clutchwork.thermal_checks import NODE_FIELDS as THERMAL_FIELDS
 
 FORMAT = 1
@@ -49,7 +51,7 @@ class Reader(Values):
         self._unknown(data, TOP, At("file", ""))
         if data.get("format", FORMAT) != FORMAT:
             remedy = f"this version reads format {FORMAT}"
-            self._report(At("file", "format"), "is not known", repr(data["format"]), remedy)
+            self._report(At("file", "format"), "is not known", shown(data["format"]), remedy)
         driveline = Driveline(self._text(data, "name", At("file", ""), "driveline"))
         for kind, domain in (("shaft", Domain.ROTATION), ("mass", Domain.TRANSLATION)):
             for place, entry in self._entries(data, kind):
@@ -74,7 +76,7 @@ class Reader(Values):
         if isinstance(value, str) and value:
             return value
         message = "must be a text" if key in data else "is missing"
-        self._report(at.inner(key), message, repr(value) if key in data else "", f"give a {key}")
+        self._report(at.inner(key), message, shown(value) if key in data else "", f"give a {key}")
         return default
 
     def _node(self, driveline: Driveline, entry: Mapping[str, Any], domain: Domain, kind: str, place: int) -> None:
@@ -112,10 +114,10 @@ class Reader(Values):
         kind = self._text(entry, "type", At(path, ""))
         before = len(self.problems)
         if kind and kind not in known:
-            remedy = f"known are {', '.join(known)}"
-            self._report(At(path, "type"), "is not known" + near(kind, known), repr(kind), remedy)
+            remedy = f"known are {listed(known)}"
+            self._report(At(path, "type"), "is not known" + near(kind, known), shown(kind), remedy)
         elif kind:
-            values = self._values(known[kind], entry, At(f"{path} ({kind})", ""), ("name", "type"))
+            values = self._values(known[kind], entry, At(element_path(name, known[kind]), ""), ("name", "type"))
             if name and len(self.problems) == before:
                 made: Component = known[kind](name, **values)
                 return made
@@ -125,7 +127,7 @@ class Reader(Values):
     def _simulation(self, data: Any) -> dict[str, Any]:
         at = At("simulation", "")
         if not isinstance(data, Mapping):
-            return self._report(at, "must be a table", repr(data), "write [simulation] above its lines") and {}
+            return self._report(at, "must be a table", shown(data), "write [simulation] above its lines") and {}
         self._unknown(data, SIMULATION, at)
         made = {}
         for key, spec in SIMULATION.items():
@@ -142,5 +144,5 @@ def _simulation_problems(value: Any, spec: Spec, at: At) -> list[Problem]:
 
     found = list(CHECKS[spec.what](value, spec, at))
     if spec.what == "text" and not found and value not in METHODS:
-        found.append(at.problem("is not known" + near(value, METHODS), repr(value), f"known are {', '.join(METHODS)}"))
+        found.append(at.problem("is not known" + near(value, METHODS), shown(value), f"known are {', '.join(METHODS)}"))
     return found

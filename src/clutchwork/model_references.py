@@ -63,7 +63,9 @@ class References(Container[str]):
 def is_named(value: Any, *known: Container[str]) -> bool:
     """Whether an input is given by another node or element: its name, or a table that names it."""
     if isinstance(value, Mapping):
-        return isinstance(value.get("of"), str) and ("state" in value or value.get("type") in REFERENCES)
+        kind = value.get("type")
+        known_kind = isinstance(kind, str) and kind in REFERENCES
+        return isinstance(value.get("of"), str) and ("state" in value or known_kind)
     return isinstance(value, str) and any(value in names for names in known)
 
 

@@ -12,6 +12,7 @@ from clutchwork.model_references import References, is_named, referred
 from clutchwork.node import HOUSING, Node, ThermalNode
 from clutchwork.quantity import QuantityError, curve_in_si, factor_to_si, in_si, numbers_in_si
 from clutchwork.schema import REGISTRY, Role, Spec, specs
+from clutchwork.shown import listed, shown
 from clutchwork.signals.column import Column
 
 
@@ -32,7 +33,7 @@ class Values:
     def _unknown(self, data: Mapping[str, Any], known: Any, at: At) -> None:
         for key in data:
             if key not in known:
-                remedy = f"known are {', '.join(known)}"
+                remedy = f"known are {listed(known)}"
                 self._report(at.inner(str(key)), "is not known here" + near(key, known), remedy=remedy)
 
     def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
@@ -82,8 +83,8 @@ class Values:
         if part is not None:
             return part
         what = "shaft" if spec.what == "port" else "thermal node"
-        remedy = f"known are {', '.join(known)}" if known else "add one: [[thermal]] or [[ambient]]"
-        return self._report(at, f"is no {what} of this model" + near(str(value), known), repr(value), remedy)
+        remedy = f"known are {listed(known)}" if known else "add one: [[thermal]] or [[ambient]]"
+        return self._report(at, f"is no {what} of this model" + near(value, known), shown(value), remedy)
 
     def _other(self, value: Any, at: At) -> Any:
         """An input that a thermal node, an element or a shaft gives."""
@@ -92,11 +93,10 @@ class Values:
         found = found or self.elements.get(name) or self.nodes.get(name)
         if name in self.elements and found is None:
             # its own mistakes are reported where it stands
-            return BROKEN if self.elements.broken(name) else self._report(at, "leads back to itself", repr(name))
+            return BROKEN if self.elements.broken(name) else self._report(at, "leads back to itself", shown(name))
         if found is None:
             known = [*self.thermal, *self.elements, *self.nodes]
-            remedy = f"known are {', '.join(known)}"
-            return self._report(at, "is not known" + near(str(name), known), repr(name), remedy)
+            return self._report(at, "is not known" + near(name, known), shown(name), f"known are {listed(known)}")
         return found if isinstance(value, str) else referred(value, found)
 
     def _typed(self, value: Any, role: Role, at: At, taken: tuple[str, ...] = ("type",)) -> Any:
@@ -104,11 +104,11 @@ class Values:
         known = REGISTRY[role]
         if not isinstance(value, Mapping) or "type" not in value:
             remedy = f'write {{type = "...", ...}} with one of {", ".join(known)}'
-            return self._report(at, f"must be a table with the type of a {role.value}", repr(value), remedy)
+            return self._report(at, f"must be a table with the type of a {role.value}", shown(value), remedy)
         kind = value["type"]
-        if kind not in known:
-            remedy = f"known are {', '.join(known)}"
-            return self._report(at.inner("type"), "is not known" + near(str(kind), known), repr(kind), remedy)
+        if not isinstance(kind, str) or kind not in known:
+            remedy = f"known are {listed(known)}"
+            return self._report(at.inner("type"), "is not known" + near(kind, known), shown(kind), remedy)
         before = len(self.problems)
         values = self._values(known[kind], value, at, taken)
         return known[kind](**values) if len(self.problems) == before else BROKEN

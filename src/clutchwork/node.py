@@ -43,11 +43,19 @@ class ThermalNode:
     temperature: SignalLike = 300.0  # K, of a mass at the start, of an ambient over time
 
 
+class Passive(NamedTuple):
+    """Torque `-(stiffness twist + damping rate)` on the follower, in N m/rad and N m s/rad, or N/m and N s/m."""
+
+    stiffness: float
+    damping: float
+
+
 @dataclass(frozen=True)
 class Component:
     """An element with a name that is its path in results and errors."""
 
     one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
+    lossy: ClassVar[bool] = False  # a torque element whose work is heat, what it stores apart
 
     name: str
 
@@ -70,6 +78,14 @@ class Component:
         The tolerances of a run are absolute too, so a state should not be small against 1.
         """
         return ()
+
+    def passive(self) -> Passive | None:
+        """Stiffness and damping of an element whose torque is nothing else; None: its torque is another.
+
+        The damping of such elements determines the speed of a shaft without inertia, and springs alone keep their
+        balance there. An element that is none never carries such a shaft.
+        """
+        return None
 
     def sums(self) -> tuple[str, ...]:
         """Names of parts, within it, whose torque, power, work and heat count as those of its own name."""

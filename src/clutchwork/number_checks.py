@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
 from numbers import Real
 from typing import Any
 
 from clutchwork.errors import Problem
 from clutchwork.schema import Spec
+from clutchwork.shown import listed, shown
 
 
 @dataclass(frozen=True)
@@ -34,17 +35,25 @@ def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A finite number within its bounds."""
     if isinstance(value, bool) or not isinstance(value, Real):
         remedy = f"write the number alone, in {at.unit}" if at.unit not in ("", "1") else "write the number alone"
-        yield at.problem(f"must be a number in [{at.unit}]", value=repr(value), remedy=remedy)
+        yield at.problem(f"must be a number in [{at.unit}]", value=shown(value), remedy=remedy)
         return
     # the unit of a bare number says nothing beside it
     unit = "" if at.unit == "1" else at.unit
-    number, shown = float(value), f"{value} {unit}".strip()
+    number, given = as_float(value), f"{shown(value) if isinstance(value, int) else as_float(value)} {unit}".strip()
     if not isfinite(number):
-        yield at.problem("must be finite", value=shown, remedy="give a number")
+        yield at.problem("must be finite", value=given, remedy="give a number")
     elif not spec.allows(number):
-        yield at.problem(f"must be {spec.bound} {unit}".rstrip(), value=shown, remedy=_meaning(spec))
+        yield at.problem(f"must be {spec.bound} {unit}".rstrip(), value=given, remedy=_meaning(spec))
     elif spec.whole and number != int(number):
-        yield at.problem("must be a whole number", value=shown, remedy=_meaning(spec))
+        yield at.problem("must be a whole number", value=given, remedy=_meaning(spec))
+
+
+def as_float(value: Real) -> float:
+    """A number as a float, infinite where it is beyond all of them."""
+    try:
+        return float(value)
+    except OverflowError:
+        return inf
 
 
 def _meaning(spec: Spec) -> str:
@@ -54,11 +63,11 @@ def _meaning(spec: Spec) -> str:
 def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A list of numbers, or of equally long lists of them."""
     if isinstance(value, str) or not hasattr(value, "__len__") or len(value) == 0:
-        yield at.problem("must be a list of numbers", value=repr(value), remedy=f"write [x, y, ...]: {spec.doc}")
+        yield at.problem("must be a list of numbers", value=shown(value), remedy=f"write [x, y, ...]: {spec.doc}")
         return
     rows = [row if hasattr(row, "__len__") and not isinstance(row, str) else [row] for row in value]
     if len({len(row) for row in rows}) > 1:
-        lengths = ", ".join(str(len(row)) for row in rows)
+        lengths = listed(len(row) for row in rows)
         yield at.problem("has rows of different lengths", value=lengths, remedy="give every row as many numbers")
         return
     before = None
@@ -67,8 +76,8 @@ def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         found = list(number_problems(item, spec, place))
         if not found and spec.rising == "strictly" and before is not None and float(item) <= before:
             fault = "comes after" if float(item) < before else "stands twice, after"
-            message, shown = f"{fault} {before:g} {at.unit}", f"{float(item):g} {at.unit}"
-            found = [place.problem(message, value=shown, remedy="sort the numbers; each must be above the one before")]
+            message, given = f"{fault} {before:g} {at.unit}", f"{float(item):g} {at.unit}"
+            found = [place.problem(message, value=given, remedy="sort the numbers; each must be above the one before")]
         if found:
             yield from found
             return
@@ -81,7 +90,7 @@ def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield from number_problems(value, spec, at)
         return
     if isinstance(value, str) or not hasattr(value, "__len__") or len(value) == 0:
-        yield at.problem("must be a list of points", value=repr(value), remedy=f"write [[x, y], ...]: {spec.doc}")
+        yield at.problem("must be a list of points", value=shown(value), remedy=f"write [[x, y], ...]: {spec.doc}")
         return
     before = None
     for number, point in enumerate(value, 1):
@@ -97,7 +106,7 @@ def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
 def _point(point: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A pair of finite numbers."""
     if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
-        yield at.problem("must be a pair of numbers", value=repr(point), remedy="write [x, y]")
+        yield at.problem("must be a pair of numbers", value=shown(point), remedy="write [x, y]")
         return
     plain, bounded = Spec("param", spec.unit_x, ""), Spec("param", at.unit, "", at_least=spec.at_least)
     for number, part in zip(point, (plain, bounded), strict=True):
@@ -109,9 +118,9 @@ def _order(before: Any, point: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if before is None:
         return
     (x, y), (x_next, y_next) = ((float(a), float(b)) for a, b in (before, point))
-    shown = f"{x_next:g} {spec.unit_x}"
+    given = f"{x_next:g} {spec.unit_x}"
     if x_next < x or (x_next == x and spec.rising == "strictly"):
         fault = "comes after" if x_next < x else "stands twice, after"
-        yield at.problem(f"{fault} {x:g} {spec.unit_x}", value=shown, remedy="sort the points; x must increase")
+        yield at.problem(f"{fault} {x:g} {spec.unit_x}", value=given, remedy="sort the points; x must increase")
     elif x_next > x and not isfinite((y_next - y) / (x_next - x)):
-        yield at.problem(f"is too close to {x:g} {spec.unit_x}", value=shown, remedy="leave one of the points out")
+        yield at.problem(f"is too close to {x:g} {spec.unit_x}", value=given, remedy="leave one of the points out")

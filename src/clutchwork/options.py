@@ -5,19 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from numbers import Real
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.errors import near
+from clutchwork.calls import explain
+from clutchwork.errors import OptionError, UseError, near
+from clutchwork.shown import shown
 
 Method = Literal["rodas5p", "dopri5", "auto"]
 METHODS: dict[str, int] = {"auto": 0, "rodas5p": 1, "dopri5": 2}
 OUTPUTS = ("smooth", "steps")
 
 # A grid finer than this does not fit into memory together with its signals.
-MOST_ROWS = 100_000_000
+MOST_ROWS = 10_000_000
+# no run lasts that long
+MOST_COUNTED = 10**15
 
 
 @dataclass(frozen=True)
@@ -47,28 +52,28 @@ class Options:
     work: bool = True  # integrate the work of all elements, for the energy balance
 
     def __post_init__(self) -> None:
-        """Refuse values that make no sense, with what to write instead."""
-        for name in ("rtol", "atol"):
-            _positive(name, getattr(self, name), "")
-        for name in ("first_step", "max_step", "dt"):
-            if getattr(self, name) is not None:
-                _positive(name, getattr(self, name), " s")
-        for name in ("max_steps", "max_events", "points"):
-            if getattr(self, name) < 1:
-                raise ValueError(f"{name} is {getattr(self, name)}: it must be at least 1")
-        if self.rtol < 1e-14:
-            raise ValueError(f"rtol is {self.rtol:g}: double precision carries no more than 1e-14")
-        _one_of("method", self.method, tuple(METHODS))
-        _one_of("output", self.output, OUTPUTS)
+        """Refuse values that make no sense, with what to write instead, all of them at once."""
+        found = [_not_positive(name, getattr(self, name)) for name in ("rtol", "atol")]
+        lengths = [(name, getattr(self, name)) for name in ("first_step", "max_step", "dt")]
+        found += [_not_positive(name, value, " s") for name, value in lengths if value is not None]
+        counts = (("max_steps", MOST_COUNTED), ("max_events", MOST_COUNTED), ("points", MOST_ROWS))
+        found += [_not_whole(name, getattr(self, name), most) for name, most in counts]
+        found += [_no_flag(name, getattr(self, name)) for name in ("angles", "work")]
+        if isinstance(self.rtol, Real) and 0.0 < self.rtol < 1e-14:
+            found.append(f"rtol is {float(self.rtol):g}: double precision carries no more than 1e-14")
+        found += [_not_one_of("method", self.method, tuple(METHODS)), _not_one_of("output", self.output, OUTPUTS)]
         if self.dt is not None and self.times is not None:
-            raise ValueError("dt and times are both given: give the spacing or the instants, not both")
+            found.append("dt and times are both given: give the spacing or the instants, not both")
+        if any(found):
+            raise OptionError([fault for fault in found if fault])
 
     def changed(self, changes: dict[str, Any]) -> Options:
-        """These options with some replaced; an unknown name raises TypeError with a near match."""
+        """These options with some replaced; an unknown name is a UseError, a TypeError, with a near match."""
         known = [item.name for item in fields(self)]
-        for name in changes:
-            if name not in known:
-                raise TypeError(f"simulate has no option {name!r}{near(name, known)}; options are {', '.join(known)}")
+        words = [*known, "options", "progress"]
+        found = [f"no option {name!r}{near(name, words)}" for name in changes if name not in known]
+        if found:
+            raise UseError("simulate", [*found[:-1], f"{found[-1]}; options are {', '.join(known)}"])
         return replace(self, **changes)
 
     def grid(self, t_end: float) -> NDArray[np.float64] | None:
@@ -92,28 +97,62 @@ class Options:
         }
 
 
+explain(Options)
+
+
 def end_time(t_end: float) -> float:
     """Check the end time of a run [s]."""
-    return _positive("t_end", t_end, " s")
+    fault = _not_positive("t_end", t_end, " s")
+    if fault:
+        raise OptionError([fault])
+    return float(t_end)
 
 
-def _positive(name: str, value: float, unit: str) -> float:
-    number = float(value)
-    if not (math.isfinite(number) and number > 0.0):
-        raise ValueError(f"{name} is {number:g}{unit}: it must be a finite number above 0")
-    return number
+def _not_positive(name: str, value: object, unit: str = "") -> str:
+    """What is wrong with a number that must be finite and above zero, empty when nothing is."""
+    number = _as_number(value)
+    if number is None:
+        return f"{name} is {shown(value)}: it must be a number" + (f" in{unit}" if unit else "")
+    return (
+        ""
+        if math.isfinite(number) and number > 0.0
+        else f"{name} is {number:g}{unit}: it must be a finite number above 0"
+    )
 
 
-def _one_of(name: str, value: str, known: Sequence[str]) -> None:
-    if value not in known:
-        raise ValueError(f"{name} is {value!r}{near(str(value), known)}; it may be {', '.join(known)}")
+def _not_whole(name: str, value: object, most: int) -> str:
+    number = _as_number(value)
+    if number is None or math.isnan(number) or (math.isfinite(number) and not number.is_integer()):
+        return f"{name} is {shown(value)}: it must be a whole number"
+    if number < 1:
+        return f"{name} is {shown(value)}: it must be at least 1"
+    return f"{name} is {shown(value)}: it must be at most {most}" if number > most else ""
+
+
+def _no_flag(name: str, value: object) -> str:
+    return "" if value is True or value is False else f"{name} is {shown(value)}: it must be True or False"
+
+
+def _as_number(value: object) -> float | None:
+    if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+
+
+def _not_one_of(name: str, value: object, known: Sequence[str]) -> str:
+    return "" if value in known else f"{name} is {shown(value)}{near(value, known)}; it may be {', '.join(known)}"
 
 
 def _uniform(dt: float, t_end: float) -> NDArray[np.float64]:
     """0, dt, 2 dt ... and t_end; a last interval that is only round-off long is dropped."""
-    count = math.floor(t_end / dt * (1.0 + 1e-12))
+    instants = t_end / dt * (1.0 + 1e-12)
+    count = math.floor(instants) if math.isfinite(instants) else MOST_COUNTED
     if count > MOST_ROWS:
-        raise ValueError(f"dt is {dt:g} s: {count} instants up to {t_end:g} s do not fit into memory; take a larger dt")
+        fault = f"dt is {dt:g} s: {count:.6g} instants up to {t_end:g} s do not fit into memory; take a larger dt"
+        raise OptionError([fault])
     grid: NDArray[np.float64] = np.minimum(np.arange(count + 1) * dt, t_end)
     if t_end - grid[-1] > 1e-9 * dt:
         return np.append(grid, t_end)
@@ -122,13 +161,15 @@ def _uniform(dt: float, t_end: float) -> NDArray[np.float64]:
 
 
 def _given(times: Sequence[float] | NDArray[np.float64], t_end: float) -> NDArray[np.float64]:
-    grid = np.array(times, dtype=float)
+    try:
+        grid = np.array(times, dtype=float)
+    except (TypeError, ValueError):
+        raise OptionError([f"times are {shown(times)}: they must be a row of numbers [s]"]) from None
     if grid.ndim != 1 or grid.size == 0:
-        raise ValueError("times must be a row of at least one instant")
+        raise OptionError(["times must be a row of at least one instant"])
     if not np.all(np.isfinite(grid)) or np.any(np.diff(grid) < 0.0):
-        raise ValueError("times must be finite and must not decrease; an instant given twice gets both limits there")
+        raise OptionError(["times must be finite and must not decrease; an instant given twice gets both limits there"])
     if grid[0] < 0.0 or grid[-1] > t_end:
-        raise ValueError(
-            f"times run from {grid[0]:g} to {grid[-1]:g} s: they must lie between 0 and t_end = {t_end:g} s"
-        )
+        fault = f"times run from {grid[0]:g} to {grid[-1]:g} s: they must lie between 0 and t_end = {t_end:g} s"
+        raise OptionError([fault])
     return grid

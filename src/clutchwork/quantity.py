@@ -7,9 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork import units
 from clutchwork.errors import ClutchworkError, near
+from clutchwork.shown import shown
 
 if TYPE_CHECKING:
     from clutchwork.schema import Spec
+
+
+# units of temperature that no factor leads to kelvin from
+OTHER_ZERO = ("degC", "C", "degF", "F")
 
 
 class QuantityError(ClutchworkError, ValueError):
@@ -29,25 +34,29 @@ def in_si(value: Any, unit: str, others: tuple[str, ...] = (), factor: float = 1
     if isinstance(value, Mapping):
         unknown = [key for key in value if key not in ("value", "unit")]
         if unknown or "value" not in value:
-            raise QuantityError("must be a number", repr(dict(value)), 'write a number, or {value = 1.0, unit = "..."}')
+            raise QuantityError(
+                "must be a number", shown(dict(value)), 'write a number, or {value = 1.0, unit = "..."}'
+            )
         if "unit" in value:
             factor = factor_to_si(value["unit"], unit, others, dict(value))
+        if isinstance(value["value"], Mapping):
+            raise QuantityError("holds a table", shown(value), 'write {value = 1.0, unit = "..."}')
         return in_si(value["value"], unit, others, factor)
     if isinstance(value, str):
         parts = units.split(value)
         if parts is None:
             raise QuantityError(
-                "is no number", repr(value), f"write a number in [{unit}], or a text such as '1.5 {unit}'"
+                "is no number", shown(value), f"write a number in [{unit}], or a text such as '1.5 {unit}'"
             )
         if not parts[1]:
-            raise QuantityError("is a text without unit", repr(value), "write the number without quotes")
-        return parts[0] * factor_to_si(parts[1], unit, others, value)
+            raise QuantityError("is a text without unit", shown(value), "write the number without quotes")
+        return parts[0] * factor_to_si(parts[1], unit, others, value) + 0.0
     return value if whole else _times(value, factor)
 
 
-def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), shown: object = None) -> float:
+def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), whole: object = None) -> float:
     """Factor from a given unit to the wanted SI unit; QuantityError, which shows the value, where they do not fit."""
-    value = repr(given if shown is None else shown)
+    value = shown(given if whole is None else whole)
     wanted = " or ".join(f"[{name}]" for name in (unit, *others))
     if not isinstance(given, str):
         raise QuantityError("must be a unit", value, f"write it as text, such as {unit!r}")
@@ -56,7 +65,10 @@ def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), shown: obj
     except ValueError as error:
         word = str(error)
         remedy = f"give it in {wanted}"
-        raise QuantityError(f"has the unknown unit {word!r}{near(word, units.known())}", value, remedy) from None
+        if word in OTHER_ZERO:
+            remedy = f"{remedy}; temperatures are in K; 0 degC is 273.15 K"
+            raise QuantityError(f"is in {word}, whose zero is another", value, remedy) from None
+        raise QuantityError(f"has the unknown unit {shown(word)}{near(word, units.known())}", value, remedy) from None
     if all(powers != units.parse(name).powers for name in (unit, *others)):
         raise QuantityError("is in a unit that does not fit", value, f"give it in {wanted}")
     return factor
@@ -71,7 +83,7 @@ def curve_in_si(value: Any, spec: Spec, unit: str, factor: float = 1.0) -> Any:
     unknown = [key for key in value if key not in ("points", "unit_x", "unit")]
     if unknown or "points" not in value:
         raise QuantityError(
-            "must be a list of points", repr(dict(value)), "write {points = [[x, y], ...], unit_x, unit}"
+            "must be a list of points", shown(dict(value)), "write {points = [[x, y], ...], unit_x, unit}"
         )
     x = factor_to_si(value["unit_x"], spec.unit_x, spec.units_x) if "unit_x" in value else 1.0
     y = factor_to_si(value["unit"], unit, spec.units) if "unit" in value else factor
@@ -84,7 +96,7 @@ def numbers_in_si(value: Any, spec: Spec, unit: str) -> Any:
     if isinstance(value, Mapping):
         unknown = [key for key in value if key not in ("values", "unit")]
         if unknown or "values" not in value:
-            raise QuantityError("must be a list of numbers", repr(dict(value)), "write {values = [x, y, ...], unit}")
+            raise QuantityError("must be a list of numbers", shown(dict(value)), "write {values = [x, y, ...], unit}")
         factor = factor_to_si(value["unit"], unit, spec.units) if "unit" in value else 1.0
         value = value["values"]
     if not isinstance(value, list):
@@ -101,4 +113,11 @@ def _scaled(value: Any, x: float, y: float) -> Any:
 
 def _times(value: Any, factor: float) -> Any:
     """A number times a factor; true, false and what is no number stay."""
-    return value if isinstance(value, bool) or not isinstance(value, int | float) else value * factor
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return value
+    try:
+        # minus zero becomes zero, so that what is written reads back to the same bits
+        return value * factor + 0.0
+    except OverflowError:
+        # an integer beyond all floats, which the checks that follow refuse
+        return value

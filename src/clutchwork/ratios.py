@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from itertools import combinations, pairwise
+from math import comb
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,15 +60,30 @@ def ratio(system: System, closed: Collection[str], shafts: tuple[str, str]) -> f
     return value if np.allclose(upper, value * lower, rtol=0.0, atol=ROUND_OFF * size) else None
 
 
-def gears(system: System, shafts: tuple[str, str]) -> Iterator[tuple[tuple[str, ...], float]]:
-    """Every smallest set of closed contacts that fixes a finite ratio other than zero, with that ratio."""
+@dataclass(frozen=True)
+class Gears:
+    """Smallest sets of closed contacts that fix a finite ratio other than zero, with that ratio."""
+
+    ratios: tuple[tuple[tuple[str, ...], float], ...]
+    untried: int | None  # sets of that many contacts or more were not tried; None: all were
+
+
+def gears(system: System, shafts: tuple[str, str]) -> Gears:
+    """Look for the gears of a model, up to sets of as many contacts as can be tried in a moment."""
     names, tried = [contact.name for contact in system.contacts], 0
-    found: list[tuple[str, ...]] = []
     for size in range(len(names) + 1):
+        tried += comb(len(names), size)
+        if tried > MOST_COMBINATIONS:
+            return Gears(tuple(_gears(system, shafts, names, size)), size)
+    return Gears(tuple(_gears(system, shafts, names, len(names) + 1)), None)
+
+
+def _gears(
+    system: System, shafts: tuple[str, str], names: list[str], sizes: int
+) -> Iterator[tuple[tuple[str, ...], float]]:
+    found: list[tuple[str, ...]] = []
+    for size in range(sizes):
         for closed in combinations(names, size):
-            tried += 1
-            if tried > MOST_COMBINATIONS:
-                return
             value = None if any(set(less) <= set(closed) for less in found) else ratio(system, closed, shafts)
             if value is not None:
                 found.append(closed)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.ratios import Phase, gears
+from clutchwork.ratios import Gears, Phase, gears
 from clutchwork.text import columns
 from clutchwork.wiring import wiring
 
@@ -90,20 +90,25 @@ def run_data(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
 def model_text(system: System, shafts: tuple[str, str] | None) -> str:
     """Size of a model and the ratios that its contacts can give."""
     size = ", ".join(f"{count} {name}" for name, count in sizes(system).items())
-    lines = [(" ".join(closed) or "-", number(value)) for closed, value in gears(system, shafts)] if shafts else []
-    if not lines or shafts is None:
+    if shafts is None:
         return size
-    return f"{size}\n\n{columns([('closed', f'{shafts[0]}/{shafts[1]}'), *lines], right={1})}"
+    found = gears(system, shafts)
+    lines = [(" ".join(closed) or "-", number(value)) for closed, value in found.ratios]
+    parts = [size, columns([("closed", f"{shafts[0]}/{shafts[1]}"), *lines], right={1})] if lines else [size]
+    if found.untried is not None:
+        parts.append(f"not tried: {found.untried} or more contacts closed at once, there are too many such sets")
+    return "\n\n".join(parts)
 
 
 def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]:
     """The same as plain data for JSON."""
-    found = gears(system, shafts) if shafts else ()
+    found = gears(system, shafts) if shafts else Gears((), None)
     return {
         "warnings": list(system.warnings),
         "sizes": sizes(system),
         "ratio_of": list(shafts) if shafts else None,
-        "gears": [{"closed": list(closed), "ratio": value} for closed, value in found],
+        "gears": [{"closed": list(closed), "ratio": value} for closed, value in found.ratios],
+        "gears_untried_from": found.untried,
     }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import os
 import time
 import warnings
 from dataclasses import dataclass
@@ -11,13 +12,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.calls import explained
 from clutchwork.channels import Channels
 from clutchwork.control import Control, controllers
+from clutchwork.effort import refuse_endless
+from clutchwork.errors import UseError, caller
 from clutchwork.events import from_rows
 from clutchwork.failure import DONE, NAMES, SimulationError, StoppedEarly, explain, report_faults
 from clutchwork.jumps import jump_times
 from clutchwork.options import Options, end_time
 from clutchwork.record import Progress, Recording, record
+from clutchwork.shown import shown
 from clutchwork.system import System
 from clutchwork.trajectory import Trajectory
 from clutchwork.wiring import row_columns, wiring
@@ -38,6 +43,7 @@ class Job:
     control: Control
 
 
+@explained("simulate")
 def simulate(
     model: Driveline | System,
     t_end: float,
@@ -56,12 +62,24 @@ def simulate(
     A controller that raises ends in `SimulationError`, which holds the trajectory so far too.
     """
     t_end = end_time(t_end)
+    if options is not None and not isinstance(options, Options):
+        raise UseError("simulate", [f"options is {shown(options)}: it must be cw.Options(...)"])
     chosen = (options or Options()).changed(changes)
+    if not isinstance(model, System) and not hasattr(model, "assemble"):
+        raise UseError("simulate", [_no_model(model)])
     system = model if isinstance(model, System) else model.assemble()
+    refuse_endless(system.inputs, t_end, chosen.max_steps)
     control = Control(controllers(system.inputs), functools.cache(lambda: Channels(wiring(system))))
     run = _trajectory(Job(system, t_end, chosen, control), progress)
     report_faults(run)
     return run
+
+
+def _no_model(given: object) -> str:
+    remedy = "give a Driveline or a System"
+    if isinstance(given, str | os.PathLike):
+        remedy = f"a file is read by cw.Driveline.load({os.fspath(given)!r})"
+    return f"{shown(given)} is no model; {remedy}"
 
 
 def again(trajectory: Trajectory, times: Any) -> Trajectory:
@@ -79,7 +97,7 @@ def _trajectory(job: Job, progress: Progress | None) -> Trajectory:
     if failure is not None:
         raise SimulationError(str(failure), made) from failure.__cause__
     if not made.finished:
-        warnings.warn(StoppedEarly(made.message, made), stacklevel=3)
+        warnings.warn(StoppedEarly(made.message, made), stacklevel=caller())
     return made
 
 

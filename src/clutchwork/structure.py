@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.checks import label, ports
 from clutchwork.node import Component, Domain, Node
+from clutchwork.number_checks import as_float
 from clutchwork.rational import ONE, Row, exact, plus
 from clutchwork.schema import Role
 
@@ -80,7 +81,7 @@ class Model:
 
 
 def _sensible(value: Any, least: float = -inf) -> bool:
-    return isinstance(value, Real) and isfinite(float(value)) and float(value) >= least
+    return isinstance(value, Real) and isfinite(as_float(value)) and float(value) >= least
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork import archive
 from clutchwork.errors import ClutchworkError, near
+from clutchwork.files import reason
 from clutchwork.layout import COUNTS, FIELDS, layout_text
 from clutchwork.node import Component, Node, Signal, ThermalNode
 from clutchwork.schema import schema_hash
+from clutchwork.shown import shortened
 
 MAGIC = b"CLUTCHWK"
 TYPES: dict[str, np.dtype[Any]] = {"f8": np.dtype("<f8"), "i4": np.dtype("<i4")}
@@ -128,29 +131,31 @@ class System:
         return cls(name=name, arrays=frozen(arrays))
 
     def save(self, path: str | Path) -> None:
-        """Write arrays and model to a .npz file; nothing in it is code."""
+        """Write arrays and model to an archive; nothing in it is code."""
         if not self.model:
             raise SystemFormatError(
                 "this System has a controller in Python or no names; save its driveline or to_bytes()"
             )
         stored = {"model": json.dumps(dict(self.model), allow_nan=False), "independent": json.dumps(self.independent)}
-        text: dict[str, Any] = {key: np.frombuffer(value.encode(), np.uint8) for key, value in stored.items()}
-        content = np.frombuffer(self.to_bytes(), np.uint8)
-        with Path(path).open("wb") as stream:
-            np.savez_compressed(stream, content=content, **text)
+        archive.write(path, {"content": self.to_bytes(), **{key: value.encode() for key, value in stored.items()}})
 
     @classmethod
     def load(cls, path: str | Path) -> System:
-        """Read a file that `save` wrote."""
+        """Read a file that `save` wrote; SystemFormatError or ModelError for any other."""
         from clutchwork.driveline import Driveline
 
         try:
-            with np.load(Path(path), allow_pickle=False) as stored:
-                content, model, independent = (stored[key].tobytes() for key in ("content", "model", "independent"))
-        except (KeyError, ValueError, OSError) as error:
-            raise SystemFormatError(f"{path}: no System can be read: {error}; write it with System.save") from None
-        named = Driveline.from_dict(json.loads(model)).assemble(independent=json.loads(independent))
+            content, *texts = archive.read(path, ("content", "model", "independent"))
+            model, independent = map(json.loads, texts)
+        except (ValueError, RecursionError, OSError) as error:
+            why = reason(error) if isinstance(error, OSError) else shortened(str(error))
+            raise SystemFormatError(f"{path}: no System can be read: {why}; write it with System.save") from None
+        if not isinstance(independent, list) or not all(isinstance(name, str) for name in independent):
+            raise SystemFormatError(f"{path}: its independent speeds are no names; write it with System.save")
+        named = Driveline.from_dict(model).assemble(independent=independent)
         plain = cls.from_bytes(content, named.name)
+        if any(plain.arrays[name].shape != array.shape for name, array in named.arrays.items()):
+            raise SystemFormatError(f"{path}: its arrays do not fit its model; write it with System.save")
         return replace(named, arrays=plain.arrays)
 
 

@@ -47,19 +47,6 @@ class Tabulated(Law):
     extrapolation: str = beyond_the_ends()
 
 
-# no lining works below this temperature [K]: the numbers are in degrees Celsius
-COLDEST = 150.0
-
-
-def cold(field: str, temperatures: Sequence[float]) -> Found:
-    """Temperatures that cannot be kelvin."""
-    lowest = min(temperatures)
-    if lowest >= COLDEST:
-        return []
-    remedy = f"temperatures are in K; {lowest:g} degC would be {lowest + 273.15:g} K"
-    return [(field, f"starts at {lowest:g} K, where no lining works", remedy)]
-
-
 def few_points(field: str, count: int, interpolation: str) -> Found:
     """Fewer points along an axis than the interpolation needs."""
     fewest = FEWEST[interpolation]

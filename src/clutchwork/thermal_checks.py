@@ -13,6 +13,7 @@ from clutchwork.node import Component, Domain, HeatFlow, Law, Node, Rate, Therma
 from clutchwork.parts import Parts, role
 from clutchwork.places import state_name
 from clutchwork.schema import Role, Spec, specs
+from clutchwork.shown import listed, shown
 
 CAPACITY = Spec("param", "J/K", "heat capacity", above=0.0)
 TEMPERATURE = Spec("param", "K", "temperature at the start", above=0.0)
@@ -36,7 +37,7 @@ def thermal_problems(node: ThermalNode) -> Iterator[Problem]:
         yield from number_problems(node.temperature, TEMPERATURE, At(path, "temperature", "K"))
     elif is_reference(node.temperature):
         message, remedy = "must be a number in [K] or a signal", "join the nodes by a Conduction instead"
-        yield At(path, "temperature").problem(message, repr(node.temperature), remedy)
+        yield At(path, "temperature").problem(message, shown(node.temperature), remedy)
     else:
         yield from CHECKS["signal"](node.temperature, AROUND, At(path, "temperature", "K"))
 
@@ -63,9 +64,9 @@ def port_problems(component: Component, thermal: Sequence[ThermalNode], within: 
         foreign = node.name in {other.name for other in thermal} and id(node) not in own
         if foreign or (id(node) not in own and not within.holds(node)):
             found = near(node.name, [other.name for other in thermal])
-            yield at.inner(name).problem("is of another driveline", repr(node.name), f"create it in this one{found}")
+            yield at.inner(name).problem("is of another driveline", shown(node.name), f"create it in this one{found}")
     if role(component) is Role.FLOW and len({node.name for node in joined.values()}) < len(joined):
-        message = f"{' and '.join(joined)} are both on {next(iter(joined.values())).name!r}"
+        message = f"{' and '.join(joined)} are both on {shown(next(iter(joined.values())).name)}"
         yield at.problem(message, remedy="attach them to two thermal nodes")
 
 
@@ -75,17 +76,36 @@ class Known:
 
     states: Mapping[str, tuple[str, ...]]  # thermal node or "process.state" -> unit
     acting: frozenset[str]  # torque elements and contacts
-    shafts: frozenset[str]
+    added: Mapping[int, Any]  # shafts, thermal nodes and elements of the driveline by identity
+    parts: Mapping[str, Sequence[Any]]  # what elements are made of by name, made anew each time it is asked for
 
     @classmethod
-    def of(cls, nodes: Sequence[Node], parts: Parts) -> Known:
+    def of(
+        cls, nodes: Sequence[Node], thermal: Sequence[ThermalNode], elements: Sequence[Component], parts: Parts
+    ) -> Known:
         """Everything in a driveline."""
         states: dict[str, tuple[str, ...]] = {node.name: ("K",) for node in parts.thermal}
         for process in parts.components:
             if role(process) is Role.PROCESS:
                 states |= {f"{process.name}.{s.name}": (s.unit,) for s in type(process).states}  # type: ignore[attr-defined]
         acting = frozenset(c.name for c in parts.components if role(c) in (Role.TORQUE, Role.CONTACT))
-        return cls(states, acting, frozenset(node.name for node in nodes))
+        added = {id(thing): thing for thing in (*nodes, *thermal, *elements)}
+        inner = dict[str, list[Any]]()
+        for part in (part for element in elements for part in _inside(element)):
+            inner.setdefault(part.name, []).append(part)
+        return cls(states, acting, added, inner)
+
+    def holds(self, target: Any) -> bool:
+        """Whether a shaft, node or element was added itself, or is part of one that was."""
+        return id(target) in self.added or target in self.parts.get(target.name, ())
+
+
+def _inside(component: Component) -> Iterator[Component | ThermalNode]:
+    """Everything that an element is made of, parts of its parts included."""
+    for part in component.parts():
+        yield part
+        if isinstance(part, Component) and part.name != component.name:
+            yield from _inside(part)
 
 
 def reference_problems(component: Component, known: Known) -> Iterator[Problem]:
@@ -123,20 +143,35 @@ def _reference(value: Any, spec: Spec, at: At, component: Component, known: Know
 
 def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:
     """Message, value and remedy where a reference leads nowhere."""
-    remedy = "add it to this driveline"
-    target = value.of if isinstance(value, Rate | HeatFlow) else value
+    direct = isinstance(value, Rate | HeatFlow)
+    target = value.of if direct else value[0] if isinstance(value, tuple) else value
+    if not known.holds(target):
+        return _foreign(target, value, known)
     if isinstance(target, Node):
-        return None if target.name in known.shafts else ("is no shaft of this driveline", _words(value), remedy)
-    if isinstance(value, Rate | HeatFlow):
+        return None
+    if direct:
         found = target.name in known.acting
-        return None if found else ("is no torque element or contact of this driveline", _words(value), remedy)
-    process = value[0] if isinstance(value, tuple) else value
-    if isinstance(process, Component) and role(process) is not Role.PROCESS:
+        return None if found else ("is no torque element or contact", _words(value), "give one of these")
+    if isinstance(target, Component) and role(target) is not Role.PROCESS:
         names = "a signal, a thermal node or a process"
         return "is an element without output", _words(value), f"give {names}, or its Rate or HeatFlow"
     if state_name(value) in known.states:
         return None
-    return f"is not known{near(state_name(value), list(known.states))}", repr(state_name(value)), remedy
+    own = [name for name in known.states if name.startswith(f"{target.name}.")]
+    return f"is not known{near(state_name(value), own)}", shown(state_name(value)), f"known are {listed(own)}"
+
+
+def _foreign(target: Any, value: Any, known: Known) -> tuple[str, str, str]:
+    """A shaft, node or element that is referred to and was not added."""
+    if target.name in known.parts or any(thing.name == target.name for thing in known.added.values()):
+        remedy = "give the one that was added, or add this one under a name of its own"
+        return "is not the one that was added to this driveline under this name", _words(value), remedy
+    remedy = (
+        "add it: d.add(...), and keep what that hands back"
+        if isinstance(target, Component)
+        else "create it in this one"
+    )
+    return "was not added to this driveline", _words(value), remedy
 
 
 def _unit(value: Any, known: Known) -> str:
@@ -151,5 +186,5 @@ def _unit(value: Any, known: Known) -> str:
 def _words(value: Any) -> str:
     """A reference in words."""
     if isinstance(value, Rate | HeatFlow):
-        return f"{type(value).__name__} of {value.of.name!r}"
-    return repr(value[0].name if isinstance(value, tuple) else value.name)
+        return f"{type(value).__name__} of {shown(value.of.name)}"
+    return shown(value[0].name if isinstance(value, tuple) else value.name)

@@ -44,8 +44,10 @@ _TABLE: dict[str, tuple[float, tuple[int, int, int, int, int]]] = {
     "K": (1.0, (0, 0, 0, 0, 1)),
     "bar": (1e5, (1, -1, -2, 0, 0)),
 }
-_FACTOR = re.compile(r"([A-Za-z%]+|1)\^?(-?\d+)?")
+_FACTOR = re.compile(r"([A-Za-z%]{1,20}|1)\^?(-?\d)?")
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+# more is no quantity
+LONGEST = 200
 _POWERS = str.maketrans({"²": "2", "³": "3", "·": " ", "*": " ", "°": "deg"})
 
 
@@ -77,7 +79,7 @@ def parse(text: str) -> Unit:
 
 def split(text: str) -> tuple[float, str] | None:
     """Number and unit of a text such as "0.2 kg m2"; None when it does not start with a number."""
-    match = _QUANTITY.fullmatch(text)
+    match = _QUANTITY.fullmatch(text.strip()) if len(text) <= LONGEST else None
     return (float(match[1]), match[2]) if match else None
 
 

@@ -179,10 +179,10 @@ def test_column_reads_times_and_values(tmp_path):
         ("time,F2\n0,1\n", "column", "no column 'F1'"),
         ("time,F1s\n0,1\n", "column", "did you mean 'F1s'?"),
         ("t,F1\n0,1\n", "time", "no column 'time'"),
-        ("time,F1\n0,1\n1,abc\n", "column", "line 3 of 'p.csv', column 'F1': 'abc' is not a finite number"),
-        ("time,F1\n0,1\n1\n", "column", "line 3 of 'p.csv', column 'F1': '' is not a finite number"),
-        ("time,F1\n0,1\nnan,1\n", "time", "line 3 of 'p.csv', column 'time': 'nan' is not a finite number"),
-        ("time,F1\n0,1\n2,1\n1,1\n", "time", "line 4 of 'p.csv': time 1 s comes after 2 s"),
+        ("time,F1\n0,1\n1,abc\n", "column", "line 3 of 'p.csv': the cell in column 'F1' is not a finite number"),
+        ("time,F1\n0,1\n1\n", "column", "line 3 of 'p.csv': the cell in column 'F1' is empty"),
+        ("time,F1\n0,1\nnan,1\n", "time", "line 3 of 'p.csv': the cell in column 'time' is not a finite number"),
+        ("time,F1\n0,1\n2,1\n1,1\n", "time", "line 4 of 'p.csv': its time is before that of line 3"),
         ('time,F1\n0,"1,5"\n', "column", "with a point for the decimals"),
         ("", "path", "is empty"),
         ("time,F1\n", "path", "has no line of numbers"),
@@ -191,7 +191,7 @@ def test_column_reads_times_and_values(tmp_path):
 def test_column_names_what_is_wrong_with_its_file(tmp_path, text, quantity, words):
     with pytest.raises(FileError) as caught:
         _ = _column(tmp_path, text).points
-    assert caught.value.quantity == quantity
+    assert [found for found, *_ in caught.value.problems] == [quantity]
     assert words in str(caught.value)
 
 

@@ -72,7 +72,7 @@ def test_redundant_rows_are_accepted_and_noted():
     d, *_ = _geared(2.5, 2.5)
     system = d.assemble()
     assert system.counts["speeds"] == 1
-    assert system.notes == ('element "g1" (gear) and element "g2" (gear): one of them repeats what the others say',)
+    assert system.notes == ('cw.Gear("g1") and cw.Gear("g2"): one of them repeats what the others say',)
 
 
 def test_redundancy_is_seen_through_decimals():
@@ -90,7 +90,7 @@ def test_contradictory_rows_are_named_and_no_others():
     c = d.shaft("c", inertia=1.0)
     d.add(cw.Gear("innocent", input=a, output=c, ratio=5.0))
     (message,) = _messages(d)
-    assert 'element "g1" (gear) and element "g2" (gear): contradict each other' in message
+    assert 'cw.Gear("g1") and cw.Gear("g2"): contradict each other' in message
     assert 'shaft "a"' in message
     assert "innocent" not in message
 
@@ -101,13 +101,13 @@ def test_contradiction_around_a_loop():
     for name, first, second, ratio in (("ab", a, b, 2), ("bc", b, c, 2), ("ca", c, a, 0.26)):
         d.add(cw.Gear(name, input=first, output=second, ratio=ratio))
     (message,) = _messages(d)
-    assert all(f'element "{name}"' in message for name in ("ab", "bc", "ca"))
+    assert all(f'cw.Gear("{name}")' in message for name in ("ab", "bc", "ca"))
 
 
 def test_a_shaft_that_a_gear_holds_still():
     d = cw.Driveline()
     d.add(cw.Gear("g", input=d.shaft("a", inertia=1.0), output=d.housing, ratio=2.0))
-    assert _messages(d) == ['element "g" (gear): holds shaft "a" still for ever; use the housing in place of the shaft']
+    assert _messages(d) == ['cw.Gear("g"): holds shaft "a" still for ever; use the housing in place of the shaft']
 
 
 def test_prescribed_speeds_that_follow_from_each_other():
@@ -253,7 +253,7 @@ def test_a_shaft_without_inertia_between_springs_moves_as_in_closed_form(first):
 @pytest.mark.parametrize("other", [_spring(10.0), _shaft(10.0, 1.0), _clutch], ids=["spring", "damped", "clutch"])
 def test_contact_at_a_shaft_without_inertia(other):
     (message,) = _messages(_between(_clutch, other))
-    assert 'shaft "x": inertia is missing at element "e1" (clutch)' in message
+    assert 'shaft "x": inertia is missing at cw.Clutch("e1")' in message
     assert "give it inertia > 0 kg m2" in message
 
 

@@ -48,7 +48,7 @@ def test_what_is_no_finite_number_is_named(cls, name, wrong):
     found = [problem for problem in component_problems(element) if problem.quantity == name]
     assert found
     assert '"x"' in found[0].path
-    assert cls.kind in found[0].path
+    assert f"cw.{cls.__name__}" in found[0].path
 
 
 @pytest.mark.parametrize(("cls", "name"), CASES, ids=_name)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from clutchwork.heating import Heating
-from clutchwork.node import Node
+from clutchwork.node import Node, Passive
 from clutchwork.schema import Role, component, param, port
 
 
@@ -14,6 +16,12 @@ class Damper(Heating):
     Use it for fluid couplings near synchronous speed, viscous losses and drag in oil.
     """
 
+    lossy: ClassVar[bool] = True
+
     base: Node = port("side that the rate is counted from")
     follower: Node = port("side whose motion counts positive")
     damping: float = param("N m s/rad", "viscous damping", at_least=0.0, units=("N s/m",))
+
+    def passive(self) -> Passive:
+        """Stiffness and damping, which are all that it is."""
+        return Passive(0.0, self.damping)

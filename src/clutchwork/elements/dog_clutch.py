@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import tau
+from typing import ClassVar
 
 from clutchwork.heating import Heating
 from clutchwork.node import Node, SignalLike
@@ -27,6 +28,8 @@ class DogClutch(Heating):
 
     Source of the damping: K. H. Hunt, F. R. E. Crossley 1975, doi:10.1115/1.3423596.
     """
+
+    lossy: ClassVar[bool] = True
 
     base: Node = port("side that the slip is counted from")
     follower: Node = port("side whose motion counts positive")

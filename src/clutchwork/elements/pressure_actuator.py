@@ -5,6 +5,7 @@ from __future__ import annotations
 from clutchwork.geometry import Found
 from clutchwork.node import Component, SignalLike
 from clutchwork.schema import Role, State, component, option, param, signal
+from clutchwork.speech import say
 
 
 @component(
@@ -34,7 +35,7 @@ class PressureActuator(Component):
         if self.filled or self.initial_pressure == 0.0:
             return []
         fault = f"is {self.initial_pressure:g} Pa, and the piston is not filled"
-        return [("initial_pressure", fault, "give filled = true")]
+        return [("initial_pressure", fault, f"give {say('filled = true', 'filled=True')}")]
 
     def initial_states(self) -> tuple[float, ...]:
         """Pressure at the start [Pa]; of an empty piston less than none by what it has to fill."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Node
+from clutchwork.node import Component, Node, Passive
 from clutchwork.schema import Role, State, component, param, port
 
 
@@ -22,3 +22,7 @@ class Spring(Component):
     def initial_states(self) -> tuple[float, ...]:
         """Spring torque at the start [N m]."""
         return (self.stiffness * self.initial_twist,)
+
+    def passive(self) -> Passive:
+        """Stiffness and damping, which are all that it is."""
+        return Passive(self.stiffness, 0.0)

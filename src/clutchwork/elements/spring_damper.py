@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from clutchwork.heating import Heating
-from clutchwork.node import Node
+from clutchwork.node import Node, Passive
 from clutchwork.schema import Role, State, component, param, port
 
 
@@ -15,6 +17,8 @@ class SpringDamper(Heating):
     The torque on the follower is -(stiffness twist + damping rate), with twist = follower - base - free angle.
     """
 
+    lossy: ClassVar[bool] = True
+
     base: Node = port("side that the twist is counted from")
     follower: Node = port("side whose motion counts positive")
     stiffness: float = param("N m/rad", "torsional stiffness", above=0.0, units=("N/m",))
@@ -24,3 +28,7 @@ class SpringDamper(Heating):
     def initial_states(self) -> tuple[float, ...]:
         """Spring torque at the start [N m]."""
         return (self.stiffness * self.initial_twist,)
+
+    def passive(self) -> Passive:
+        """Stiffness and damping, which are all that it is."""
+        return Passive(self.stiffness, self.damping)

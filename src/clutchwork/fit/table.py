@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,10 +11,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.column_file import MOST_BYTES
 from clutchwork.errors import near
+from clutchwork.files import open_regular
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.measurement import Measurement, measurement
 from clutchwork.quantity import QuantityError, factor_to_si
+from clutchwork.shown import listed
 from clutchwork.signals.column import Column
 from clutchwork.units import parse
 
@@ -57,7 +61,7 @@ def read(path: str | Path, columns: dict[str, str | float]) -> Measurement:
 def _heads(path: Path) -> list[str]:
     """The first line of the file; what else is wrong with it, reading the columns tells."""
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
+        with open_regular(path, MOST_BYTES) as file, io.TextIOWrapper(file, "utf-8-sig", newline="") as stream:
             return [name.strip() for name in next(csv.reader(stream), [])]
     except (OSError, UnicodeDecodeError, csv.Error):
         return []
@@ -73,7 +77,7 @@ def _head(name: str, wanted: str, known: list[str]) -> Head:
     if not same and not alike:
         if known:
             hint = near(wanted, known) or near(base, [_split(head)[0] for head in known])
-            remedy = f"the columns are {', '.join(known)}{hint}"
+            remedy = f"the columns are {listed(known)}{hint}"
             if len(known) == 1 and ";" in known[0]:
                 remedy = "separate the columns with commas, not with semicolons"
             raise FitError(name, f"has no column {wanted!r}", remedy)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from clutchwork.node import SignalLike
 from clutchwork.schema import Role, component, numbers, signal
-from clutchwork.tables import Found, Tabulated, cold, continued, crossing, few_points, slip_axis
+from clutchwork.tables import Found, Tabulated, continued, crossing, few_points, slip_axis
 
 
 @component(Role.LAW)
@@ -62,11 +62,10 @@ class FrictionMap(Tabulated):
         return []
 
     def advice(self) -> Found:
-        """Temperatures that cannot be meant, and continuations that fall to zero."""
-        found = cold("temperatures", self.temperatures)
+        """Continuations that fall to zero."""
         rows = [tuple(zip(self.speeds, row, strict=True)) for row in self.kinetic]
         columns = [tuple(zip(self.temperatures, column, strict=True)) for column in zip(*self.kinetic, strict=True)]
-        found += continued("kinetic", rows, "rad/s", self.extrapolation, self.interpolation)
+        found = continued("kinetic", rows, "rad/s", self.extrapolation, self.interpolation)
         # over the temperature it goes on by its last secants in either manner
         return found + continued("kinetic", columns, "K", self.extrapolation, "linear")
 

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from clutchwork.node import Law
 from clutchwork.schema import Role, State, choice, component, flag, param
+from clutchwork.speech import say
 from clutchwork.stribeck import Found, static_problems
 
 # least inner friction over 1 - kinetic/static: largest (1 - exp(-x^2))/x, and that over the slope of tanh at 1
@@ -58,16 +59,17 @@ class Mykhalevych(Law):
         if self.passive:
             return []
         found, fall = list[tuple[str, str, str]](), 1.0 - self.kinetic / self.static
+        passive = say("passive = true", "passive=True")
         driving = self._driving() if self.reset == "saturate" else None
         if driving is not None:
             message = f"is too small: fully wound up, the coefficient is below zero from a slip of {driving:g} rad/s on"
-            found.append(("range", message, "raise it, or viscous, or kinetic; or give passive = true"))
+            found.append(("range", message, f"raise it, or viscous, or kinetic; or give {passive}"))
         if self.viscous < AT_THE_ANGLE * fall:
             message = (
                 "is too small to be dissipative: it must be >= 1.52 (1 - kinetic/static)"
                 f" = {AT_THE_ANGLE * fall:g} around the elastic angle, and >= {AT_REST * fall:g} at rest"
             )
-            found.append(("viscous", message, "raise it, or give passive = true"))
+            found.append(("viscous", message, f"raise it, or give {passive}"))
         return found
 
     def _driving(self) -> float | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from clutchwork.node import Points, SignalLike
 from clutchwork.schema import Role, component, curve, signal
-from clutchwork.tables import Found, Tabulated, cold, continued, crossing, few_points, not_positive
+from clutchwork.tables import Found, Tabulated, continued, crossing, few_points, not_positive
 
 
 @component(Role.LAW)
@@ -35,10 +35,9 @@ class TemperatureTable(Tabulated):
         return found + crossing(static, kinetic, "K", places)
 
     def advice(self) -> Found:
-        """Temperatures that cannot be meant, and continuations that fall to zero."""
-        found = cold("static", [temperature for temperature, _ in self.static])
+        """Continuations that fall to zero."""
         # the static coefficient is above the kinetic one wherever that is above zero
-        return found + continued("kinetic", [self.kinetic], "K", self.extrapolation, self.interpolation)
+        return continued("kinetic", [self.kinetic], "K", self.extrapolation, self.interpolation)
 
     def sliding(self) -> float | None:
         """None: it depends on the temperature."""

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def figure_of(height: float) -> Iterator[Figure]:
+def figure_of(height: float, *, formulas: bool = True) -> Iterator[Figure]:
     """A figure as wide as two columns of a journal; what is drawn inside the `with` has the look.
 
-    Parameters: height [mm].
+    Parameters: height [mm]; formulas, whether text between dollars is one, as on logarithmic axes.
     """
     try:
         from matplotlib import rc_context
@@ -25,7 +25,7 @@ def figure_of(height: float) -> Iterator[Figure]:
     except ImportError as error:
         raise ImportError('pictures need matplotlib: pip install "clutchwork[plot]"') from error
 
-    with rc_context(RC):
+    with rc_context({**RC, "text.parse_math": formulas}):
         figure = Figure(figsize=(WIDTH, height * MILLIMETRE), layout="constrained")
         FigureCanvasAgg(figure)
         yield figure

@@ -29,7 +29,7 @@ SCALES = (("Pa", 1e5, "MPa", 1e-6), ("N m", 5e3, "kN m", 1e-3), ("N", 5e3, "kN",
 def speeds(axes: Axes, run: Trajectory, domain: Domain) -> None:
     """Speeds of all members of one domain over time."""
     for name, look in member_looks(run, domain).items():
-        axes.plot(run.time, run[f"{name}.speed"], label=name, **look)
+        axes.plot(run.time, run[f"{name}.speed"], label=named(name), **look)
     unit = "rad/s" if domain is Domain.ROTATION else "m/s"
     axes.set_ylabel(f"speed, {unit}")
     legend(axes)
@@ -53,7 +53,7 @@ def zoom(axes: Axes, run: Trajectory, event: Event) -> None:
     for name, look in member_looks(run, domain).items():
         speed = part[f"{name}.speed"]
         if np.max(speed) >= low and np.min(speed) <= high:
-            axes.plot(part.time, speed, label=name, **look)
+            axes.plot(part.time, speed, label=named(name), **look)
     axes.axvline(event.time, **EVENT_LINE)
     axes.annotate(
         f"{event.element} locks at {event.time:.4f} s", (event.time, 1.0), (4, -4), xycoords=("data", "axes fraction"),
@@ -69,7 +69,7 @@ def inputs(axes: Axes, run: Trajectory, names: dict[str, str]) -> None:
     """What presses some contacts together, signals of one unit by contact."""
     factor, unit = scale(run, list(names.values()))
     for (contact, signal), look in zip(names.items(), contact_looks(run, names).values(), strict=True):
-        axes.plot(run.time, factor * run[signal], label=contact, **look)
+        axes.plot(run.time, factor * run[signal], label=named(contact), **look)
     axes.set_ylabel(f"{pressing(run, names)}, {'share' if unit == '1' else unit}")
     axes.margins(y=0.08)
     legend(axes)
@@ -80,7 +80,7 @@ def torques(axes: Axes, run: Trajectory, names: list[str]) -> None:
     factor, unit = scale(run, [f"{name}.torque" for name in names])
     for name, look in contact_looks(run, names).items():
         torque = factor * run[f"{name}.torque"]
-        axes.plot(run.time, torque, **{**look, "linewidth": 0.9}, label=name)
+        axes.plot(run.time, torque, **{**look, "linewidth": 0.9}, label=named(name))
         is_locked = run[f"{name}.mode"] == LOCKED
         axes.plot(run.time, np.where(is_locked, torque, np.nan), **{**look, "linewidth": 2.4})
     axes.axhline(0.0, color="#B0B0B0", linewidth=0.5, zorder=1)
@@ -101,6 +101,11 @@ def locks(axes: Axes, run: Trajectory) -> None:
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.grid(visible=False, axis="y")
     axes.text(1.012, 0.5, "full: locked\npale: slipping", transform=axes.transAxes, va="center", fontsize=7.0)
+
+
+def named(name: str) -> str:
+    """A name as label; one with a leading underscore would be left out of the legend."""
+    return f" {name}" if name.startswith("_") else name
 
 
 def member_looks(run: Trajectory, domain: Domain) -> dict[str, dict[str, Any]]:

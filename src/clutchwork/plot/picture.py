@@ -11,15 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.calls import explained
+from clutchwork.errors import UseError
+from clutchwork.events import Event
 from clutchwork.node import Domain
 from clutchwork.plot import panels, style
 from clutchwork.plot.figure import figure_of
+from clutchwork.shown import shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from clutchwork.events import Event
     from clutchwork.trajectory import Trajectory
 
 
@@ -33,15 +36,19 @@ class Panel:
     draw: Callable[[Axes], None]
 
 
+@explained("plot")
 def picture(run: Trajectory, path: str | Path | None = None, *, lockup: Event | None = None) -> Figure:
     """Draw a run and write it to `path` (PNG, SVG or PDF by its ending) when given.
 
     `lockup` is the event to look at closely, by default the last one in which a contact locks.
     """
+    if lockup is not None and not isinstance(lockup, Event):
+        raise UseError("plot", [f"lockup is {shown(lockup)}: it must be an event, such as run.events.of('c1')[-1]"])
     lockup = lockup or last_lockup(run)
     chosen = _panels(run, lockup)
     height = sum(panel.height + (9.0 if panel.whole else 14.0) for panel in chosen) + 12.0
-    with figure_of(height) as figure:
+    # a dollar in a name is a dollar
+    with figure_of(height, formulas=False) as figure:
         _draw(figure, run, lockup, chosen)
         if path is not None:
             Path(path).parent.mkdir(parents=True, exist_ok=True)

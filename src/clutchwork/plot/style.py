@@ -23,6 +23,7 @@ RC: Any = {
     "grid.linewidth": 0.5,
     "legend.fontsize": 7.5,
     "legend.frameon": False,
+    "text.usetex": False,
     "lines.linewidth": 1.2,
     "lines.solid_capstyle": "round",
     "xtick.labelsize": 7.5,

@@ -1,0 +1,227 @@
+"""One column of a CSV file over its time column.
+
+A file without quotes whose lines all have as many cells as the first one is read at once. Any other is read cell by
+cell, which also finds the lines and columns of what is wrong. Messages say where, never what is
+written there: a model may name a file that is none of its own.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from array import array
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import chain
+from math import inf, isfinite
+from operator import itemgetter
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.errors import FileError, near
+from clutchwork.files import open_regular, reason
+from clutchwork.shown import listed, shown
+
+Array = NDArray[np.float64]
+
+MOST_BYTES = 256_000_000
+MOST_LINES = 2_000_000
+LONGEST_LINE = 1_000_000
+BLOCK = 1 << 20
+# mistakes that are named, of all that a file has
+MOST_FAULTS = 5
+COMMA, NEWLINE, RETURN = 44, 10, 13
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is asked of a file: its path as it was given, and the names of its columns."""
+
+    path: str
+    time: str
+    column: str
+
+    def error(self, quantity: str, message: str, remedy: str) -> FileError:
+        """A single mistake."""
+        return FileError([(quantity, f"{shown(self.path)} {message}", remedy)])
+
+
+def read(path: Path, wanted: Wanted, scale: float) -> Array:
+    """Times and scaled values, one row each; FileError names what is wrong with the file, up to a few mistakes."""
+    try:
+        with open_regular(path, MOST_BYTES) as file:
+            return _scaled(_read(file, wanted), scale, wanted)
+    except FileNotFoundError:
+        raise wanted.error("path", "does not exist", f"put the file into {path.parent}") from None
+    except OSError as error:
+        raise wanted.error("path", f"cannot be read: {reason(error)}", "give a CSV text file") from None
+    except (UnicodeDecodeError, csv.Error):
+        raise wanted.error("path", "cannot be read: it is no text in UTF-8", "give a CSV text file") from None
+
+
+def _scaled(table: Array, scale: float, wanted: Wanted) -> Array:
+    """The values times a factor, all finite and so are the slopes between them."""
+    with np.errstate(all="ignore"):
+        made = table * [1.0, scale]
+        step = np.diff(made, axis=0)
+        slopes = np.divide(step[:, 1], step[:, 0], out=np.zeros(len(step)), where=step[:, 0] > 0.0)
+    if not np.all(np.isfinite(slopes)) or not np.all(np.isfinite(made)):
+        raise wanted.error(
+            "path", "has values that are too large, or change too fast", "leave out times that nearly coincide"
+        )
+    return made
+
+
+def _read(file: BinaryIO, wanted: Wanted) -> Array:
+    alike = _scan(file, wanted)
+    with io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
+        header, lines = _opened(text)
+        if not header:
+            raise wanted.error("path", "is empty", "give a header line and at least one line of numbers")
+        places = _places(header, wanted)
+        made = _at_once(lines, places) if alike else None
+        return _by_cells(_opened(text)[1], header, places, wanted) if made is None else made
+
+
+def _opened(text: io.TextIOWrapper) -> tuple[list[str], Iterator[list[str]]]:
+    """The names of the columns, and the lines behind them."""
+    text.seek(0)
+    lines = csv.reader(text)
+    return [name.strip() for name in next(lines, [])], lines
+
+
+def _scan(file: BinaryIO, wanted: Wanted) -> bool:
+    """Whether all lines are alike and without quotes; a file that is no table of text is refused."""
+    alike, count, cells = True, 0, -1
+    for block in _blocks(file, wanted):
+        codes = np.frombuffer(block, np.uint8)
+        ends = np.flatnonzero(codes == NEWLINE)
+        starts = np.concatenate([[0], ends[:-1] + 1])
+        count += len(ends)
+        if b"\0" in block:
+            raise wanted.error("path", "cannot be read: it is no text", "give a CSV text file")
+        if count > MOST_LINES + 1:
+            raise wanted.error("path", f"has more than {MOST_LINES} lines", "give fewer samples")
+        commas = np.add.reduceat((codes == COMMA).astype(np.intp), starts)
+        cells = int(commas[0]) if cells < 0 else cells
+        # a line without anything is skipped
+        bare = (ends == starts) | ((ends == starts + 1) & (codes[starts] == RETURN))
+        alike = alike and bool(np.all((commas == cells) | bare))
+        # Python reads 1_0 as ten, a spreadsheet does not
+        alike = (
+            alike
+            and b'"' not in block
+            and b"_" not in block.partition(b"\n")[2]
+            and block.count(b"\r") == block.count(b"\r\n")
+        )
+    return alike and count > 1
+
+
+def _blocks(file: BinaryIO, wanted: Wanted) -> Iterator[bytes]:
+    """Stretches of whole lines, the last one closed where the file does not do so."""
+    left = b""
+    while block := file.read(BLOCK):
+        whole, newline, rest = block.rpartition(b"\n")
+        if newline:
+            yield left + whole + newline
+            left = rest
+        else:
+            left += rest
+        if len(left) > LONGEST_LINE:
+            raise wanted.error("path", f"has a line of more than {LONGEST_LINE} bytes", "give a CSV text file")
+    if left:
+        yield left + b"\n"
+
+
+def _places(header: list[str], wanted: Wanted) -> tuple[int, int]:
+    """Places of the time column and of the values."""
+    faults = [
+        fault
+        for quantity, name in (("time", wanted.time), ("column", wanted.column))
+        if (fault := _name_fault(header, quantity, name, wanted))
+    ]
+    if faults:
+        raise FileError(faults)
+    return header.index(wanted.time), header.index(wanted.column)
+
+
+def _name_fault(header: list[str], quantity: str, name: str, wanted: Wanted) -> tuple[str, str, str] | None:
+    path, found = shown(wanted.path), header.count(name)
+    if found > 1:
+        return quantity, f"{path} has {found} columns {shown(name)}", "give every column a name of its own"
+    if found == 1:
+        return None
+    remedy = "the first line names the columns, with commas between them"
+    if len(header) == 1 and ";" in header[0]:
+        remedy = "separate the columns with commas, not with semicolons"
+    elif wanted.time in header or wanted.column in header:
+        remedy = f"the columns are {listed(header)}" + near(name, header)
+    return quantity, f"{path} has no column {shown(name)}", remedy
+
+
+def _at_once(lines: Iterator[list[str]], places: tuple[int, int]) -> Array | None:
+    """All rows of a file whose lines are alike; None where anything is wrong with them."""
+    rows = map(itemgetter(*places), filter(None, lines))
+    try:
+        table = np.fromiter(map(float, chain.from_iterable(rows)), float).reshape(-1, 2)
+    except ValueError:
+        return None
+    sound = len(table) and np.all(np.isfinite(table)) and np.all(np.diff(table[:, 0]) >= 0.0)
+    return table if sound else None
+
+
+def _by_cells(lines: Iterator[list[str]], header: list[str], places: tuple[int, int], wanted: Wanted) -> Array:
+    """Rows one after another, with the line of each; the first few mistakes are named."""
+    numbers, kept, faults = array("d"), array("q"), list[tuple[str, str, str]]()
+    for line in lines:
+        pair = _pair(line, len(header), places)
+        number: int = lines.line_num  # type: ignore[attr-defined]
+        if pair is not None:
+            numbers.extend(pair)
+            kept.append(number)
+            continue
+        faults += _line_faults(line, header, places, f"line {number} of {shown(wanted.path)}")
+        if len(faults) >= MOST_FAULTS:
+            break
+    table = np.array(numbers).reshape(-1, 2)
+    if not faults and not len(table):
+        raise wanted.error("path", "has no line of numbers", "give at least one line below the header")
+    for place in np.flatnonzero(np.diff(table[:, 0]) < 0.0)[:MOST_FAULTS] if not faults else ():
+        where = f"line {kept[place + 1]} of {shown(wanted.path)}"
+        faults.append(("time", f"{where}: its time is before that of line {kept[place]}", "sort the file by time"))
+    if faults:
+        raise FileError(faults[:MOST_FAULTS])
+    return table
+
+
+def _pair(line: list[str], width: int, places: tuple[int, int]) -> tuple[float, float] | None:
+    """Time and value of a line; None where anything is wrong with it, or nothing is written."""
+    try:
+        time, value = (line[place] for place in places)
+        # Python reads 1_0 as ten, a spreadsheet does not
+        pair = (float(time), float(value)) if "_" not in time and "_" not in value else (inf, inf)
+    except (ValueError, IndexError):
+        return None
+    sound = isfinite(pair[0]) and isfinite(pair[1]) and (len(line) <= width or not any(map(str.strip, line[width:])))
+    return pair if sound else None
+
+
+def _line_faults(
+    line: list[str], header: list[str], places: tuple[int, int], where: str
+) -> Iterator[tuple[str, str, str]]:
+    """What is wrong with a line; one that is empty, as at the end of many files, carries nothing."""
+    cells = [cell.strip() for cell in line]
+    if not any(cells):
+        return
+    if any(cells[len(header) :]):
+        message = f"{where} has {len(line)} cells, the first line names {len(header)} columns"
+        yield "path", message, "give one cell for each column; a decimal comma makes two of one"
+    for place, quantity in zip(places, ("time", "column"), strict=True):
+        cell = cells[place] if place < len(cells) else ""
+        if _pair([cell], 1, (0, 0)) is None:
+            fault = "is not a finite number" if cell else "is empty, not a finite number"
+            message = f"{where}: the cell in column {shown(header[place])} {fault}"
+            yield quantity, message, "write a number, with a point for the decimals"

@@ -1,0 +1,363 @@
+"""Mistakes of use are named where they happen: wrong keywords, values by place, options, names in results."""
+
+from __future__ import annotations
+
+import pickle
+import warnings
+from dataclasses import MISSING, replace
+
+import pytest
+
+import clutchwork as cw
+from clutchwork.cli import main
+from clutchwork.errors import FileError, ModelFileError, UnknownName
+from clutchwork.schema import REGISTRY, Role, specs
+from clutchwork.temperatures import COLDEST
+from support import samples
+
+DECLARED = samples.declared(*Role)
+LINING = cw.Coulomb(static=0.12, kinetic=0.1)
+
+
+def _name(value):
+    return getattr(value, "__name__", str(value))
+
+
+def _driveline(**more):
+    d = cw.Driveline("two")
+    engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)
+    values = {"friction": LINING, "pressure": 1e6} | more
+    d.add(cw.Clutch("c1", base=load, follower=engine, gain=5e-4, **values))
+    return d
+
+
+# --- constructors ---
+
+
+def _sample(cls):
+    """Arguments that make one of a class."""
+    if cls.role in (Role.LAW, Role.SIGNAL):
+        return (), samples.fields(cls, {})
+    element = samples.driveline(cls).elements[0]
+    return ("x",), {item.name: getattr(element, item.name) for item, _ in specs(cls)}
+
+
+@pytest.mark.parametrize("cls", DECLARED, ids=_name)
+def test_a_wrong_keyword_of_a_constructor(cls):
+    args, named = _sample(cls)
+    cls(*args, **named)
+    for item, _ in specs(cls):
+        if item.name in named and len(item.name) > 3:
+            wrong = item.name[0] + item.name[2] + item.name[1] + item.name[3:]
+            if wrong == item.name:
+                continue
+            given = {wrong if name == item.name else name: value for name, value in named.items()}
+            with pytest.raises(cw.UseError) as caught:
+                cls(*args, **given)
+            (problem,) = caught.value.problems
+            assert f"{wrong} is not known here; did you mean {item.name!r}?" in problem
+            assert str(caught.value).startswith(f"cw.{cls.__name__}(")
+
+
+@pytest.mark.parametrize("cls", DECLARED, ids=_name)
+def test_all_that_is_missing_is_named_at_once(cls):
+    needed = [item.name for item, _ in specs(cls) if item.default is MISSING]
+    if cls.role not in (Role.LAW, Role.SIGNAL):
+        needed = ["name", *needed]
+    if not needed:
+        cls()
+        return
+    with pytest.raises(cw.UseError) as caught:
+        cls()
+    assert {problem.split(" is missing")[0] for problem in caught.value.problems} == set(needed)
+    assert "[*]" not in str(caught.value)
+
+
+@pytest.mark.parametrize("cls", DECLARED, ids=_name)
+def test_values_by_place_are_told_their_keywords(cls):
+    args, named = _sample(cls)
+    by_place = [item.name for item, _ in specs(cls) if not item.kw_only]
+    values = args + tuple(named.pop(name, None) for name in by_place)
+    needed = [item.name for item, _ in specs(cls) if item.default is MISSING and item.name not in by_place]
+    with pytest.raises(cw.UseError) as caught:
+        cls(*values, 1.0)
+    (problem,) = [words for words in caught.value.problems if "by place" in words]
+    assert all(word in problem for word in by_place)
+    if needed:
+        assert f"such as {needed[0]}=..." in problem
+    assert len(caught.value.problems) == 1
+
+
+def test_all_mistakes_of_a_call_come_at_once():
+    with pytest.raises(cw.UseError) as caught:
+        cw.Clutch("c", gian=1.0, pressures=2.0, nonsense=3.0)
+    words = [problem.split(";")[0] for problem in caught.value.problems]
+    assert words == [
+        "gian is not known here",
+        "pressures is not known here",
+        "nonsense is not known here",
+        "base is missing",
+        "follower is missing",
+        "friction is missing",
+    ]
+    assert isinstance(caught.value, TypeError)
+    assert isinstance(caught.value, cw.ClutchworkError)
+
+
+def test_shafts_and_masses():
+    d = cw.Driveline()
+    for call, words in (
+        (lambda: d.shaft("a", inertai=1.0), "inertai is not known here; did you mean 'inertia'?"),
+        (
+            lambda: d.shaft("a", 0.2),
+            "1 value is given by place, only name may be; give the others by keyword, such as inertia",
+        ),
+        (lambda: d.shaft("a", mass=0.2), "mass is not known here; known are name, inertia, speed, angle"),
+        (lambda: d.shaft(), "name is missing"),
+        (lambda: d.mass("m", inertia=1.0), "known are name, mass, speed, position"),
+        (lambda: d.thermal("t"), "capacity is missing"),
+        (lambda: d.ambient("t", temperatures=1.0), "did you mean 'temperature'?"),
+        (lambda: d.assemble(independents=()), "did you mean 'independent'?"),
+        (lambda: d.shaft("a", name="b"), "name is given twice"),
+        (lambda: d.add("clutch"), "is no element; add one such as cw.Clutch"),
+        (lambda: d.add_node("a"), "is no shaft or mass"),
+        (lambda: d.add_thermal("a"), "is no thermal node"),
+        (lambda: d.simulate(), "t_end is missing"),
+        (lambda: cw.Driveline(names="x"), "cw.Driveline(): 1 problem"),
+        (lambda: cw.Driveline("a", "b"), "only name may be"),
+        (lambda: cw.Driveline.load(), "path is missing; give path=..."),
+        (lambda: cw.Driveline.load(3), "3 is no path; give the name of a TOML or JSON file"),
+        (lambda: cw.Node("a", inertai=1.0), "did you mean 'inertia'?"),
+        (lambda: cw.HeatFlow(element=1.0), "element is not known here; known are of"),
+        (lambda: cw.simulate(d, 1.0, options=1e-6), "options is 1e-06: it must be cw.Options(...)"),
+        (lambda: d.simulate(1.0, 1e-6), "by place, only t_end may be"),
+    ):
+        with pytest.raises(cw.UseError) as caught:
+            call()
+        assert words in str(caught.value)
+    assert d.nodes == ()
+
+
+def test_an_error_inside_a_call_stays_what_it_is():
+    class Odd:
+        def assemble(self):
+            raise TypeError("of its own")
+
+    with pytest.raises(TypeError, match=r"^of its own$"):
+        cw.simulate(Odd(), 1.0)
+
+
+# --- runs ---
+
+
+def test_options():
+    d = _driveline()
+    for options, words in (
+        ({"rtoll": 1e-3}, "no option 'rtoll'; did you mean 'rtol'?"),
+        ({"max_stps": 1, "methods": "auto"}, "no option 'methods'; did you mean 'method'?"),
+        ({"progress_": print}, "did you mean 'progress'?"),
+    ):
+        with pytest.raises(cw.UseError) as caught:
+            cw.simulate(d, 1.0, **options)
+        assert words in str(caught.value)
+        assert len(caught.value.problems) == len(options)
+    with pytest.raises(cw.UseError, match="did you mean 'rtol'"):
+        cw.Options(rtoll=1.0)
+    for options, words in (
+        ({"max_steps": 2.5}, "max_steps is 2.5: it must be a whole number"),
+        ({"max_events": True}, "max_events is True: it must be a whole number"),
+        ({"points": 0}, "points is 0: it must be at least 1"),
+        ({"rtol": "1e-6"}, "rtol is '1e-6': it must be a number"),
+        ({"dt": "fine"}, "dt is 'fine': it must be a number in s"),
+        ({"work": 1}, "work is 1: it must be True or False"),
+        ({"method": ["auto"]}, "method is ['auto']; it may be auto, rodas5p, dopri5"),
+        ({"times": "all"}, "times are 'all': they must be a row of numbers [s]"),
+        ({"max_steps": 10**400}, "it must be at most"),
+        ({"dt": 10**400}, "it must be a finite number above 0"),
+    ):
+        with pytest.raises(cw.OptionError) as caught:
+            d.simulate(1.0, **options)
+        assert words in str(caught.value)
+        assert isinstance(caught.value, ValueError)
+    assert d.simulate(0.01, max_steps=1e4, points=10.0).status == "done"
+    for end in (0.0, "2 s", None, -1.0, True):
+        with pytest.raises(cw.OptionError, match="t_end is"):
+            d.simulate(end)
+
+
+def test_what_is_no_model(tmp_path):
+    with pytest.raises(
+        cw.UseError, match=r"'model\.toml' is no model; a file is read by cw\.Driveline\.load\('model\.toml'\)"
+    ):
+        cw.simulate("model.toml", 2)
+    with pytest.raises(cw.UseError, match=r"Driveline\.load"):
+        cw.simulate(tmp_path, 2)
+    with pytest.raises(cw.UseError, match="is no model; give a Driveline or a System"):
+        cw.simulate(3.0, 2)
+    with pytest.raises(cw.UseError, match="t_end is missing"):
+        cw.simulate(_driveline())
+
+
+def test_a_function_as_signal():
+    d = _driveline(pressure=lambda time, readings: 1e5)
+    (problem,) = d.check()
+    assert "a function is a controller: give cw.Sampled(function, period), with the period in s" in str(problem)
+
+
+def test_plots():
+    run = _driveline().simulate(0.1)
+    with pytest.raises(cw.UseError, match="lokup is not known here; did you mean 'lockup'"):
+        run.plot(lokup=None)
+    with pytest.raises(cw.UseError, match="lockup is 'c1': it must be an event"):
+        run.plot(lockup="c1")
+
+
+def test_names_of_contacts_and_signals():
+    run = _driveline().simulate(1.0)
+    assert len(run.events.of("c1")) > 0
+    for events in (run.events, run.events[:0], run.events.changes(), run.events.of("c1"), run.events.at_start()):
+        with pytest.raises(UnknownName, match=r"^no contact 'c2'; did you mean 'c1'\?; contacts are c1$"):
+            events.of("c2")
+    with pytest.raises(KeyError):
+        run.events.of(3)
+    with pytest.raises(UnknownName, match=r"^no signal 'c1.torqe'; did you mean 'c1.torque'\?"):
+        run["c1.torqe"]
+    with pytest.raises(UnknownName, match="no signal 3"):
+        run[3]
+
+
+# --- files ---
+
+
+def test_exit_codes_of_files(tmp_path, capsys):
+    (tmp_path / "wrong.toml").write_text("shaft = 3")
+    (tmp_path / "latin.toml").write_bytes(b'name = "\xe9"')
+    assert main(["check", str(tmp_path / "none.toml")]) == 4
+    assert main(["run", str(tmp_path / "none.toml")]) == 4
+    assert main(["check", str(tmp_path)]) == 4
+    assert main(["check", str(tmp_path / "latin.toml")]) == 4
+    assert main(["check", str(tmp_path / "wrong.toml")]) == 3
+    assert "cannot be read: No such file" in capsys.readouterr().err
+
+
+def test_python_speaks_python_and_files_speak_their_own_words(tmp_path):
+    d = _driveline(friction="coulomb", pressure=[1.0], tolerance=-1.0)
+    said = "\n".join(map(str, d.check()))
+    assert 'cw.Clutch("c1"): friction' in said
+    assert "cw.Coulomb" in said
+    assert "cw.Sine" in said
+    assert "stribeck" not in said
+    (tmp_path / "m.toml").write_text('[[element]]\nname = "c1"\ntype = "clutch"\nbase = 3\npressure = [1]\n')
+    with pytest.raises(cw.ModelError) as caught:
+        cw.Driveline.load(tmp_path / "m.toml")
+    assert 'element "c1" (clutch)' in str(caught.value)
+    assert "stribeck" in str(caught.value)
+    assert "cw." not in str(caught.value)
+    assert "d.shaft" not in str(caught.value)
+    # what is built on in Python from a file keeps the words of the file
+    _driveline().save(tmp_path / "m.toml")
+    loaded = cw.Driveline.load(tmp_path / "m.toml")
+    loaded.add(cw.Torque("t", shaft=loaded.nodes[0], torque="x"))
+    assert 'element "t" (torque)' in str(loaded.check()[0])
+
+
+@pytest.mark.parametrize("cls", samples.declared(*samples.ELEMENT_ROLES), ids=_name)
+def test_mistakes_of_every_element_in_a_file_speak_of_files(cls):
+    data = {"shaft": [{"name": "a", "inertia": 1.0}], "element": [{"name": "x", "type": cls.kind, "nonsense": 1}]}
+    with pytest.raises(cw.ModelError) as caught:
+        cw.Driveline.from_dict(data)
+    assert "cw." not in str(caught.value)
+
+
+def test_errors_can_be_sent_to_other_processes():
+    problem = cw.Problem("a", "b", "c")
+    for error in (
+        cw.ModelError([problem], "m.toml"),
+        ModelFileError([problem], "m.toml"),
+        cw.UseError("simulate", ["x"]),
+        cw.OptionError(["x"]),
+        FileError([("path", "x", "y")]),
+        UnknownName("no signal"),
+    ):
+        again = pickle.loads(pickle.dumps(error))
+        assert type(again) is type(error)
+        assert str(again) == str(error)
+
+
+# --- temperatures ---
+
+
+def _warned(d):
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        assert d.check() == []
+    return [str(one.message) for one in caught]
+
+
+def _celsius(value):
+    """The same with temperatures as in degrees Celsius."""
+    if isinstance(value, cw.Signal):
+        return cw.Constant(20.0)
+    if isinstance(value, float | int):
+        return 20.0
+    return [(x - 273.15, y) for x, y in value] if hasattr(value[0], "__len__") else [x - 273.15 for x in value]
+
+
+TEMPERATURES = [
+    (cls, item.name)
+    for role in (*samples.ELEMENT_ROLES, Role.LAW)
+    for cls in REGISTRY[role].values()
+    for item, spec in specs(cls)
+    if "K" in (spec.unit, spec.unit_x)
+]
+
+
+@pytest.mark.parametrize(("cls", "name"), TEMPERATURES, ids=_name)
+def test_every_temperature_of_the_registry_is_watched(cls, name):
+    if cls.role is Role.LAW:
+        law = samples.law(cls)
+        value = getattr(law, name)
+        value = cw.Constant(300.0) if value is None else value
+        d = cw.Driveline()
+        d.shaft("a", inertia=1.0)
+        tables = {n: _celsius(getattr(law, n)) for n in ("static", "kinetic") if name in ("static", "kinetic")}
+        law = replace(law, **{name: _celsius(value), **(tables if cls is cw.TemperatureTable else {})})
+        law = law if name == "temperature" else replace(law, temperature=300.0)
+        d.add(cw.Brake("b", shaft=d.nodes[0], friction=law, gain=1.0, pressure=1.0))
+    else:
+        d = samples.driveline(cls)
+        d._elements[0] = replace(d.elements[0], **{name: _celsius(getattr(d.elements[0], name) or 300.0)})
+    found = _warned(d)
+    assert any(f"{name} " in words and "too cold to be meant" in words for words in found)
+
+
+@pytest.mark.parametrize("cls", [*samples.declared(*samples.ELEMENT_ROLES), *REGISTRY[Role.LAW].values()], ids=_name)
+def test_temperatures_in_kelvin_are_not_warned_of(cls):
+    if cls.role is Role.LAW:
+        d = cw.Driveline()
+        shaft, lining = d.shaft("a", inertia=1.0), d.thermal("lining", capacity=1.0)
+        d.add(cw.Brake("b", shaft=shaft, friction=samples.law(cls), gain=1.0, pressure=1.0, heat=lining))
+    else:
+        d = samples.driveline(cls)
+    assert not any("too cold" in words for words in _warned(d))
+
+
+def test_temperatures_of_thermal_nodes():
+    d = _driveline()
+    d.thermal("plates", capacity=1.0, temperature=20.0)
+    d.thermal("fine", capacity=1.0, temperature=COLDEST)
+    d.ambient("air", temperature=20.0)
+    d.ambient("oil", temperature=cw.Table([(0.0, 300.0), (1.0, 80.0)]))
+    found = _warned(d)
+    assert [words.partition(":")[0] for words in found] == ['thermal "plates"', 'ambient "air"', 'ambient "oil"']
+    assert "temperature = 20 K: is too cold to be meant; temperatures are in K; 20 degC would be 293.15 K" in found[0]
+    assert "temperature reaches down to 80 K" in found[2]
+    with pytest.warns(cw.ModelWarning):
+        assert len(d.assemble().warnings) == 3
+
+
+def test_degrees_celsius_as_unit():
+    for text in ("20 degC", "20 °C", "20 C"):
+        data = {"shaft": [{"name": "a", "inertia": 1.0}], "ambient": [{"name": "air", "temperature": text}]}
+        with pytest.raises(cw.ModelError, match=r"temperatures are in K; 0 degC is 273.15 K"):
+            cw.Driveline.from_dict(data)

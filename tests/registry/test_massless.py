@@ -1,0 +1,130 @@
+"""What carries a shaft without inertia is declared, and what is declared is so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from clutchwork.checks import ports
+from clutchwork.massless import _damps, _is_spring
+from clutchwork.parts import take_apart
+from clutchwork.schema import Role, specs
+from support import samples
+
+ACTING = samples.declared(Role.TORQUE, Role.CONTACT)
+LOAD = 3.0
+
+
+def _name(cls):
+    return cls.__name__
+
+
+def _sample(cls):
+    """The sample of a class; one that may damp or be wound up does."""
+    element = samples.driveline(cls).elements[0]
+    names = {item.name for item, _ in specs(cls)}
+    more = {"damping": 1.5, "initial_twist": 0.02} if element.passive() is not None else {}
+    return replace(element, **{name: value for name, value in more.items() if name in names})
+
+
+PASSIVE = [cls for cls in ACTING if _sample(cls).passive() is not None]
+
+
+def _at_massless_shaft(cls, **changes):
+    """An element between a heavy shaft and one without inertia, with a load there."""
+    element = _sample(cls)
+    d = cw.Driveline(cls.__name__)
+    light, heavy = d.shaft("light"), d.shaft("heavy", inertia=1e9)
+    moving = [name for name in ports(element) if name in ("follower", "shaft")]
+    fixed = [name for name in ports(element) if name not in moving]
+    joined = {**dict.fromkeys(moving, light), **dict.fromkeys(fixed, heavy)}
+    d.add(replace(element, **joined, **changes))
+    d.add(cw.Torque("load", shaft=light, torque=LOAD))
+    return d
+
+
+@pytest.mark.parametrize("cls", ACTING, ids=_name)
+def test_what_carries_no_shaft_without_inertia_is_refused(cls):
+    d = _at_massless_shaft(cls)
+    found = [str(problem) for problem in d.check()]
+    passive = d.elements[0].passive()
+    if passive is not None and passive.damping > 0.0:
+        assert found == []
+    elif passive is not None and passive.stiffness > 0.0:
+        # springs alone balance only springs
+        assert any('shaft "light": inertia is missing' in words for words in found)
+    else:
+        (problem,) = found
+        assert problem.startswith('shaft "light": inertia is missing')
+        assert "give it inertia > 0 kg m2" in problem
+
+
+@pytest.mark.parametrize("cls", PASSIVE, ids=_name)
+def test_what_is_declared_is_all_its_torque(cls):
+    d = cw.Driveline(cls.__name__)
+    a, b = d.shaft("a", inertia=0.4, speed=5.0), d.shaft("b", inertia=0.7, speed=-2.0)
+    element = d.add(replace(_sample(cls), base=a, follower=b))
+    run = d.simulate(0.5, dt=0.05, rtol=1e-10)
+    rate, twist = run["b.speed"] - run["a.speed"], run["b.angle"] - run["a.angle"]
+    twist = twist + getattr(element, "initial_twist", 0.0)
+    stiffness, damping = element.passive()
+    assert np.allclose(run["x.torque"], -(stiffness * twist + damping * rate), rtol=1e-6, atol=1e-7)
+
+
+@pytest.mark.parametrize("cls", [cls for cls in PASSIVE if _damps(_sample(cls))], ids=_name)
+def test_what_is_declared_to_damp_gives_a_shaft_without_inertia_its_speed(cls):
+    d = _at_massless_shaft(cls)
+    run = d.simulate(20.0)
+    assert run.status == "done"
+    stiffness, damping = d.elements[0].passive()
+    rate = run["light.speed"] - run["heavy.speed"]
+    twist = run["light.angle"] - run["heavy.angle"] + getattr(d.elements[0], "initial_twist", 0.0)
+    assert np.allclose(stiffness * twist + damping * rate, LOAD, rtol=1e-4)
+
+
+def test_springs_are_told_from_dampers():
+    parts = take_apart([samples.driveline(cw.Spring).elements[0]]).components
+    assert [_is_spring(part) for part in parts] == [True]
+    assert not _damps(parts[0])
+
+
+@pytest.mark.parametrize(("engaged", "load"), [(False, 0.0), (False, 3.0), (True, 3.0)])
+def test_a_dog_clutch_at_a_shaft_without_inertia_is_refused(engaged, load):
+    d = cw.Driveline("m")
+    a, b = d.shaft("a", inertia=1.0, speed=5.0), d.shaft("b")
+    values = {"command": float(engaged), "teeth": 20, "gap": 0.05, "stiffness": 1e4, "engaged": engaged}
+    d.add(cw.DogClutch("dog", base=a, follower=b, **values))
+    if load:
+        d.add(cw.Torque("t", shaft=b, torque=load))
+    (problem,) = d.check()
+    assert str(problem) == (
+        'shaft "b": inertia is missing, and nothing else determines its motion; give it inertia > 0 kg m2, '
+        "or join it by a gear or a spring with damping to one that has some"
+    )
+
+
+def test_a_dog_clutch_beside_a_damper_runs():
+    d = cw.Driveline("m")
+    a, b = d.shaft("a", inertia=1.0, speed=5.0), d.shaft("b")
+    d.add(cw.DogClutch("dog", base=a, follower=b, command=1.0, teeth=20, gap=0.05, stiffness=1e3, engaged=True))
+    d.add(cw.Damper("damper", base=d.housing, follower=b, damping=2.0))
+    run = d.simulate(0.5)
+    assert run.status == "done"
+    assert run["b.speed"][-1] == pytest.approx(run["a.speed"][-1], rel=0.05)
+    # 1 kg m2 against 2 N m s/rad
+    assert run["a.speed"][-1] == pytest.approx(5.0 * np.exp(-2.0 * 0.5), rel=0.05)
+
+
+@pytest.mark.parametrize("cls", [cw.Damper, cw.DogClutch, cw.SpringDamper], ids=_name)
+def test_the_work_of_what_is_lossy_is_heat(cls):
+    d = cw.Driveline(cls.__name__)
+    a, b = d.shaft("a", inertia=0.4, speed=1.0), d.shaft("b", inertia=0.7, speed=-1.0)
+    engaged = {"engaged": True, "command": 1.0} if cls is cw.DogClutch else {}
+    d.add(replace(_sample(cls), base=a, follower=b, **engaged))
+    energy = d.simulate(0.5, rtol=1e-9).energy
+    assert set(energy.heat) == {"x"}
+    assert energy.sources == {}
+    assert energy.heat["x"] > 0.0

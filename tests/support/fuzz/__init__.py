@@ -1,0 +1,1 @@
+"""Damaged model files, CSV files and saved systems, and a process that reads them under limits."""
