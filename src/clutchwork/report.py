@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.dependence import dependent_sets
 from clutchwork.ratios import Gears, Phase, gears
 from clutchwork.text import columns
 from clutchwork.wiring import wiring
@@ -29,6 +30,7 @@ def run_text(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
     if phases and shafts is not None:
         parts.append(phase_text(phases, shafts))
         parts += change_text(phases, shafts)
+    parts += dependent_text(run)
     if run.options.work:
         parts.append(str(run.energy))
     parts.append(effort_text(run))
@@ -61,6 +63,14 @@ def change_text(phases: Sequence[Phase], shafts: tuple[str, str]) -> list[str]:
     return [f"{ratio} before and after: {' -> '.join(seen)} at the ends of the phases, {' -> '.join(gears)} by gears"]
 
 
+def dependent_text(run: Trajectory) -> list[str]:
+    """When the shares of locked contacts in their load were a convention."""
+    if not run.dependent:
+        return []
+    lines = [f"{phase.begin:.6f} to {phase.end:.6f} s: {' '.join(phase.contacts)}" for phase in run.dependent[:MOST_LINES]]
+    return ["locked contacts that depend on each other; they share their load by capacity:\n" + "\n".join(lines)]
+
+
 def effort_text(run: Trajectory) -> str:
     """Steps and time that the run took."""
     s = run.statistics
@@ -81,6 +91,7 @@ def run_data(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
         "events": [_finite(asdict(event)) for event in run.events],
         "ratio_of": list(shafts) if shafts else None,
         "phases": [_finite(asdict(phase)) for phase in phases],
+        "dependent": [asdict(phase) for phase in run.dependent] if len(run) else [],
         "energy": run.energy.as_dict() if run.options.work and len(run) else None,
         "final": {name: float(run[name][-1]) for name in run.names if name.endswith(FINAL) and len(run)},
         "statistics": dict(run.statistics),
@@ -88,13 +99,17 @@ def run_data(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
 
 
 def model_text(system: System, shafts: tuple[str, str] | None) -> str:
-    """Size of a model and the ratios that its contacts can give."""
-    size = ", ".join(f"{count} {name}" for name, count in sizes(system).items())
+    """Size of a model, the ratios that its contacts can give, and which of these depend on each other."""
+    parts = [", ".join(f"{count} {name}" for name, count in sizes(system).items())]
+    dependent = "; ".join(" ".join(names) for names in dependent_sets(system))
+    if dependent:
+        parts.append(f"depend on each other when locked together, and share their load by capacity: {dependent}")
     if shafts is None:
-        return size
+        return "\n\n".join(parts)
     found = gears(system, shafts)
     lines = [(" ".join(closed) or "-", number(value)) for closed, value in found.ratios]
-    parts = [size, columns([("closed", f"{shafts[0]}/{shafts[1]}"), *lines], right={1})] if lines else [size]
+    if lines:
+        parts.append(columns([("closed", f"{shafts[0]}/{shafts[1]}"), *lines], right={1}))
     if found.untried is not None:
         parts.append(f"not tried: {found.untried} or more contacts closed at once, there are too many such sets")
     return "\n\n".join(parts)
@@ -109,6 +124,7 @@ def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]
         "ratio_of": list(shafts) if shafts else None,
         "gears": [{"closed": list(closed), "ratio": value} for closed, value in found.ratios],
         "gears_untried_from": found.untried,
+        "dependent": [list(names) for names in dependent_sets(system)],
     }
 
 

@@ -22,6 +22,7 @@ from clutchwork.wiring import Wiring, wiring
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from clutchwork.dependence import DependentPhase
     from clutchwork.system import System
 
 Array = NDArray[np.float64]
@@ -107,6 +108,16 @@ class Trajectory:
             raise ValueError(f"no instant was computed, so there is no energy balance: {self.message}")
         window = [e for e in self.events if self.time[0] <= e.time <= self.time[-1]]
         return balance(self.wiring, self.rows, Events(window))
+
+    @cached_property
+    def dependent(self) -> tuple[DependentPhase, ...]:
+        """When contacts were locked whose directions depend on each other, so that the torque of each is a convention.
+
+        Their motion and the load that they carry together are unique; it is shared in proportion to capacity.
+        """
+        from clutchwork.dependence import dependent_phases
+
+        return dependent_phases(self)
 
     def to_csv(self, path: str | Path, names: Any = None) -> None:
         """Write signals (all by default) as columns `name [unit]` with 17 digits, the time first."""
