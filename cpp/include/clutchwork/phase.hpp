@@ -168,20 +168,21 @@ void rest_step(Form& form, Step<Form>& step) {
   }
 }
 
-/// Rows at the instant at which a phase starts.
+/// Rows at the instant at which a phase starts. `running`: all is well.
 template <class Form>
-void emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
-  if (!(sink.steps ? fresh : sink.at < sink.count && sink.times[sink.at] <= form.ws.time)) return;
+Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
+  if (!(sink.steps ? fresh : sink.at < sink.count && sink.times[sink.at] <= form.ws.time)) return Status::running;
   rest_step(form, step);
   if (!sink.steps) {
     // a grid row here is the right limit of an event; further equal times wait for the end of the step
     const std::int64_t size = form.ws.row.size;
     while (sink.at < sink.count && sink.times[sink.at] <= form.ws.time) {
-      fill_row(form, step, 0.0, 0.0, sink.rows + size * sink.at++);
+      if (!fill_row(form, step, 0.0, 0.0, sink.rows + size * sink.at)) return Status::not_finite;
+      ++sink.at;
     }
-    return;
+    return Status::running;
   }
-  emit(form, step, 0.0, sink);
+  return emit(form, step, 0.0, sink);
 }
 
 /// Name the branch whose torque is not finite.
@@ -352,6 +353,14 @@ double work_error(Form& form, Step<Form>& step) {
   return error;
 }
 
+/// Whether all of a state is finite.
+template <class T>
+CLUTCHWORK_INLINE bool all_finite(int n, const T* y) {
+  double sum = 0;
+  for (int i = 0; i < n; ++i) sum += value(y[i]) * 0;
+  return sum == 0;
+}
+
 /// Integrate until an event, the end time, or a full buffer. `running`: an event is waiting to be settled.
 template <class Form, class Integrator>
 Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink) {
@@ -365,7 +374,10 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
   for (int i = 0; i < n; ++i) step.y0()[i] = ws.y[i];
   if constexpr (!Form::small) balance_massless(form, step);
   ws.fresh_phase = false;
-  emit_start(form, step, sink, fresh);
+  if (emit_start(form, step, sink, fresh) != Status::running) {
+    export_state(form, step.y0());
+    return Status::not_finite;
+  }
   look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
   double h = ws.last_step > 0 ? (fresh ? 0.25 * ws.last_step : ws.last_step) : first_step(form, step, t_end - ws.time);
   bool rejected = false;
@@ -382,9 +394,9 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
       }
     }
     if (ws.time >= t_end) {
-      emit_start(form, step, sink, false);
+      const Status end = emit_start(form, step, sink, false);
       export_state(form, step.y0());
-      return Status::done;
+      return end == Status::running ? Status::done : end;
     }
     if ((sink.steps && sink.at + 3 > sink.count) || ws.n_events >= Workspace<typename Form::Scalar>::event_room) {
       export_state(form, step.y0());
@@ -394,6 +406,10 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
       export_state(form, step.y0());
       return Status::too_many_steps;
     }
+    if (stop_asked(ws)) {
+      export_state(form, step.y0());
+      return Status::interrupted;
+    }
 
     // step, onto knots and the end exactly
     const double stop = smaller(t_end, ws.next_knot);
@@ -402,6 +418,7 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
     if (cut) reach = stop - ws.time;
     step.t = ws.time;
     double error = Integrator::advance(form, step, reach);
+    if (!all_finite(n, step.y1())) error = infinity;
     if (error <= 1 && ws.options.work && rates_bend(ws))
       error = larger(error, work_error<Form, Integrator>(form, step));
     if (!(error <= 1)) {
@@ -425,7 +442,11 @@ Status smooth_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& si
     if ((rows || ws.options.work || ws.options.angles) && s > 0) {
       if (!step.dense) Integrator::prepare_dense(form, step);
       if (ws.options.work) fit_power(form, step, s);
-      if (rows) emit(form, step, s, sink);
+      const Status emitted = rows ? emit(form, step, s, sink) : Status::running;
+      if (emitted != Status::running) {
+        export_state(form, step.y0());
+        return emitted;
+      }
       accumulate(form, step, s);
     }
 

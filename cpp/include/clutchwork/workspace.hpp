@@ -173,7 +173,18 @@ struct Workspace {
 
   int detail_component = -1;
   double detail_value = 0;
+  int detail_row = -1;  ///< number in a row that is not finite
+
+  // asked once per step and row, of the caller; other than zero: stop
+  int (*poll)(void*) = nullptr;
+  void* poll_context = nullptr;
 };
+
+/// Whether the caller wants the run to stop.
+template <class T>
+CLUTCHWORK_INLINE bool stop_asked(const Workspace<T>& ws) {
+  return ws.poll != nullptr && ws.poll(ws.poll_context) != 0;
+}
 
 /// Hands out pieces of a block of memory, or only counts them when the block is null.
 class Arena {
