@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -46,10 +46,6 @@ class Trajectory:
     message: str  # "" when done; else what, where, when, and what to do
     statistics: Mapping[str, float] = field(repr=False)
     control: Control = field(repr=False)  # what controllers decided
-
-    def __getstate__(self) -> dict[str, Any]:
-        # what is cached comes again
-        return {item.name: getattr(self, item.name) for item in fields(self)}
 
     @property
     def finished(self) -> bool:
