@@ -124,6 +124,19 @@ def curves(schema: Any, role: Any) -> Iterator[str]:
     yield "}"
 
 
+def choices(schema: Any, role: Any) -> Iterator[str]:
+    """A function that tells where a parameter of a kind is one of a few words or a flag, and how many there are."""
+    yield f"template <class F> void visit_{role.value}_choices(int kind, F&& f) {{"
+    for number, kind in enumerate(schema.kinds(role)):
+        offset = 0
+        for _, spec in schema.specs(schema.REGISTRY[role][kind], "param", "curve", "numbers"):
+            if spec.choices or spec.flag:
+                yield f"  if (kind == {number}) f({offset}, {len(spec.choices) or 2});"
+            offset += 1 if spec.what == "param" else 2
+    yield "  (void)kind, (void)f;"
+    yield "}"
+
+
 def most_states(schema: Any) -> int:
     """Most states of any component of its own."""
     return max(len(cls.states) for role in schema.COMPILED_ROLES for cls in schema.REGISTRY[role].values())
@@ -196,7 +209,7 @@ def main() -> int:
     for role in schema.COMPILED_ROLES:
         for kind in schema.kinds(role):
             lines += asserts(schema, role, kind)
-        lines += [*visitor(schema, role), *curves(schema, role)]
+        lines += [*visitor(schema, role), *curves(schema, role), *choices(schema, role)]
     lines.append(f"inline constexpr int most_own_states = {most_states(schema)};")
     lines += [*system(layout), *rows(layout), "}"]
     out.parent.mkdir(parents=True, exist_ok=True)

@@ -5,6 +5,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -17,6 +18,37 @@ using Matrix = nb::ndarray<double, nb::shape<-1, -1>, nb::c_contig, nb::device::
 namespace {
 
 const std::int64_t event_columns = cw_event_size();
+
+/// Lets Python handle signals, such as Ctrl-C, some ten times a second while the core runs without its lock.
+class Listener {
+ public:
+  /// Asked after every step; the clock and Python are asked rarely. Other than 0: a handler has raised.
+  static int ask(void* self) { return static_cast<Listener*>(self)->heard(); }
+  bool raised() const { return raised_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr auto seldom = std::chrono::milliseconds(50), soon = std::chrono::milliseconds(5);
+  static constexpr int most = 64;
+  Clock::time_point looked_ = Clock::now(), listened_ = looked_;
+  int every_ = 1, left_ = 1;
+  bool raised_ = false;
+
+  int heard() {
+    if (raised_) return 1;
+    if (--left_ > 0) return 0;
+    // as many steps between two looks at the clock as take no longer than `soon`
+    const auto now = Clock::now();
+    every_ = now - looked_ > soon ? 1 : every_ < most ? 2 * every_ : most;
+    looked_ = now;
+    left_ = every_;
+    if (now - listened_ < seldom) return 0;
+    listened_ = now;
+    nb::gil_scoped_acquire lock;
+    raised_ = PyErr_CheckSignals() != 0;
+    return raised_;
+  }
+};
 
 /// Owns the memory of a run and the bytes of its system.
 class Run {
@@ -37,13 +69,20 @@ class Run {
     }
   }
   void set_input(std::int64_t input, double value) {
-    if (!cw_set_input(run_, input, value)) throw nb::index_error("no such signal that is set from outside");
+    if (!cw_set_input(run_, input, value))
+      throw nb::value_error("there is no such signal that is set from outside, or the value is not finite");
   }
   void set_param(std::int64_t offset, double value) {
-    if (!cw_set_param(run_, offset, value)) throw nb::index_error("no such parameter");
+    if (!cw_set_param(run_, offset, value))
+      throw nb::value_error("there is no such parameter, it is fixed, or the value is not finite");
   }
 
-  std::tuple<int, std::int64_t> advance(double t_end, Vector times, Matrix rows, std::int64_t first, bool steps) {
+  /// Whether set_param would take this.
+  bool is_settable(std::int64_t offset, double value) { return cw_set_param(run_, offset, value) != 0; }
+
+  /// Status, rows filled, and what a signal handler raised meanwhile, or None.
+  std::tuple<int, std::int64_t, nb::object> advance(double t_end, Vector times, Matrix rows, std::int64_t first,
+                                                    bool steps) {
     if (rows.shape(1) != std::size_t(cw_row_size(run_)) || rows.shape(0) != times.shape(0)) {
       throw nb::value_error("rows must have one line per time and row_size columns");
     }
@@ -52,11 +91,17 @@ class Run {
     std::int64_t filled = 0;
     double *t = times.data() + first, *r = rows.data() + first * cw_row_size(run_);
     int status;
+    Listener listener;
+    cw_set_poll(run_, &Listener::ask, &listener);
     {
       nb::gil_scoped_release release;
       status = cw_advance(run_, t_end, t, r, n - first, steps, &filled);
     }
-    return {status, filled};
+    cw_set_poll(run_, nullptr, nullptr);
+    if (status < 0) throw nb::value_error("the end time must be finite and not before the present time");
+    if (!listener.raised() && PyErr_CheckSignals() == 0) return {status, filled, nb::none()};
+    nb::python_error raised;
+    return {status, filled, nb::borrow(raised.value())};
   }
 
   nb::object events() {
@@ -72,7 +117,7 @@ class Run {
 
   nb::object row() {
     const auto n = std::size_t(cw_row_size(run_));
-    double* data = new double[n > 0 ? n : 1];
+    double* data = new double[n > 0 ? n : 1]();
     nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
     cw_row(run_, data);
     return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(data, {n}, owner));
@@ -88,25 +133,28 @@ class Run {
     return d;
   }
 
-  std::tuple<std::int64_t, double, double> detail() const {
+  /// Component, time, value, and the number in a row that is not finite.
+  std::tuple<std::int64_t, double, double, std::int64_t> detail() const {
     double value = 0;
     const std::int64_t component = cw_detail(run_, &value);
-    return {component, cw_time(run_), value};
+    return {component, cw_time(run_), value, cw_detail_row(run_)};
   }
 
   nb::bytes save() const {
-    std::unique_ptr<char[]> copy(new char[std::size_t(size_)]);
-    cw_save(run_, copy.get());
-    return nb::bytes(copy.get(), std::size_t(size_));
+    const std::int64_t size = cw_state_size(run_);
+    std::unique_ptr<char[]> state(new char[std::size_t(size)]);
+    cw_save(run_, state.get(), size);
+    return nb::bytes(state.get(), std::size_t(size));
   }
   void restore(nb::bytes state) {
     if (!cw_restore(run_, state.c_str(), std::int64_t(state.size()))) {
-      throw nb::value_error("the saved state belongs to another system");
+      throw nb::value_error("the saved state is damaged or belongs to another system or version: save it again");
     }
   }
 
   double time() const { return cw_time(run_); }
   std::int64_t row_size() const { return cw_row_size(run_); }
+  std::int64_t memory_size() const { return size_; }
 
  private:
   struct alignas(64) Block {
@@ -142,6 +190,7 @@ NB_MODULE(_core, m) {
       .def("set_option", &Run::set_option, nb::arg("name"), nb::arg("value"))
       .def("set_input", &Run::set_input, nb::arg("index"), nb::arg("value"))
       .def("set_param", &Run::set_param, nb::arg("offset"), nb::arg("value"))
+      .def("is_settable", &Run::is_settable, nb::arg("offset"), nb::arg("value"))
       .def("advance", &Run::advance, nb::arg("t_end"), nb::arg("times"), nb::arg("rows"), nb::arg("first") = 0,
            nb::arg("steps") = false)
       .def("events", &Run::events)
@@ -151,5 +200,6 @@ NB_MODULE(_core, m) {
       .def("save", &Run::save)
       .def("restore", &Run::restore, nb::arg("state"))
       .def_prop_ro("time", &Run::time)
-      .def_prop_ro("row_size", &Run::row_size);
+      .def_prop_ro("row_size", &Run::row_size)
+      .def_prop_ro("memory_size", &Run::memory_size);
 }

@@ -84,6 +84,7 @@ if TYPE_CHECKING:
     from clutchwork.elements.wear import Wear as Wear
     from clutchwork.elements.wet_drag import WetDrag as WetDrag
     from clutchwork.failure import FaultWarning as FaultWarning
+    from clutchwork.failure import Interrupted as Interrupted
     from clutchwork.failure import SimulationError as SimulationError
     from clutchwork.failure import StoppedEarly as StoppedEarly
     from clutchwork.laws.coefficient_table import CoefficientTable as CoefficientTable
@@ -121,6 +122,7 @@ __version__ = "0.1.0"
 # names that are loaded when they are first used, with their module
 _LAZY = {
     "FaultWarning": "failure",
+    "Interrupted": "failure",
     "Options": "options",
     "SimulationError": "failure",
     "StoppedEarly": "failure",

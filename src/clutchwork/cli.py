@@ -2,7 +2,7 @@
 
 Exit codes: 0 done; 1 the run stopped early (what was asked for is written up to there); 2 the command line or an
 option is wrong; 3 the model is wrong, every mistake is listed; 4 a file, such as the model, is missing or cannot be
-read or written, or a package is missing; 130 interrupted.
+read or written, or a package is missing; 130 interrupted (a run writes what was asked for up to there).
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def _run(asked: argparse.Namespace) -> int:
     driveline = Driveline.load(asked.model)
     system = _assembled(driveline)
     shafts = _shafts(system, asked.ratio)
-    run = _simulated(driveline, system, asked)
+    run, code = _simulated(driveline, system, asked)
     found = phases(run, shafts) if shafts and len(run) else []
     written = _write(run, asked) if len(run) else []
     if asked.json:
@@ -108,7 +108,7 @@ def _run(asked: argparse.Namespace) -> int:
         print("\n".join(["", *(f"wrote {path}" for path in written)]) if written else "", end="\n" if written else "")
     if not run.finished:
         print(f"clutchwork: {run.message}", file=sys.stderr)
-    return DONE if run.finished else STOPPED
+    return code
 
 
 def _assembled(driveline: Driveline) -> System:
@@ -121,9 +121,9 @@ def _assembled(driveline: Driveline) -> System:
     return system
 
 
-def _simulated(driveline: Driveline, system: System, asked: argparse.Namespace) -> Trajectory:
-    """Run with the settings of the file, overruled by those of the command line."""
-    from clutchwork.failure import StoppedEarly
+def _simulated(driveline: Driveline, system: System, asked: argparse.Namespace) -> tuple[Trajectory, int]:
+    """Run with the settings of the file, overruled by those of the command line; what came of it, and the exit code."""
+    from clutchwork.failure import Interrupted, StoppedEarly
     from clutchwork.simulation import simulate
 
     settings = dict(driveline.simulation)
@@ -136,7 +136,11 @@ def _simulated(driveline: Driveline, system: System, asked: argparse.Namespace) 
     with warnings.catch_warnings(), Bar(hidden=asked.quiet or asked.json) as bar:
         # told by exit code and message instead
         warnings.simplefilter("ignore", StoppedEarly)
-        return simulate(system, t_end, options=Options().changed(settings), progress=bar.show)
+        try:
+            run = simulate(system, t_end, options=Options().changed(settings), progress=bar.show)
+        except Interrupted as stop:
+            return stop.trajectory, INTERRUPTED
+    return run, DONE if run.finished else STOPPED
 
 
 def _write(run: Trajectory, asked: argparse.Namespace) -> list[Path]:

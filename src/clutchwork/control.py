@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from clutchwork.channels import Channels
 from clutchwork.failure import SimulationError
 from clutchwork.signals.sampled import Sampled
+from clutchwork.wiring import wiring
 
 if TYPE_CHECKING:
-    from clutchwork.system import Input
+    from clutchwork.system import Input, System
 
 
 class Readings(Mapping[str, Any]):
@@ -63,6 +64,23 @@ def controllers(inputs: Sequence[Input]) -> tuple[Controller, ...]:
         for index, item in enumerate(inputs)
         if isinstance(item.signal, Sampled)
     )
+
+
+class Signals:
+    """The signals of a System, found when they are first asked for; a copy finds them again."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self._found: Channels | None = None
+
+    def __call__(self) -> Channels:
+        """All of them."""
+        if self._found is None:
+            self._found = Channels(wiring(self._system))
+        return self._found
+
+    def __reduce__(self) -> tuple[type[Signals], tuple[System]]:
+        return Signals, (self._system,)
 
 
 Settings = list[tuple[int, float]]

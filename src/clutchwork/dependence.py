@@ -32,8 +32,8 @@ class DependentPhase:
 def dependent_sets(system: System, closed: Collection[str] | None = None) -> tuple[tuple[str, ...], ...]:
     """Sets of contacts, among the named ones or all, that depend on each other when they are locked together.
 
-    Parallel clutches are such a set, or three clutches in a ring. Their motion and the load that they carry together are
-    unique; their torques are shared in proportion to capacity.
+    Parallel clutches are such a set, or three clutches in a ring. Their motion and the load that they carry together
+    are unique; their torques are shared in proportion to capacity.
     """
     places = [i for i, contact in enumerate(system.contacts) if closed is None or contact.name in closed]
     rows = np.asarray(system.contact_rate)[places]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.errors import ClutchworkError, caller
@@ -13,7 +14,9 @@ if TYPE_CHECKING:
     from clutchwork.trajectory import Trajectory
 
 NAMES = [name for name, *_ in STATUS]
-DONE, ROWS_FULL, EVENTS_FULL = (NAMES.index(name) for name in ("done", "rows_full", "events_full"))
+DONE, ROWS_FULL, EVENTS_FULL, NOT_FINITE, INTERRUPTED = (
+    NAMES.index(name) for name in ("done", "rows_full", "events_full", "not_finite", "interrupted")
+)
 
 # why a run stopped, where a value tells more
 WITH_VALUE = ("not_finite", "out_of_table", "chatter")
@@ -26,6 +29,9 @@ class SimulationError(ClutchworkError, RuntimeError):
         super().__init__(message)
         self.trajectory = trajectory
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.trajectory)
+
 
 class StoppedEarly(RuntimeWarning):
     """Warning that a run ended before its end time; `trajectory` holds what was computed."""
@@ -34,17 +40,37 @@ class StoppedEarly(RuntimeWarning):
         super().__init__(message)
         self.trajectory = trajectory
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.trajectory)
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during a run; `trajectory` holds what was computed before.
+
+    It is a KeyboardInterrupt: what does not catch it ends as after any Ctrl-C.
+    """
+
+    def __init__(self, message: str, trajectory: Trajectory) -> None:
+        super().__init__(message)
+        self.trajectory = trajectory
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.trajectory)
+
 
 class FaultWarning(RuntimeWarning):
     """Warning that a fault was triggered that its element reports as a warning."""
 
 
-def explain(status: int, component: Any, time: float, value: float, signal: str = "") -> str:
-    """One line for a status of the core: message, element or signal, value, what a table covers, time, remedy."""
+def explain(status: int, component: Any, time: float, value: float, quantity: str = "") -> str:
+    """One line for a status of the core: message, element or quantity, value, range of a table, time, remedy."""
     name, message, remedy = STATUS[status]
-    if name == "zeno" and component is None:
-        crowded = f"{signal!r} has more than 50 knots within a microsecond"
+    if name == "zeno" and quantity:
+        crowded = f"{quantity!r} has more than 50 knots within a microsecond"
         return f"stopped at {time:.9g} s: {crowded}: thin out the signal, or filter it before it becomes a table"
+    if quantity:
+        told = f"; the largest is {quantity}, {value:g}" if isfinite(value) else f": {quantity} is {value:g}"
+        return f"stopped at {time:.9g} s: {message}{told}: {remedy}"
     where = f" at {component.name!r}" if component is not None else ""
     covered = _covered(component) if name == "out_of_table" else ""
     seen = f" (value {value:g}{covered})" if component is not None and name in WITH_VALUE else ""

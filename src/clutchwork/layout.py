@@ -128,7 +128,7 @@ STATUS = (
     ("rows_full", "the output buffer is full", "continue with a new buffer"),
     ("events_full", "the event buffer is full", "drain the events and continue"),
     ("step_collapse", "the step size collapsed", "look for a discontinuous signal or loosen the tolerances"),
-    ("not_finite", "a value is not finite", "check the parameters and signals of the named element"),
+    ("not_finite", "a value is not finite", "check the parameters and signals of what is named"),
     ("too_many_steps", "the budget of steps is spent", "raise max_steps or shorten the run"),
     ("too_many_events", "the budget of events is spent", "raise max_events or shorten the run"),
     (
@@ -153,6 +153,7 @@ STATUS = (
         "look for inertias that differ by more than twelve orders of magnitude",
     ),
     ("bad_system", "the system bytes do not fit this core", "assemble the driveline again with this version"),
+    ("interrupted", "the run was interrupted", "run it again for the rest"),
 )
 
 

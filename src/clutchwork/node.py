@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -29,6 +29,12 @@ class Node:
     speed: float | None = None  # rad/s or m/s at the start; None: follows from the others, else 0
     angle: float = 0.0  # rad or m at the start
     fixed: bool = False  # the housing
+
+    def __reduce__(self) -> str | tuple[Any, ...]:
+        # there is one housing, copies included
+        if self is HOUSING:
+            return "HOUSING"
+        return Node, (self.name, self.domain, self.inertia, self.speed, self.angle, self.fixed)
 
 
 HOUSING = Node("housing", fixed=True)

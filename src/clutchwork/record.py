@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.control import Control
-from clutchwork.failure import DONE, EVENTS_FULL, ROWS_FULL
+from clutchwork.failure import DONE, EVENTS_FULL, INTERRUPTED, ROWS_FULL
 from clutchwork.layout import EVENT
 
 Array = NDArray[np.float64]
@@ -18,7 +18,7 @@ Progress = Callable[[float, float], None]
 
 FIRST_CHUNK = 512
 LARGEST_CHUNK = 16_384
-# a longer grid is cut into stretches, so that progress can be told and Ctrl-C is heard
+# a longer grid is cut into stretches, so that progress can be told
 LONG_GRID = 100_000
 
 
@@ -29,23 +29,24 @@ class Recording:
         self.run = run
         self.row_size = row_size
         self.status = DONE
+        self.raised: BaseException | None = None  # by a signal handler, such as Ctrl-C
         self.core_seconds = 0.0
-        self._times: list[Array] = []
-        self._rows: list[Array] = []
+        self._parts: list[tuple[Array, Array]] = []
         self._events: list[Array] = []
 
     def advance(self, stop: float, times: Array, rows: Array, first: int, steps: bool) -> int:
         """Let the core run; the number of rows that it added."""
         started = perf_counter()
-        self.status, filled = self.run.advance(stop, times, rows, first, steps)
+        self.status, filled, self.raised = self.run.advance(stop, times, rows, first, steps)
+        if self.raised is not None:
+            self.status = INTERRUPTED
         self.core_seconds += perf_counter() - started
         return int(filled)
 
     def add(self, times: Array, rows: Array) -> None:
         """Append output rows and the events up to now."""
         if len(times):
-            self._times.append(times)
-            self._rows.append(rows)
+            self._parts.append((times, rows))
         happened = np.asarray(self.run.events())
         if len(happened):
             self._events.append(happened)
@@ -53,12 +54,12 @@ class Recording:
     @property
     def times(self) -> Array:
         """Instants of the rows [s]."""
-        return np.concatenate(self._times) if self._times else np.empty(0)
+        return np.concatenate([times for times, _ in self._parts]) if self._parts else np.empty(0)
 
     @property
     def rows(self) -> Array:
         """Output rows, shape (instants, row size)."""
-        return np.concatenate(self._rows) if self._rows else np.empty((0, self.row_size))
+        return np.concatenate([rows for _, rows in self._parts]) if self._parts else np.empty((0, self.row_size))
 
     @property
     def events(self) -> Array:

@@ -67,7 +67,8 @@ def dependent_text(run: Trajectory) -> list[str]:
     """When the shares of locked contacts in their load were a convention."""
     if not run.dependent:
         return []
-    lines = [f"{phase.begin:.6f} to {phase.end:.6f} s: {' '.join(phase.contacts)}" for phase in run.dependent[:MOST_LINES]]
+    found = run.dependent[:MOST_LINES]
+    lines = [f"{phase.begin:.6f} to {phase.end:.6f} s: {' '.join(phase.contacts)}" for phase in found]
     return ["locked contacts that depend on each other; they share their load by capacity:\n" + "\n".join(lines)]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import os
 import time
 import warnings
@@ -13,12 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.calls import explained
-from clutchwork.channels import Channels
-from clutchwork.control import Control, controllers
+from clutchwork.control import Control, Signals, controllers
 from clutchwork.effort import refuse_endless
 from clutchwork.errors import UseError, caller
 from clutchwork.events import from_rows
-from clutchwork.failure import DONE, NAMES, SimulationError, StoppedEarly, explain, report_faults
+from clutchwork.failure import (
+    DONE,
+    INTERRUPTED,
+    NAMES,
+    NOT_FINITE,
+    Interrupted,
+    SimulationError,
+    StoppedEarly,
+    explain,
+    report_faults,
+)
 from clutchwork.jumps import jump_times
 from clutchwork.options import Options, end_time
 from clutchwork.record import Progress, Recording, record
@@ -59,7 +67,8 @@ def simulate(
 
     A fault that its element reports as a warning is a `FaultWarning`. A run that cannot go on warns with `StoppedEarly`
     and returns the trajectory so far, with `status` and `message`.
-    A controller that raises ends in `SimulationError`, which holds the trajectory so far too.
+    A controller that raises ends in `SimulationError`, which holds the trajectory so far too, and so does
+    `Interrupted`, the KeyboardInterrupt that Ctrl-C raises.
     """
     t_end = end_time(t_end)
     if options is not None and not isinstance(options, Options):
@@ -69,7 +78,7 @@ def simulate(
         raise UseError("simulate", [_no_model(model)])
     system = model if isinstance(model, System) else model.assemble()
     refuse_endless(system.inputs, t_end, chosen.max_steps)
-    control = Control(controllers(system.inputs), functools.cache(lambda: Channels(wiring(system))))
+    control = Control(controllers(system.inputs), Signals(system))
     run = _trajectory(Job(system, t_end, chosen, control), progress)
     report_faults(run)
     return run
@@ -96,6 +105,10 @@ def _trajectory(job: Job, progress: Progress | None) -> Trajectory:
     made = _named(job, recording, time.perf_counter() - started)
     if failure is not None:
         raise SimulationError(str(failure), made) from failure.__cause__
+    if isinstance(recording.raised, KeyboardInterrupt):
+        raise Interrupted(made.message, made) from None
+    if recording.raised is not None:
+        raise recording.raised
     if not made.finished:
         warnings.warn(StoppedEarly(made.message, made), stacklevel=caller())
     return made
@@ -105,7 +118,7 @@ def _collect(job: Job, progress: Progress | None) -> tuple[Recording, Simulation
     """Record a run; smooth output repeats it on a grid that is known to hold every step and event."""
     data, grid = job.system.to_bytes(), job.options.grid(job.t_end)
     first, failure = _once(job, data, grid, progress)
-    if grid is not None or job.options.output != "smooth" or failure is not None:
+    if grid is not None or job.options.output != "smooth" or failure is not None or first.status == INTERRUPTED:
         return first, failure
     spacing = job.t_end / job.options.points
     finer = refined(first.times, spacing, jump_times(job.system.inputs, job.t_end))
@@ -113,6 +126,10 @@ def _collect(job: Job, progress: Progress | None) -> tuple[Recording, Simulation
         return first, None
     second, failure = _once(job, data, finer, None)
     second.core_seconds = first.core_seconds
+    if second.status == INTERRUPTED:
+        # the bare steps reach further
+        first.status, first.raised = INTERRUPTED, second.raised
+        return first, None
     return second, failure
 
 
@@ -128,6 +145,9 @@ def _once(
         record(recording, job.t_end, grid, job.control, progress)
     except SimulationError as error:
         return recording, error
+    except KeyboardInterrupt as error:
+        # between two calls of the core
+        recording.status, recording.raised = INTERRUPTED, error
     return recording, None
 
 
@@ -153,16 +173,30 @@ def refined(steps: Array, spacing: float, jumps: Array) -> Array:
     return np.sort(np.concatenate([grid, np.repeat(reached, np.maximum(0, 2 - present))]))
 
 
+def _message(system: System, status: int, run: Any) -> str:
+    """Why a run stopped. What is not finite is an element, or a number of a row; else the largest one is named."""
+    index, at, value, column = run.detail()
+    parts = [*system.elements, *system.contacts]
+    if NAMES[status] == "zeno" and index < 0:
+        return explain(status, None, at, value, system.inputs[int(value)].name)
+    if status != NOT_FINITE or 0 <= index < len(parts):
+        return explain(status, parts[index] if 0 <= index < len(parts) else None, at, value)
+    if column < 0:
+        row = np.asarray(run.row())
+        column = int(np.argmax(np.abs(row)))
+        value = float(row[column])
+    from clutchwork.rows import numbers
+
+    name, _ = numbers(wiring(system))[column]
+    return explain(status, None, at, value, name)
+
+
 def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
     """The numbers of a run with the names of its system."""
     run, status, system = recording.run, recording.status, job.system
     message = ""
     if status != DONE:
-        index, at, value = run.detail()
-        parts = [*system.elements, *system.contacts]
-        component = parts[index] if 0 <= index < len(parts) else None
-        crowded = NAMES[status] == "zeno" and component is None
-        message = explain(status, component, at, value, system.inputs[int(value)].name if crowded else "")
+        message = _message(system, status, run)
     return Trajectory(
         system=system,
         options=job.options,

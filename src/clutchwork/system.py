@@ -91,6 +91,14 @@ class System:
         except KeyError:
             raise AttributeError(f"a System has no {name!r}{near(name, [n for n, *_ in FIELDS])}") from None
 
+    def __getstate__(self) -> dict[str, Any]:
+        # a view of a dictionary cannot be pickled; what is cached comes again
+        fields = {name: value for name, value in vars(self).items() if name != "counts"}
+        return fields | {"arrays": dict(self.arrays)}
+
+    def __setstate__(self, fields: dict[str, Any]) -> None:
+        vars(self).update(fields | {"arrays": frozen(fields["arrays"])})
+
     @cached_property
     def counts(self) -> dict[str, int]:
         """Sizes as `layout.COUNTS` lists them."""

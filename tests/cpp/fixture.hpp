@@ -260,6 +260,11 @@ struct Run {
     cw_row(run, row.data());
     return row;
   }
+  Bytes save() const {
+    Bytes state(std::size_t(cw_state_size(run)));
+    state.resize(std::size_t(cw_save(run, state.data(), std::int64_t(state.size()))));
+    return state;
+  }
   /// Waiting events, event_size numbers each.
   Numbers events() {
     Numbers events(std::size_t(1000 * event_size));

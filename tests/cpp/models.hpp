@@ -108,4 +108,32 @@ inline Model warm() {
   return m;
 }
 
+/// A prescribed speed, signals that repeat and wait, an input from outside (number 1), a freewheel. Small form.
+inline Model driven() {
+  Model m;
+  const int speed = m.signal({{0.1, {2, 0, 0, 0, 3, 7, 0, 0}}}), outside = m.signal({}, 4);
+  const int wave = m.signal({{0.2, {1}}, {0.25, {5, -20}}, {0.45, {1}}}, 0, 0.3);
+  const int in = m.prescribed(0.3, speed), out = m.shaft(0.5, 3), free = m.shaft(0.2);
+  m.element<elements::Torque>(housing, free, {}, {outside});
+  m.contact<elements::Clutch, laws::Stribeck>(in, out, {1}, {wave}, {0.4, 0.3, 3, 0, 2, 0});
+  m.contact<elements::OneWayClutch, laws::Coulomb>(out, free, {1}, {m.constant(1)}, {0.4, 0.3});
+  return m;
+}
+
+/// Clutches side by side that lock together, under pressures that differ and vary: their shares are a choice. Small
+/// form.
+inline Model parallel() {
+  Model m;
+  const int a = m.shaft(0.4, 12), b = m.shaft(0.9), c = m.shaft(0.5, -3);
+  const int push = m.signal({{0, {9, 0, 0, 0, 12, 6, 0, 0}}, {1.5, {-8}}});
+  const int up = m.signal({{0, {0, 40}}, {1.0, {40, -15}}}), even = m.constant(14);
+  m.element<elements::Torque>(housing, a, {}, {push});
+  m.element<elements::SpringDamper>(b, c, {200, 0.5, 0});
+  m.contact<elements::Clutch, laws::Coulomb>(a, b, {1}, {up}, {0.6, 0.5});
+  m.contact<elements::Clutch, laws::Coulomb>(a, b, {1}, {even}, {0.5, 0.4});
+  m.contact<elements::Clutch, laws::Stribeck>(a, b, {0.5}, {up}, {0.4, 0.3, 3, 0, 2, 0});
+  m.contact<elements::Brake, laws::Coulomb>(housing, c, {1}, {m.signal({{0, {0}}, {9, {0, 1}}})}, {0.3, 0.2});
+  return m;
+}
+
 }  // namespace fixture

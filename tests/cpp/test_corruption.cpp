@@ -91,7 +91,13 @@ void odd_parameters(const Model& model) {
       for (std::int64_t k = first; k < first + 2; ++k) {
         for (double x : {-1.0, 9.0, 1e9, double(NAN)}) CHECK(cw_set_param(r.run, k, x) == 0);
       }
-      CHECK(cw_set_param(r.run, sys.contact_law_param[c], 0.3) == 1);
+      CHECK(cw_set_param(r.run, sys.contact_param[c], 0.3) == 1);
+    });
+    // which of a few kinds is meant
+    visit_law_choices(sys.contact_law[c], [&](int at, int n) {
+      const std::int64_t place = sys.contact_law_param[c] + at;
+      for (double x : {-1.0, 0.5, double(n), 1e9, 1e300, double(NAN), double(INFINITY)}) CHECK(!put(place, x));
+      CHECK(put(place, sys.params[place]));
     });
   }
 }

@@ -49,8 +49,8 @@ void silent(const Model& model, double end, int method) {
     good = good && cw_advance(run, 0.5 * end * part, &times[filled], &rows[filled * cw_row_size(run)], n - filled, 0,
                               &more) == 0;
     filled += more;
-    cw_save(run, saved.data());
-    good = good && cw_restore(run, saved.data(), size) == 1;
+    const std::int64_t n = cw_save(run, saved.data(), size);
+    good = good && cw_restore(run, saved.data(), n) == 1;
   }
   taken_events = cw_take_events(run, events.data(), 1000);
   const int status = cw_advance(run, 1.1 * end, times.data(), rows.data(), n, 1, &steps);

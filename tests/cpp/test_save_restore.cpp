@@ -26,12 +26,12 @@ void same(const Numbers& a, const Numbers& b) {
 }
 
 /// Saved at `middle`, continued there and in other memory, after other things have happened there.
-void continues(const Model& model, double middle, double end) {
+void continues(const Model& model, double middle, double end, double method = 1) {
   Run first(model);
+  cw_set_option(first.run, "method", method);
   CHECK(first.advance(middle) == 0);
   first.events();
-  Bytes saved(first.memory.size());
-  cw_save(first.run, saved.data());
+  const Bytes saved = first.save();
   const Numbers told = story(first, end);
   CHECK(cw_restore(first.run, saved.data(), std::int64_t(saved.size())) == 1);
   CHECK(cw_time(first.run) == middle);
@@ -46,12 +46,75 @@ void continues(const Model& model, double middle, double end) {
     std::memset(first.system.data(), 0xff, first.system.size());
     same(told, story(*other, end));
   }
-  CHECK(cw_restore(fresh.run, saved.data(), std::int64_t(saved.size()) - 1) == 0);
+}
+
+/// Saved when the buffer of events is full: modes are decided, their phase has not begun.
+void full_buffer(bool changed) {
+  Model m;
+  const int a = m.shaft(1, 2), b = m.shaft(1);
+  const int pressure = m.signal({}, 0), push = m.signal({}, 0);
+  m.element<elements::Torque>(housing, a, {}, {push});
+  m.element<elements::SpringDamper>(housing, b, {300, 0.1, 0});
+  m.contact<elements::Clutch, laws::Coulomb>(a, b, {1}, {pressure}, {1, 1});
+  m.contact<elements::Clutch, laws::Stribeck>(a, b, {1}, {pressure}, {0.4, 0.3, 3, 0, 2, 0});
+  Run r(m), other(m);
+  int status = 0;
+  for (int i = 0; i < 2000 && status == 0; ++i) {
+    cw_set_input(r.run, pressure, i % 2 == 0 ? 5.0 : 0.0);
+    status = r.advance(0.001 * i);
+  }
+  if (!CHECK(status == int(Status::events_full))) return;
+  if (changed) cw_set_input(r.run, pressure, 2.5), cw_set_input(r.run, push, 3);
+  const Bytes saved = r.save();
+  CHECK(cw_restore(other.run, saved.data(), std::int64_t(saved.size())) == 1);
+  CHECK(other.save() == saved);
+  same(r.events(), other.events());
+  cw_set_input(r.run, push, -4), cw_set_input(other.run, push, -4);
+  same(story(r, 2.5), story(other, 2.5));
+}
+
+/// Options, inputs and parameters belong to the state.
+void settings_come_back() {
+  Run r(driven()), other(driven());
+  CHECK(cw_set_option(r.run, "rtol", 1e-9) == 1 && cw_set_input(r.run, 1, 7) == 1);
+  CHECK(cw_set_param(r.run, r.sys.contact_param[0], 0.7) == 1);
+  const Bytes fresh = r.save();
+  CHECK(cw_restore(other.run, fresh.data(), std::int64_t(fresh.size())) == 1);
+  CHECK(other.save() == fresh);
+  same(story(r, 1.5), story(other, 1.5));
+}
+
+/// What a state holds is what it holds again, to the byte.
+void stays_the_same(const Model& model) {
+  Run r(model), other(model);
+  for (double t : {0.0, 0.2, 0.55, 0.9, 1.3, 1.75}) {
+    CHECK(r.advance(t) == 0);
+    const Bytes saved = r.save();
+    CHECK(cw_restore(other.run, saved.data(), std::int64_t(saved.size())) == 1);
+    CHECK(other.save() == saved);
+    r.events();
+  }
 }
 
 }  // namespace
 
 int main() {
+  const Model models[] = {three_shafts(), chain(), bristles(), hysteresis(), warm(), driven(), parallel()};
+  check::Random g{5};
+  for (const Model& model : models) {
+    stays_the_same(model);
+    for (int i = 0; i < 8; ++i) continues(model, g.between(0, 2), 2.2);
+  }
+  // the explicit method, and the choice between both
+  for (double method : {0.0, 2.0}) {
+    for (double middle : {0.0, 0.21, 0.9, 1.4}) {
+      continues(three_shafts(), middle, 1.8, method);
+      continues(parallel(), middle, 1.8, method);
+      continues(chain(), middle, 1.6, method);
+    }
+  }
+  for (bool changed : {false, true}) full_buffer(changed);
+  settings_come_back();
   for (double middle : {0.0, 0.3, 0.7, 0.95, 1.4, 1.83, 2.2}) continues(three_shafts(), middle, 2.5);
   for (double middle : {0.0, 0.1, 0.35, 0.5, 0.77, 1.3}) continues(chain(), middle, 2.0);
   for (double middle : {0.0, 0.4, 0.8, 1.21, 1.6, 1.9, 2.5}) continues(bristles(), middle, 3.0);

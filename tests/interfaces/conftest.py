@@ -32,13 +32,18 @@ class FakeRun:
         self._events, self.stalled = [], False
         return drained
 
-    def detail(self) -> tuple[int, float, float]:
-        return 0, self.time, float("nan")
+    def detail(self) -> tuple[int, float, float, int]:
+        return 0, self.time, float("nan"), -1
 
     def statistics(self) -> dict[str, float]:
         return {"steps": 1.0}
 
-    def advance(self, t_end: float, times: np.ndarray, rows: np.ndarray, first: int, steps: bool) -> tuple[int, int]:
+    def advance(
+        self, t_end: float, times: np.ndarray, rows: np.ndarray, first: int, steps: bool
+    ) -> tuple[int, int, None]:
+        return *self._advance(t_end, times, rows, first, steps), None
+
+    def _advance(self, t_end: float, times: np.ndarray, rows: np.ndarray, first: int, steps: bool) -> tuple[int, int]:
         self.calls.append(t_end)
         assert not self.stalled, "events were not drained"
         if not steps:

@@ -10,7 +10,7 @@ import pytest
 
 from clutchwork import record as module
 from clutchwork.control import Control, Controller
-from clutchwork.failure import DONE, SimulationError
+from clutchwork.failure import DONE, INTERRUPTED, SimulationError
 from clutchwork.record import Recording, record
 from clutchwork.simulation import refined
 
@@ -54,6 +54,18 @@ def test_a_failure_keeps_what_was_computed(fake_run: Make) -> None:
     made = recorded(fake_run(fail_at=0.3), 1.0)
     assert made.status == 4
     assert made.times[-1] == pytest.approx(0.35)
+
+
+def test_a_signal_at_the_very_end_of_a_call_is_heard(fake_run: Make) -> None:
+    class Late(fake_run):  # type: ignore[misc, valid-type]
+        def advance(self, *asked: Any) -> Any:
+            status, filled, _ = super().advance(*asked)
+            return status, filled, KeyboardInterrupt()
+
+    made = recorded(Late(), 0.5)
+    assert made.status == INTERRUPTED
+    assert isinstance(made.raised, KeyboardInterrupt)
+    assert made.times[-1] == pytest.approx(0.5)
 
 
 def controller(function: object, period: float = 0.2) -> Controller:

@@ -97,6 +97,8 @@ Status advance(Workspace<T>& ws, double t_end, Sink& sink) {
   while (true) {
     if (ws.n_events >= Workspace<T>::event_room) return Status::events_full;
     if (ws.input_changed) {
+      // the torques before are those of the present modes
+      if (ws.fresh_phase && !enter_mode(ws)) return Status::no_mode;
       const Status status = take_outside(ws);
       if (status != Status::running) return status;
     }

@@ -183,9 +183,32 @@ int mode_shown(const Workspace<T>& ws, const Snapshot<T>& shot, int c) {
   return value(shot.rate[ws.branch_of[ws.sys.elements + c]]) < 0 ? backward : forward;
 }
 
-/// One row of output at s; work is fitted over the part of the step up to s_end.
+/// Whether all numbers of a row and the kinetic energy are finite; else detail_row and detail_value tell what is not,
+/// or the speed that has most of the energy.
+template <class T>
+bool is_finite(Workspace<T>& ws, const double* row) {
+  const double* speed = row + ws.row.speed;
+  auto energy_of = [&](std::int64_t n) { return ws.sys.inertia[n] * speed[n] * speed[n]; };
+  double sum = 0, energy = 0;
+  for (std::int64_t i = 0; i < ws.row.size; ++i) sum += row[i] * 0;
+  for (std::int64_t n = 0; n < ws.sys.nodes; ++n) energy += energy_of(n);
+  if (sum + energy * 0 == 0) return true;
+  std::int64_t which = 0;
+  if (sum == 0) {
+    for (std::int64_t n = 1; n < ws.sys.nodes; ++n) which = energy_of(n) > energy_of(which) ? n : which;
+    which += ws.row.speed;
+  } else {
+    while (row[which] - row[which] == 0) ++which;
+  }
+  ws.detail_component = -1;
+  ws.detail_row = int(which);
+  ws.detail_value = row[which];
+  return false;
+}
+
+/// One row of output at s; work is fitted over the part of the step up to s_end. False: a number is not finite.
 template <class Form, class T = typename Form::Scalar>
-void fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row) {
+bool fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row) {
   Workspace<T>& ws = form.ws;
   const System& sys = ws.sys;
   const RowLayout& at = ws.row;
@@ -229,24 +252,29 @@ void fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row)
         value(ws.prescribed_work[p] + (fitted ? fitted_work(ws, nd + p, x, s_end * step.h) : T(0)));
   }
   for (int i = 0; i < sys.inputs; ++i) row[at.input + i] = signal_value(ws, i, step.t + s * step.h);
+  return is_finite(ws, row);
 }
 
-/// Rows that fall into the step up to s_end. At its very end at most one, the left limit.
+/// Rows that fall into the step up to s_end. At its very end at most one, the left limit. `running`: all is well.
 template <class Form>
-void emit(Form& form, Step<Form>& step, double s_end, Sink& sink) {
+Status emit(Form& form, Step<Form>& step, double s_end, Sink& sink) {
   const double end = step.t + s_end * step.h;
   const std::int64_t size = form.ws.row.size;
   if (sink.steps) {
     sink.times[sink.at] = end;
-    fill_row(form, step, s_end, s_end, sink.rows + size * sink.at++);
-    return;
+    if (!fill_row(form, step, s_end, s_end, sink.rows + size * sink.at)) return Status::not_finite;
+    ++sink.at;
+    return Status::running;
   }
   while (sink.at < sink.count && sink.times[sink.at] <= end) {
     const double t = sink.times[sink.at];
     const double s = step.h > 0 ? smaller(s_end, larger(0.0, (t - step.t) / step.h)) : 0;
-    fill_row(form, step, s, s_end, sink.rows + size * sink.at++);
+    if (!fill_row(form, step, s, s_end, sink.rows + size * sink.at)) return Status::not_finite;
+    ++sink.at;
     if (t == end) break;
+    if (stop_asked(form.ws)) return Status::interrupted;
   }
+  return Status::running;
 }
 
 /// Take the integrals over the step up to s into the state.

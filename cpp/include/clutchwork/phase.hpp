@@ -168,20 +168,21 @@ void rest_step(Form& form, Step<Form>& step) {
   }
 }
 
-/// Rows at the instant at which a phase starts.
+/// Rows at the instant at which a phase starts. `running`: all is well.
 template <class Form>
-void emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
-  if (!(sink.steps ? fresh : sink.at < sink.count && sink.times[sink.at] <= form.ws.time)) return;
+Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
+  if (!(sink.steps ? fresh : sink.at < sink.count && sink.times[sink.at] <= form.ws.time)) return Status::running;
   rest_step(form, step);
   if (!sink.steps) {
     // a grid row here is the right limit of an event; further equal times wait for the end of the step
     const std::int64_t size = form.ws.row.size;
     while (sink.at < sink.count && sink.times[sink.at] <= form.ws.time) {
-      fill_row(form, step, 0.0, 0.0, sink.rows + size * sink.at++);
+      if (!fill_row(form, step, 0.0, 0.0, sink.rows + size * sink.at)) return Status::not_finite;
+      ++sink.at;
     }
-    return;
+    return Status::running;
   }
-  emit(form, step, 0.0, sink);
+  return emit(form, step, 0.0, sink);
 }
 
 /// Name the branch whose torque is not finite.
@@ -350,6 +351,14 @@ double work_error(Form& form, Step<Form>& step) {
   return error;
 }
 
+/// Whether all of a state is finite.
+template <class T>
+CLUTCHWORK_INLINE bool all_finite(int n, const T* y) {
+  double sum = 0;
+  for (int i = 0; i < n; ++i) sum += value(y[i]) * 0;
+  return sum == 0;
+}
+
 /// Error that the motion up to the share s of a step may have, in units of the tolerance: what the interpolant misses of
 /// the equations of motion there, over that time. Only the end of a step is checked by its own estimate.
 template <class Form>
@@ -399,7 +408,7 @@ class Phase {
 
   /// `running`: an event is waiting to be settled.
   Status run() {
-    begin();
+    if (!begin()) return status_;
     while (true) {
       if (ends()) return status_;
       if (!try_step()) {
@@ -411,14 +420,15 @@ class Phase {
         land(hit.s);
         continue;
       }
-      write(hit.what == Hit::nothing ? 1.0 : hit.s);
+      if (!write(hit.what == Hit::nothing ? 1.0 : hit.s)) return status_;
       if (hit.what == Hit::nothing ? accept() : meet(hit)) continue;
       return status_;
     }
   }
 
  private:
-  CLUTCHWORK_INLINE void begin() {
+  /// False: the state is not finite, or there is no row of it.
+  CLUTCHWORK_INLINE bool begin() {
     const bool fresh = ws_.fresh_phase;
     if constexpr (!Form::small) {
       if (fresh) form_.solve_mass(ws_.y);
@@ -427,11 +437,13 @@ class Phase {
     if constexpr (!Form::small) balance_massless(form_, step_);
     ws_.fresh_phase = false;
     // at a knot the row is the right limit, which comes after it
-    if (ws_.time < ws_.next_knot) emit_start(form_, step_, sink_, fresh);
+    const Status shown = ws_.time < ws_.next_knot ? emit_start(form_, step_, sink_, fresh) : Status::running;
+    if (shown != Status::running) return !leave(shown);
     look_here();
     // kept, so that a run takes the same steps whether or not it is asked for a row here
     if (fresh) ws_.last_step *= 0.25;
     h_ = ws_.last_step > 0 ? ws_.last_step : first_step(form_, step_, t_end_ - ws_.time);
+    return true;
   }
 
   CLUTCHWORK_INLINE void look_here() { look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here); }
@@ -456,12 +468,13 @@ class Phase {
       }
     }
     if (ws_.time >= t_end_) {
-      emit_start(form_, step_, sink_, false);
-      return leave(Status::done);
+      const Status shown = emit_start(form_, step_, sink_, false);
+      return leave(shown == Status::running ? Status::done : shown);
     }
     if (sink_.steps && sink_.at + 3 > sink_.count) return leave(Status::rows_full);
     if (ws_.n_events >= Workspace<T>::event_room) return leave(Status::events_full);
     if (ws_.statistics.steps + ws_.statistics.rejected >= ws_.options.max_steps) return leave(Status::too_many_steps);
+    if (stop_asked(ws_)) return leave(Status::interrupted);
     return false;
   }
 
@@ -473,6 +486,7 @@ class Phase {
     if (cut_) reach_ = stop_ - ws_.time;
     step_.t = ws_.time;
     error_ = Integrator::advance(form_, step_, reach_);
+    if (!all_finite(form_.n(), step_.y1())) error_ = infinity;
     if (error_ <= 1 && ws_.options.work && rates_bend(ws_))
       error_ = larger(error_, work_error<Form, Integrator>(form_, step_));
     if (!(error_ <= 1)) return reject();
@@ -509,14 +523,16 @@ class Phase {
     look_here();
   }
 
-  /// Rows and integrals of the step up to the share s.
-  CLUTCHWORK_INLINE void write(double s) {
+  /// Rows and integrals of the step up to the share s. False: a row is not finite, or the caller wants to stop.
+  CLUTCHWORK_INLINE bool write(double s) {
     const bool rows = sink_.steps || (sink_.at < sink_.count && sink_.times[sink_.at] <= ws_.time + s * reach_);
-    if (!(rows || ws_.options.work || ws_.options.angles) || s <= 0) return;
+    if (!(rows || ws_.options.work || ws_.options.angles) || s <= 0) return true;
     if (!step_.dense) Integrator::prepare_dense(form_, step_);
     if (ws_.options.work) fit_power(form_, step_, s);
-    if (rows) emit(form_, step_, s, sink_);
+    const Status shown = rows ? emit(form_, step_, s, sink_) : Status::running;
+    if (shown != Status::running) return !leave(shown);
     accumulate(form_, step_, s);
+    return true;
   }
 
   /// Go on from the end of the step. False: a contact chatters.

@@ -181,7 +181,18 @@ struct Workspace {
   // where a failure happened
   int detail_component = -1;
   double detail_value = 0;
+  int detail_row = -1;  ///< number in a row that is not finite
+
+  // asked once per step and row, of the caller; other than zero: stop
+  int (*poll)(void*) = nullptr;
+  void* poll_context = nullptr;
 };
+
+/// Whether the caller wants the run to stop.
+template <class T>
+CLUTCHWORK_INLINE bool stop_asked(const Workspace<T>& ws) {
+  return ws.poll != nullptr && ws.poll(ws.poll_context) != 0;
+}
 
 /// Hands out pieces of a block of memory, or only counts them when the block is null.
 class Arena {
@@ -193,6 +204,11 @@ class Arena {
     p = base_ ? reinterpret_cast<P*>(base_ + at_) : nullptr;
     at_ += (n > 0 ? n : 1) * std::int64_t(sizeof(P));
   }
+  template <class P>
+  void scratch(P*& p, std::int64_t n) {
+    take(p, n);
+  }
+  void keep(int*& p, std::int64_t n, std::int64_t, std::int64_t) { take(p, n); }
   std::int64_t size() const { return at_ + 16; }
 
  private:
@@ -200,63 +216,73 @@ class Arena {
   std::int64_t at_ = 0;
 };
 
-/// Lay the arrays of a workspace into memory; returns the size needed.
-template <class T>
-std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
+/// The arrays of a workspace, for the memory and for saved states: numbers that are taken are saved, indices are made
+/// anew from the modes; what is kept are integers that a saved state holds too, within bounds; scratch is never saved.
+template <class W, class A>
+void lay_out(W& ws, A& a) {
   const System& s = ws.sys;
-  Arena a(memory);
   const auto nv = s.speeds, np = s.prescribed, ns = s.states, nc = s.contacts, nd = s.elements + s.contacts;
-  ws.n_refs = int(s.n_input_refs + np);
-  ws.n_directions = int(nd);
+  const auto nx = s.shared, nr = s.n_input_refs + np;
   a.take(ws.v, nv), a.take(ws.state, ns), a.take(ws.angle, s.nodes), a.take(ws.work, nd),
       a.take(ws.prescribed_work, np);
-  a.take(ws.mode, nc), a.take(ws.piece, nd), a.take(ws.loaded, nc), a.take(ws.pressed, nc);
-  a.take(ws.forced, nc), a.take(ws.crowd, nd + s.inputs);
-  a.take(ws.compliant, nc), a.take(ws.heading, nd), a.take(ws.switching, nd), a.take(ws.chattering, nc);
-  a.take(ws.bounded, nc), a.take(ws.fault, nc), a.take(ws.faulty, nc);
-  const auto nx = s.shared;
-  a.take(ws.shared_ref, ws.n_refs), a.take(ws.direction_ref, ws.n_refs), a.take(ws.shared_slope, ws.n_refs);
+  a.keep(ws.mode, nc, backward, open), a.keep(ws.piece, nd, -(1ll << 31), (1ll << 31) - 1);
+  a.keep(ws.loaded, nc, 0, 1), a.keep(ws.pressed, nc, 0, 1), a.keep(ws.forced, nc, backward, forward);
+  a.keep(ws.crowd, nd + s.inputs, 0, 1 << 30);
+  a.take(ws.compliant, nc), a.keep(ws.heading, nd, backward, forward), a.take(ws.switching, nd);
+  a.take(ws.chattering, nc), a.take(ws.bounded, nc), a.keep(ws.fault, nc, sound, cannot_unlock);
+  a.keep(ws.faulty, nc, 0, nc - 1);
+  a.take(ws.shared_ref, nr), a.take(ws.direction_ref, nr), a.take(ws.shared_slope, nr);
   a.take(ws.heat, nx > 0 ? nd : 0), a.take(ws.heat_rate, nx > 0 ? nd : 0), a.take(ws.heat_time, nx > 0 ? nd : 0);
   a.take(ws.heat_share, nx > 0 ? nd : 0), a.take(ws.stage_rate, nx > 0 ? nd : 0);
   a.take(ws.stage_torque, nx > 0 ? nd : 0), a.take(ws.by_shared, nd * nx), a.take(ws.shared_by_rate, nd * nx);
   a.take(ws.shared_by_state, ns * nx), a.take(ws.shared_by_shared, nx * nx), a.take(ws.shared_reach, (nv + ns) * nx);
   a.take(ws.shared_inverse, 2 * nx * nx + nx);
-  a.take(ws.signal, s.inputs), a.take(ws.ref_signal, ws.n_refs), a.take(ws.varying, ws.n_refs);
-  a.take(ws.u, ws.n_refs), a.take(ws.du, ws.n_refs), a.take(ws.params, s.n_params), a.take(ws.prescribed_before, np);
-  a.take(ws.factor, nv * nv), a.take(ws.direction, nd * nv), a.take(ws.prescribed_momentum, np * nv);
-  const auto nr = s.contacts > 1 ? nc : 0;
-  a.take(ws.spare, nr), a.take(ws.set_first, nr + 1), a.take(ws.set_rank, nr), a.take(ws.set_member, nr);
-  a.take(ws.set_place, nr), a.take(ws.in_set, nc), a.take(ws.tie, nr * nr), a.take(ws.set_basis, 2 * nr + 2);
-  a.take(ws.set_memory, nr * (3 * nr + 12) + 4);
-  a.take(ws.locked, nc), a.take(ws.z_basis, nv * nv), a.take(ws.y_basis, nv * np), a.take(ws.mobility, nc * nc);
+  a.take(ws.signal, s.inputs), a.take(ws.ref_signal, nr), a.take(ws.varying, nr);
+  a.take(ws.u, nr), a.take(ws.du, nr), a.take(ws.params, s.n_params), a.take(ws.prescribed_before, np);
+  a.scratch(ws.factor, nv * nv), a.scratch(ws.direction, nd * nv), a.scratch(ws.prescribed_momentum, np * nv);
+  const auto most_spare = nc > 1 ? nc : 0;
+  a.take(ws.spare, most_spare), a.take(ws.set_first, most_spare + 1), a.take(ws.set_rank, most_spare);
+  a.take(ws.set_member, most_spare), a.take(ws.set_place, most_spare), a.take(ws.in_set, nc);
+  a.scratch(ws.tie, most_spare * most_spare), a.take(ws.set_basis, 2 * most_spare + 2);
+  a.scratch(ws.set_memory, most_spare * (3 * most_spare + 12) + 4);
+  a.take(ws.locked, nc), a.take(ws.z_basis, nv * nv), a.take(ws.y_basis, nv * np), a.scratch(ws.mobility, nc * nc);
   a.take(ws.mobility_factor, nc * nc), a.take(ws.white_first, nd + 1), a.take(ws.white_col, nd * nv),
-      a.take(ws.white, nd * nv);
+      a.scratch(ws.white, nd * nv);
   a.take(ws.row_z, nd * nv), a.take(ws.offset, nd * np), a.take(ws.reach, nc * nd),
       a.take(ws.reach_prescribed, nc * np);
   a.take(ws.branch, nd), a.take(ws.branch_of, nd), a.take(ws.line, 3 * nd + nc), a.take(ws.partial, nd);
   a.take(ws.f_state, ns), a.take(ws.g_rate, ns), a.take(ws.g_time, ns), a.take(ws.block, nd);
   a.take(ws.g_state, ns * ns), a.take(ws.a_state, ns * ns);
-  Edge<T>* edges[2] = {&ws.here, &ws.there};
-  for (Edge<T>* e : edges) {
+  decltype(&ws.here) edges[] = {&ws.here, &ws.there};
+  for (auto* e : edges) {
     a.take(e->rate, nd), a.take(e->slope, nd), a.take(e->multiplier, nc), a.take(e->drift, nc);
     a.take(e->capacity, nc), a.take(e->noise, nc), a.take(e->room, nc);
   }
-  a.take(ws.torque, nd), a.take(ws.output_torque, nd), a.take(ws.power, 4 * (nd + np));
-  a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.take(ws.watch, nc), a.take(ws.mode_before, nc),
-      a.take(ws.impulse, nc);
+  a.take(ws.torque, nd), a.take(ws.output_torque, nd), a.scratch(ws.power, 4 * (nd + np));
+  a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.keep(ws.watch, nc, 0, nc - 1);
+  a.keep(ws.mode_before, nc, backward, open), a.keep(ws.impulse, nc, 0, 1);
   a.take(ws.sp_first, nd + 1), a.take(ws.sp_col, nd * nv), a.take(ws.sp_val, nd * nv);
   a.take(ws.m_first, nv + 1), a.take(ws.m_col, nv * nv), a.take(ws.m_val, nv * nv);
-  a.take(ws.sky, nv + 1), a.take(ws.pivot_of, nv), a.take(ws.envelope, 2 * nv * nv);
+  a.take(ws.sky, nv + 1), a.take(ws.pivot_of, nv), a.scratch(ws.envelope, 2 * nv * nv);
   a.take(ws.exp_first, nv + 1), a.take(ws.exp_col, nv * nv), a.take(ws.exp_val, nv * nv);
-  a.take(ws.y, nv + ns), a.take(ws.stages, 20 * (nv + ns)),
-      a.take(ws.scratch, 8 * (nv + nd + ns) + 3 * nv * nv + nc * (nv + nc));
-  a.take(ws.dense_v, 4 * nv + 2 * s.nodes + np), a.take(ws.iscratch, 4 * (nv + nd + nc));
-  a.take(ws.qp_g, 5 * nc), a.take(ws.qp_m, nc * nc), a.take(ws.qp_x, 3 * nc), a.take(ws.qp_lo, nc),
-      a.take(ws.qp_hi, nc);
-  a.take(ws.qp_w, nc), a.take(ws.qp_f, nc * nc), a.take(ws.qp_fix, 3 * nc);
-  a.take(ws.events, event_size * (Workspace<T>::event_room + 2 * nc));
-  ws.prescribed = ws.u + s.n_input_refs;
-  ws.prescribed_slope = ws.du + s.n_input_refs;
+  a.take(ws.y, nv + ns), a.scratch(ws.stages, 20 * (nv + ns)),
+      a.scratch(ws.scratch, 8 * (nv + nd + ns) + 3 * nv * nv + nc * (nv + nc));
+  a.scratch(ws.dense_v, 4 * nv + 2 * s.nodes + np), a.take(ws.iscratch, 4 * (nv + nd + nc));
+  a.scratch(ws.qp_g, 5 * nc), a.scratch(ws.qp_m, nc * nc), a.scratch(ws.qp_x, 3 * nc), a.scratch(ws.qp_lo, nc),
+      a.scratch(ws.qp_hi, nc);
+  a.scratch(ws.qp_w, nc), a.scratch(ws.qp_f, nc * nc), a.take(ws.qp_fix, 3 * nc);
+  a.take(ws.events, event_size * (ws.event_room + 2 * nc));
+}
+
+/// Lay the arrays of a workspace into memory; returns the size needed.
+template <class T>
+std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
+  ws.n_refs = int(ws.sys.n_input_refs + ws.sys.prescribed);
+  ws.n_directions = int(ws.sys.elements + ws.sys.contacts);
+  Arena a(memory);
+  lay_out(ws, a);
+  ws.prescribed = ws.u + ws.sys.n_input_refs;
+  ws.prescribed_slope = ws.du + ws.sys.n_input_refs;
   return a.size();
 }
 

@@ -8,11 +8,11 @@ from functools import cached_property
 
 from clutchwork.channels import Channel, Channels
 from clutchwork.codegen.expression import expression
-from clutchwork.codegen.rows import numbers
 from clutchwork.codegen.text import comment, enumeration, identifiers, literal, string
 from clutchwork.forms import Mode
 from clutchwork.layout import EVENT, MODES, STATUS
 from clutchwork.options import Options
+from clutchwork.rows import numbers
 from clutchwork.simulation import new_run
 from clutchwork.system import System
 from clutchwork.wiring import Wiring, wiring
@@ -64,6 +64,12 @@ class Exported:
         return [(k, item.name, item.unit) for k, item in enumerate(self.system.inputs) if counts[k] == 0]
 
     @property
+    def settable(self) -> dict[str, int]:
+        """Parameters and their places, without those that are fixed when a run is loaded."""
+        run, values = new_run(self.data), self.system.arrays["params"]
+        return {path: k for path, k in self.system.parameters.items() if run.is_settable(k, float(values[k]))}
+
+    @property
     def instants(self) -> int:
         """Number of instants of the grid."""
         grid = self.options.changed({"dt": self.dt, "times": None}).grid(self.t_end)
@@ -72,7 +78,7 @@ class Exported:
 
 def header(model: Exported) -> Iterator[str]:
     """model.h: sizes, settings, layout of rows and events, signals."""
-    memory = len(new_run(model.data).save())
+    memory = new_run(model.data).memory_size
     yield f"/* The model {comment(model.system.name)}. {MADE} */"
     yield from ("#ifndef MODEL_H", "#define MODEL_H", "", "#include <math.h>", "")
     yield from ("#include <clutchwork/c_api.h>", '#include "model_system.h"', "")
@@ -118,9 +124,11 @@ def _enumerations(model: Exported) -> Iterator[str]:
     inputs = [(name, k, f"{n} [{u}]") for name, (k, n, u) in zip(names, model.outside, strict=True)]
     yield from enumeration("model_input", [*inputs, ("MODEL_OUTSIDE", len(inputs), "how many there are")])
     yield from ("", "/* Numbers that cw_set_param changes. */")
-    params = zip(identifiers("MODEL_PARAM_", model.system.parameters), model.system.parameters.items(), strict=True)
+    settable = model.settable
     count = len(model.system.arrays["params"])
-    members = [(name, place, path) for name, (path, place) in params]
+    members = [
+        (name, settable[path], path) for name, path in zip(identifiers("MODEL_PARAM_", settable), settable, strict=True)
+    ]
     yield from enumeration("model_param", [*members, ("MODEL_PARAMS", count, "numbers in the pool")])
     yield from ("", "/* Modes of a contact: slip below zero, locked, slip above zero, open. */")
     yield from enumeration("model_mode", [(f"MODEL_MODE_{name.upper()}", k, "") for k, name in MODES.items()])

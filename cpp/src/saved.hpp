@@ -1,0 +1,263 @@
+#pragma once
+#include "fingerprint.hpp"
+#include "system_checks.hpp"
+
+/// Saved states: what a run is, without pointers and without indices that could be followed. One description,
+/// `describe`, serves to measure, write, check and read them. docs/guide/export.md
+namespace clutchwork::saved {
+
+inline constexpr std::int64_t most = std::int64_t(1) << 60;
+
+/// Everything that a saved state holds beside the arrays of the workspace, and those: scalars first, each within
+/// bounds. What outlives a call and is neither here nor rebuilt by `resume` is lost.
+template <class W, class A>
+void describe(W& ws, A& a) {
+  const System& s = ws.sys;
+  const std::int64_t nc = s.contacts, nd = s.elements + nc;
+  auto& o = ws.options;
+  a.number(o.rtol, 1e-300, 1e300), a.number(o.atol, 1e-300, 1e300), a.whole(o.method, 0, 2);
+  a.number(o.first_step, 0, infinity), a.number(o.max_step, 1e-300, infinity);
+  a.whole(o.max_steps, 0, most), a.whole(o.max_events, 0, most), a.whole(o.angles, 0, 1), a.whole(o.work, 0, 1);
+  auto& n = ws.statistics;
+  a.whole(n.steps, 0, most), a.whole(n.rejected, 0, most), a.whole(n.evaluations, 0, most);
+  a.whole(n.jacobians, 0, most), a.whole(n.events, 0, most), a.whole(n.phases, 0, most), a.whole(n.locations, 0, most);
+
+  a.time(ws.time), a.number(ws.last_step, 0, 1e300);
+  a.whole(ws.started, 0, 1), a.whole(ws.fresh_phase, 0, 1), a.whole(ws.input_changed, 0, 1);
+  a.whole(ws.is_explicit, 0, 1), a.number(ws.crowd_time), a.number(ws.forced_time), a.number(ws.next_knot);
+  a.whole(ws.n_faulty, 0, nc), a.whole(ws.failed, -1, nc - 1), a.whole(ws.n_watch, 0, nc);
+  a.whole(ws.reversals, 0, 1 << 30), a.whole(ws.reversals_since, 0, most);
+  a.number(ws.input_time), a.whole(ws.n_events, 0, ws.event_room + 2 * nc);
+  a.whole(ws.located, -1, nc - 1), a.number(ws.effort), a.whole(ws.cause, 0, int(Cause::fault));
+  a.whole(ws.detail_component, -1, nd - 1), a.number(ws.detail_value), a.whole(ws.detail_row, -1, ws.row.size - 1);
+
+  for (std::int64_t i = 0; i < s.inputs; ++i) a.cursor(int(i), ws.signal[i]);
+  lay_out(ws, a);
+  for (std::int64_t i = 0; i < 3 * nd + nc; ++i) a.number(ws.line[i].level);
+}
+
+/// What the visitors share: arrays and cursors as single words, of which Self takes `number` and `whole`.
+template <class Self>
+struct Visitor {
+  template <class P>
+  void take(P* const& p, std::int64_t n) {
+    if constexpr (std::is_same_v<P, double>) {
+      for (std::int64_t i = 0; i < n; ++i) self().number(p[i]);
+    }
+  }
+  template <class P>
+  void scratch(P* const&, std::int64_t) {}
+  void keep(int* const& p, std::int64_t n, std::int64_t low, std::int64_t high) {
+    for (std::int64_t i = 0; i < n; ++i) self().whole(p[i], low, high);
+  }
+  template <class X>
+  void time(X& x) {
+    self().number(x, 0, 1e300);
+  }
+  template <class S>
+  void cursor(int, S& signal) {
+    self().whole(signal.segment, 0, most), self().whole(signal.idle, 0, 1), self().number(signal.held);
+  }
+
+ private:
+  Self& self() { return static_cast<Self&>(*this); }
+};
+
+/// Bytes that a state needs, and a fingerprint of what stands where.
+struct Measure : Visitor<Measure> {
+  std::int64_t size = 0;
+  std::uint64_t layout = 0;
+
+  void number(const double&, double low = -infinity, double high = infinity) { add(low, high); }
+  template <class I>
+  void whole(const I&, std::int64_t low, std::int64_t high) {
+    add(double(low), double(high));
+  }
+
+ private:
+  void add(double low, double high) {
+    std::uint64_t words[2];
+    std::memcpy(words, &low, 8), std::memcpy(words + 1, &high, 8);
+    layout = mix(mix(layout, words[0]), words[1]);
+    size += 8;
+  }
+};
+
+struct Writer : Visitor<Writer> {
+  unsigned char* at;
+
+  explicit Writer(unsigned char* to) : at(to) {}
+  void number(const double& x, double = 0, double = 0) { put(x); }
+  template <class I>
+  void whole(const I& x, std::int64_t, std::int64_t) {
+    put(std::int64_t(x));
+  }
+
+ private:
+  template <class X>
+  void put(X x) {
+    std::memcpy(at, &x, 8);
+    at += 8;
+  }
+};
+
+/// The next words of a state.
+class Words {
+ public:
+  explicit Words(const unsigned char* from) : at_(from) {}
+  template <class X>
+  X next() {
+    X x;
+    std::memcpy(&x, at_, 8);
+    at_ += 8;
+    return x;
+  }
+
+ private:
+  const unsigned char* at_;
+};
+
+/// Reads a state that was checked.
+struct Reader : Visitor<Reader> {
+  Words words;
+
+  explicit Reader(const unsigned char* from) : words(from) {}
+  void number(double& x, double = 0, double = 0) { x = words.next<double>(); }
+  template <class I>
+  void whole(I& x, std::int64_t, std::int64_t) {
+    x = I(words.next<std::int64_t>());
+  }
+};
+
+/// Whether every value of a state is one that a run of this system may have; changes nothing.
+class Check : public Visitor<Check> {
+ public:
+  bool good = true;
+
+  Check(const Workspace<double>& ws, const unsigned char* from) : ws_(ws), words_(from) {}
+
+  void number(const double& at, double low = -infinity, double high = infinity) {
+    const double x = words_.next<double>();
+    if (low > -infinity || high < infinity) good = good && x >= low && x <= high;
+    if (&at == &ws_.time) time_ = x;
+  }
+  template <class I>
+  void whole(const I& at, std::int64_t low, std::int64_t high) {
+    const auto x = words_.next<std::int64_t>();
+    good = good && x >= low && x <= high;
+    const void* place = &at;
+    if (place == &ws_.started) started_ = x != 0;
+    if (place == &ws_.n_events) events_ = x;
+  }
+  template <class P>
+  void take(P* const& p, std::int64_t n) {
+    if constexpr (!std::is_same_v<P, double>) return;
+    const void* place = &p;
+    if (place == &ws_.params) return params(n);
+    if (place == &ws_.events) return events(n);
+    for (std::int64_t i = 0; i < n; ++i) words_.next<double>();
+  }
+  void keep(int* const& p, std::int64_t n, std::int64_t low, std::int64_t high) {
+    const bool pieces = &p == &ws_.piece;
+    for (std::int64_t i = 0; i < n; ++i) whole(p[i], pieces ? 0 : low, pieces ? last_piece(int(i)) : high);
+  }
+
+  /// A signal stands where its times and the time of the run say.
+  void cursor(int i, const Signal&) {
+    const System& sys = ws_.sys;
+    const auto k = words_.next<std::int64_t>();
+    const auto idle = words_.next<std::int64_t>();
+    good = good && settable(words_.next<double>(), sys.input_value[i]) && k >= 0 && (idle == 0 || idle == 1);
+    if (!started_ || sys.input_count[i] == 0) good = good && k == 0 && idle == 0;
+    if (!good || !started_ || sys.input_count[i] == 0) return;
+    const bool repeats = sys.input_period[i] > 0;
+    good = idle != 0 ? repeats && k == 0 : repeats ? k < (std::int64_t(1) << 52) : k < sys.input_count[i];
+    if (!good) return;
+    if (idle != 0) {
+      good = time_ <= segment_start(sys, i, k);
+      return;
+    }
+    const bool begun = k > 0 || repeats;
+    good = (!begun || segment_start(sys, i, k) <= time_) &&
+           (!segment_exists(sys, i, k + 1) || time_ <= segment_start(sys, i, k + 1));
+  }
+
+ private:
+  const Workspace<double>& ws_;
+  Words words_;
+  double time_ = 0;
+  bool started_ = false;
+  std::int64_t events_ = 0;
+
+  static bool settable(double x, double loaded) { return x - x == 0 || std::memcmp(&x, &loaded, sizeof x) == 0; }
+
+  /// Where curves stand and what is one of a few words never changes.
+  void params(std::int64_t n) {
+    for (std::int64_t i = 0; i < n; ++i) {
+      const double x = words_.next<double>(), loaded = ws_.sys.params[i];
+      good = good && settable(x, loaded) &&
+             (x == loaded || std::memcmp(&x, &loaded, sizeof x) == 0 || !is_fixed(ws_.sys, i));
+    }
+  }
+
+  /// Waiting events name contacts, modes and causes.
+  void events(std::int64_t n) {
+    for (std::int64_t i = 0; i < n; ++i) {
+      const double x = words_.next<double>();
+      const std::int64_t column = i % event_size;
+      if (i / event_size >= events_ || column > 4) continue;
+      const double low[] = {0, 0, backward, backward, 0};
+      const double high[] = {1e300, double(ws_.sys.contacts - 1), open, open, double(int(Cause::fault))};
+      good = good && x >= low[column] && x <= high[column] && (column == 0 || x == double(int(x)));
+    }
+  }
+
+  /// Largest number of a piece of a direction: between kinks, or as the law that switches numbers them.
+  std::int64_t last_piece(int d) const {
+    auto last = [&](auto tag) -> std::int64_t {
+      if constexpr (SwitchingLaw<typename decltype(tag)::type>) return (std::int64_t(1) << 31) - 1;
+      return edge_count(ws_, d);
+    };
+    const System& sys = ws_.sys;
+    if (d < sys.elements) return visit_torque(sys.element_kind[d], last);
+    return visit_law(sys.contact_law[d - sys.elements], last);
+  }
+};
+
+/// The signals on the segments that the cursors say, and what follows from them.
+inline void place_cursors(Workspace<double>& ws) {
+  // any instant at which all of them were there; one before its first segment is not passed
+  double t = -infinity;
+  for (int i = 0; i < ws.sys.inputs; ++i) {
+    const Signal& signal = ws.signal[i];
+    const bool begun = signal.segment > 0 || (ws.sys.input_period[i] > 0 && !signal.idle);
+    if (ws.sys.input_count[i] > 0 && begun) t = larger(t, segment_start(ws.sys, i, signal.segment));
+  }
+  load_inputs(ws, t);
+}
+
+/// Make the indices of a run anew from what is read: signals, modes, branches, guards. The numbers are read once more,
+/// because some are those of the instant at which the phase began.
+inline void resume(Workspace<double>& ws, const unsigned char* bytes) {
+  auto read = [&] {
+    Reader reader(bytes);
+    describe(ws, reader);
+  };
+  const System& sys = ws.sys;
+  read();
+  if (!ws.started) return;
+  if (!prepare_geometry(ws)) {
+    ws.started = false;
+    return;
+  }
+  for (int c = 0; c < sys.contacts; ++c) ws.compliant[c] = is_compliant_law(sys.contact_law[c]);
+  for (int d = 0; d < ws.n_directions; ++d) ws.branch_of[d] = -1;
+  place_cursors(ws);
+  // so was the choice of the method
+  ws.options.method = ws.is_explicit ? Method::dopri5 : Method::rodas5p;
+  const bool entered = enter_mode(ws);
+  read();
+  ws.fresh_phase = ws.fresh_phase || !entered;
+}
+
+}  // namespace clutchwork::saved

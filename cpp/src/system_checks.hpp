@@ -1,0 +1,183 @@
+#pragma once
+#include "instances.hpp"
+
+/// Whether bytes that claim to be a System are one: offsets and numbers that the core follows without looking.
+namespace clutchwork {
+
+/// Numbers in the pool that a kind reads as its parameters.
+template <class E>
+constexpr std::int64_t param_count = std::int64_t(sizeof(typename E::template Params<double>) / sizeof(double));
+
+/// Whether the curve that stands at params[at] lies among the points.
+inline bool curve_fits(const System& s, std::int64_t at) {
+  const double first = s.params[at], count = s.params[at + 1];
+  return first >= 0 && count >= 1 && first + count <= double(s.n_points);
+}
+
+/// Whether the segments of a signal stand in order and repeat no faster than a run could follow.
+inline bool signal_fits(const System& s, std::int64_t i) {
+  const std::int64_t first = s.input_first[i], count = s.input_count[i];
+  if (count < 0 || first < 0 || first + count > s.segments) return false;
+  for (std::int64_t k = first; k + 1 < first + count; ++k) {
+    if (!(s.segment_time[k] <= s.segment_time[k + 1])) return false;
+  }
+  const double period = s.input_period[i];
+  if (count == 0 || period <= 0) return true;
+  const double start = s.segment_time[first], end = s.segment_time[first + count - 1];
+  return end - start <= period && start > -1e8 * period && abs(end) < 1e12 * period;
+}
+
+/// Calls curve(place) and choice(place, words) for every parameter that says where numbers stand or which of a few
+/// words is meant: they never change.
+template <class Curve, class Choice>
+void visit_fixed(const System& s, Curve&& curve, Choice&& choice) {
+  std::int64_t first = 0;
+  auto curves = [&](int at) { curve(first + at); };
+  auto choices = [&](int at, int n) { choice(first + at, n); };
+  for (std::int64_t i = 0; i < s.elements; ++i) {
+    first = s.element_param[i];
+    visit_torque_curves(s.element_kind[i], curves), visit_torque_choices(s.element_kind[i], choices);
+  }
+  for (std::int64_t i = 0; i < s.contacts; ++i) {
+    first = s.contact_param[i];
+    visit_contact_curves(s.contact_kind[i], curves), visit_contact_choices(s.contact_kind[i], choices);
+    first = s.contact_law_param[i];
+    visit_law_curves(s.contact_law[i], curves), visit_law_choices(s.contact_law[i], choices);
+  }
+  for (std::int64_t i = 0; i < s.flows; ++i) {
+    first = s.flow_param[i];
+    visit_flow_curves(s.flow_kind[i], curves), visit_flow_choices(s.flow_kind[i], choices);
+  }
+  for (std::int64_t i = 0; i < s.processes; ++i) {
+    first = s.process_param[i];
+    visit_process_curves(s.process_kind[i], curves), visit_process_choices(s.process_kind[i], choices);
+  }
+}
+
+/// Whether a parameter must stay as it was loaded.
+inline bool is_fixed(const System& s, std::int64_t offset) {
+  bool found = false;
+  visit_fixed(
+      s, [&](std::int64_t at) { found = found || offset == at || offset == at + 1; },
+      [&](std::int64_t at, int) { found = found || offset == at; });
+  return found;
+}
+
+/// Whether the parameters that mean one of a few words do.
+inline bool choices_fit(const System& s) {
+  bool good = true;
+  visit_fixed(
+      s, [](std::int64_t) {},
+      [&](std::int64_t at, int n) {
+        const double x = s.params[at];
+        good = good && x >= 0 && x < n && x == double(int(x));
+      });
+  return good;
+}
+
+/// Whether the tables of the law of a contact fit each other.
+inline bool tables_fit(const System& s, std::int64_t contact) {
+  return visit_law(s.contact_law[contact], [&](auto tag) {
+    using L = typename decltype(tag)::type;
+    const auto& p =
+        *reinterpret_cast<const typename L::template Params<double>*>(s.params + s.contact_law_param[contact]);
+    if constexpr (requires { L::fits(p); }) return L::fits(p);
+    return true;
+  });
+}
+
+/// Whether n references from `first` on are to signals and shared states: torques know no rates of others.
+inline bool plain_inputs(const System& s, std::int64_t first, int n) {
+  for (int i = 0; i < n && first + n <= s.n_input_refs; ++i) {
+    if (s.input_refs[first + i] >= s.inputs + s.shared) return false;
+  }
+  return true;
+}
+
+/// As in_range, for what concerns the shared states.
+inline bool shared_in_range(const System& s) {
+  if (s.shared > s.states) return false;
+  const std::int64_t first = s.states - s.shared;
+  bool good = true;
+  for (std::int64_t i = 0; good && i < s.flows; ++i) {
+    good = s.flow_kind[i] >= 0 && s.flow_kind[i] < flow_kinds && s.flow_from[i] >= -1 && s.flow_from[i] < s.shared &&
+           s.flow_to[i] >= -1 && s.flow_to[i] < s.shared && s.flow_param[i] >= 0 && s.flow_input[i] >= 0;
+    if (!good) return false;
+    visit_flow(s.flow_kind[i], [&](auto tag) {
+      using E = typename decltype(tag)::type;
+      good = s.flow_param[i] + param_count<E> <= s.n_params && s.flow_input[i] + E::inputs <= s.n_input_refs;
+    });
+    visit_flow_curves(s.flow_kind[i], [&](int at) { good = good && curve_fits(s, s.flow_param[i] + at); });
+  }
+  for (std::int64_t i = 0; good && i < s.processes; ++i) {
+    good = s.process_kind[i] >= 0 && s.process_kind[i] < process_kinds && s.process_state[i] >= first &&
+           s.process_param[i] >= 0 && s.process_input[i] >= 0;
+    if (!good) return false;
+    visit_process(s.process_kind[i], [&](auto tag) {
+      using E = typename decltype(tag)::type;
+      good = s.process_param[i] + param_count<E> <= s.n_params && s.process_input[i] + E::inputs <= s.n_input_refs &&
+             s.process_state[i] + E::states <= s.states;
+    });
+    visit_process_curves(s.process_kind[i], [&](int at) { good = good && curve_fits(s, s.process_param[i] + at); });
+  }
+  for (std::int64_t h = 0; good && h < s.heats; ++h) {
+    good = s.heat_direction[h] >= 0 && s.heat_direction[h] < s.elements + s.contacts && s.heat_to[h] >= 0 &&
+           s.heat_to[h] < s.shared;
+  }
+  return good;
+}
+
+/// Offsets and numbers inside the system that the core follows without looking.
+inline bool in_range(const System& s) {
+  auto within = [](const std::int32_t* x, std::int64_t n, std::int64_t low, std::int64_t high) {
+    for (std::int64_t i = 0; i < n; ++i) {
+      if (x[i] < low || x[i] > high) return false;
+    }
+    return true;
+  };
+  bool good =
+      within(s.element_kind, s.elements, 0, torque_kinds - 1) &&
+      within(s.contact_kind, s.contacts, 0, contact_kinds - 1) && within(s.contact_law, s.contacts, 0, law_kinds - 1) &&
+      within(s.element_param, s.elements, 0, s.n_params) && within(s.contact_param, s.contacts, 0, s.n_params) &&
+      within(s.contact_law_param, s.contacts, 0, s.n_params) && within(s.element_state, s.elements, 0, s.states) &&
+      within(s.contact_state, s.contacts, 0, s.states) && within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) &&
+      within(s.element_input, s.elements, 0, s.n_input_refs) &&
+      within(s.contact_input, s.contacts, 0, s.n_input_refs) &&
+      within(s.contact_law_input, s.contacts, 0, s.n_input_refs) &&
+      within(s.input_refs, s.n_input_refs, 0, s.inputs + s.shared + 2 * (s.elements + s.contacts) - 1) &&
+      shared_in_range(s);
+  for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
+  std::int64_t states = 0;
+  for (std::int64_t i = 0; good && i < s.elements; ++i) {
+    visit_torque(s.element_kind[i], [&](auto tag) {
+      using E = typename decltype(tag)::type;
+      good = s.element_param[i] + param_count<E> <= s.n_params && s.element_input[i] + E::inputs <= s.n_input_refs &&
+             s.element_state[i] + E::states <= s.states - s.shared && plain_inputs(s, s.element_input[i], E::inputs);
+      states += E::states;
+    });
+    visit_torque_curves(s.element_kind[i], [&](int at) { good = good && curve_fits(s, s.element_param[i] + at); });
+  }
+  for (std::int64_t i = 0; good && i < s.contacts; ++i) {
+    visit_contact(s.contact_kind[i], [&](auto tag) {
+      using E = typename decltype(tag)::type;
+      good = s.contact_param[i] + param_count<E> <= s.n_params && s.contact_input[i] + E::inputs <= s.n_input_refs &&
+             plain_inputs(s, s.contact_input[i], E::inputs);
+    });
+    visit_contact_curves(s.contact_kind[i], [&](int at) { good = good && curve_fits(s, s.contact_param[i] + at); });
+    visit_law(s.contact_law[i], [&](auto tag) {
+      using L = typename decltype(tag)::type;
+      constexpr int inputs = law_inputs<L>();
+      good = good && s.contact_law_param[i] + param_count<L> <= s.n_params &&
+             s.contact_law_input[i] + inputs <= s.n_input_refs && plain_inputs(s, s.contact_law_input[i], inputs);
+    });
+    visit_law_curves(s.contact_law[i], [&](int at) { good = good && curve_fits(s, s.contact_law_param[i] + at); });
+    if (!good || !tables_fit(s, i)) return false;
+    const int own = states_of(s.contact_kind[i], s.contact_law[i], s.params + s.contact_law_param[i]);
+    good = s.contact_state[i] + own <= s.states - s.shared;
+    states += own;
+  }
+  // states are nobody's twice
+  return good && states <= s.states - s.shared && choices_fit(s);
+}
+
+}  // namespace clutchwork
