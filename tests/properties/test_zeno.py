@@ -94,7 +94,7 @@ def test_fewer_knots_within_a_microsecond_are_no_zeno_sequence(count: int) -> No
 def test_signal_with_knots_without_end_stops_and_says_so(period: float) -> None:
     """Some 100 to 1000 knots within a microsecond: neither inertia nor damping would help."""
     pulse = cw.Pulse(height=1.0, period=period, width=period / 2, offset=20.0)
-    run = simulate(braked(pulse), 1e-3, max_steps=100_000)
+    run = simulate(braked(pulse), 1e-5)
     assert run.status == "zeno", run.message
     assert run.time[-1] <= 2 * WINDOW
     assert "inertia" not in run.message

@@ -20,7 +20,7 @@ struct DependentSet {
 /// Most of the load that counts: a set that holds it twice is far from its limit.
 inline constexpr double ample = 2;
 
-/// Bounded simplex for the largest factor of the load that the set can hold, at most `ample`. {eq}`contacts-12`
+/// Bounded simplex for the largest factor of the load that the set can hold, at most `ample`. docs/theory/contacts.md (11)
 /// Variables: the torques, then the factor. Memory: tableau rank x (n + 1), x, price and `place` n + 1 each.
 template <class T>
 struct LimitLoad {
@@ -111,7 +111,7 @@ struct LimitLoad {
 };
 
 /// Shares of a load as springs in parallel would have them whose stiffness is the capacity, each yielding at its
-/// bound: Newton on the common deflection. {eq}`contacts-13`
+/// bound: Newton on the common deflection. docs/theory/contacts.md (13)
 template <class T>
 struct Shares {
   const DependentSet<T>& set;

@@ -434,7 +434,7 @@ int impulse_contacts(const Workspace<T>& ws, Stops&& stops, int* list) {
 }
 
 /// The impulses that change the kinetic energy least: some contacts come to rest, no freewheel turns backward; those
-/// that had to stop lock. {eq}`contacts-15`
+/// that had to stop lock. docs/theory/contacts.md (15)
 template <class T, class Stops>
 bool least_impulses(Workspace<T>& ws, Stops&& stops) {
   const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements);
