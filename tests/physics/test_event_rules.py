@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -78,6 +79,37 @@ def test_a_set_reaches_its_limit_between_two_points_of_equal_load() -> None:
     run = disc(("b1", 0.5), ("b2", 0.5), torque=load).simulate(0.03, work=False, first_step=1.5 / omega)
     assert [e.element for e in run.events][:2] == ["b1", "b2"]
     assert run.events[0].time == pytest.approx((math.asin(1 / 1.02) - phase) / omega, abs=1e-9)
+
+
+def test_only_what_the_mechanism_of_a_set_moves_breaks_away() -> None:
+    """Clutches join three shafts in a ring, two of them braked: the brakes give way, the clutches have no part."""
+    for first, second in itertools.product(np.linspace(1.0, 8.0, 8), repeat=2):
+        d = cw.Driveline("mechanism")
+        s = [d.shaft(f"s{i}", inertia=0.5) for i in range(3)]
+        contacts = [(d.housing, s[1], 4.0), (d.housing, s[2], 2.8), (s[1], s[2], 10.7), (s[0], s[1], 11.6)]
+        for i, (base, follower, torque) in enumerate([*contacts, (s[0], s[2], 14.7)]):
+            d.add(clutch(f"c{i}", base, follower, kinetic=torque))
+        for shaft, torque in zip(s, (first, second, 16.0 - first - second), strict=True):
+            d.add(cw.Torque(f"on {shaft.name}", shaft=shaft, torque=cw.Ramp(height=float(torque), duration=1.0)))
+        run = d.simulate(1.0, work=False, points=2)
+        assert [t[1:4] for t in told(run)] == [(name, "locked", "forward") for name in ("c0", "c1")]
+        assert [e.time for e in run.events] == pytest.approx([6.8 / 16.0] * 2, abs=1e-9)
+
+
+def test_a_release_that_turns_round_when_another_follows_is_taken_back() -> None:
+    """A step of 8 N m tears at a brake through a clutch: the clutch slips, and its kinetic 1 N m the brake can hold.
+
+    At first the static 4 N m of the clutch overload the brake, whose share of the acceleration is the larger one.
+    """
+    d = cw.Driveline("release")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(clutch("brake", d.housing, a, kinetic=1.5, static=2.0))
+    d.add(clutch("clutch", a, b, kinetic=1.0, static=4.0))
+    d.add(cw.Torque("drive", shaft=b, torque=cw.Step(height=8.0, start=1.0)))
+    run = d.simulate(2.0)
+    assert told(run) == [(1.0, "clutch", "locked", "forward", "input")]
+    assert at_end(run, "brake.torque") == pytest.approx(-1.0, rel=1e-12)
+    assert at_end(run, "b.speed") == pytest.approx(7.0, rel=1e-9)
 
 
 def test_a_sprag_that_a_step_overloads_gives_way_for_good() -> None:
@@ -157,6 +189,13 @@ def test_a_slip_that_starts_behind_zero_within_round_off_is_at_zero() -> None:
     run = disc(("b", 1.0), torque=1.0 + 1e-6, speed=-5e-11).simulate(2.0)
     assert run.status == "done"
     assert at_end(run, "a.speed") == pytest.approx(2e-6, rel=1e-3)
+
+
+def test_a_contact_that_starts_to_slip_leaves_zero_as_the_motion_does() -> None:
+    """A sine breaks a brake away just below its peak, without acceleration: one short slip in each half period."""
+    run = disc(("b", 1.0), torque=cw.Sine(amplitude=1.001, frequency=50.0)).simulate(0.04)
+    assert run.status == "done"
+    assert [e.after for e in run.events] == ["forward", "locked", "backward", "locked"] * 2
 
 
 def test_an_impulse_that_brings_others_to_rest_locks_them_too() -> None:
@@ -240,6 +279,20 @@ def test_rows_of_dopri5_between_its_steps_keep_the_tolerance() -> None:
         d.add(cw.Spring("spring", base=d.housing, follower=d.nodes[0], stiffness=1.0))
         run = d.simulate(20.0, rtol=tolerance, atol=tolerance, method="dopri5", points=2000)
         assert np.max(np.abs(run["a.speed"] - np.cos(run.time))) < 5 * tolerance
+
+
+def test_an_element_that_was_put_onto_its_limit_has_not_passed_it() -> None:
+    """Elements of Leuven that slide stay at their limits: round-off there does not break them loose again and again."""
+    elements = ((2e-5, 0.1), (5e-5, 0.2), (1e-4, 0.3), (2e-4, 0.4))
+    law = cw.Leuven(static=0.15, kinetic=0.1, speed=2.0, viscous=1e-3, elements=elements, order=20.0, damping=0.0)
+    for torque in np.linspace(0.1, 2.0, 12):
+        d = cw.Driveline("presliding")
+        a = d.shaft("a", inertia=0.1)
+        load = cw.Table([(0.0, float(torque)), (0.2, float(torque)), (0.2, 0.0), (9.0, 0.0)])
+        d.add(cw.Torque("drive", shaft=a, torque=load))
+        d.add(cw.Spring("spring", base=d.housing, follower=a, stiffness=200.0))
+        d.add(brake("b", a, 1.2, law))
+        assert d.simulate(1.0, rtol=2e-4, atol=2e-4, work=False, points=2).status == "done"
 
 
 # ---------------------------------------------------------------- teeth, tables, knots
