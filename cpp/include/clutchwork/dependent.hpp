@@ -20,15 +20,15 @@ struct DependentSet {
 /// Most of the load that counts: a set that holds it twice is far from its limit.
 inline constexpr double ample = 2;
 
-/// Bounded simplex for the largest factor of the load that the set can hold, at most `ample`. docs/theory/contacts.md (11)
-/// Variables: the torques, then the factor. Memory: tableau rank x (n + 1), x, price and `place` n + 1 each.
+/// Bounded simplex for the largest factor of the load that the set can hold, at most `ample`. docs/theory/contacts.md
+/// (11) Variables: the torques, then the factor. Memory: tableau rank x (n + 1), x, price and `place` n + 1 each.
 template <class T>
 struct LimitLoad {
   const DependentSet<T>& set;
   T *tableau, *x, *price;
   int *basis, *place;  ///< variable of each row; row of each variable, -1: not basic
 
-  T size = T(0);       ///< of the load [N m]: the factor is counted in it
+  T size = T(0);  ///< of the load [N m]: the factor is counted in it
 
   T lower(int j) const { return j < set.n ? set.lower[j] : T(0); }
   T upper(int j) const { return j < set.n ? set.upper[j] : T(ample) * size; }

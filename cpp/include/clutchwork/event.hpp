@@ -85,8 +85,8 @@ bool knots_crowd(Workspace<T>& ws) {
   return false;
 }
 
-/// Whether the load of a contact can pass zero before the next knot. A load is monotonic in each of its inputs while the
-/// others are held, so its extremes are at the corners of their ranges.
+/// Whether the load of a contact can pass zero before the next knot. A load is monotonic in each of its inputs while
+/// the others are held, so its extremes are at the corners of their ranges.
 template <class T>
 bool load_may_turn(const Workspace<T>& ws, int c) {
   const System& sys = ws.sys;

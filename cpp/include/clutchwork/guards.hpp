@@ -14,9 +14,7 @@ struct Hit {
 };
 
 /// Whether a zero at s comes before what has been found.
-CLUTCHWORK_INLINE bool is_first(const Hit& hit, double s) {
-  return s >= 0 && (hit.what == Hit::nothing || s < hit.s);
-}
+CLUTCHWORK_INLINE bool is_first(const Hit& hit, double s) { return s >= 0 && (hit.what == Hit::nothing || s < hit.s); }
 
 /// First interval in which a quartic in Bernstein form turns from not negative to negative. b[0] counts as not
 /// negative; inner dips above -tolerance do not count, the end value does.

@@ -488,8 +488,8 @@ bool others_rest(const Workspace<T>& ws, int located) {
   return false;
 }
 
-/// A contact that may lock below a slip of its own is stopped by an impulse; the others that are locked stay so, but for
-/// freewheels, which transmit no impulse that pulls.
+/// A contact that may lock below a slip of its own is stopped by an impulse; the others that are locked stay so, but
+/// for freewheels, which transmit no impulse that pulls.
 template <class T>
 bool stop_within_tolerance(Workspace<T>& ws, int located) {
   return least_impulses(ws, [&](int c) { return ws.mode[c] == locked && (c == located || !contact_one_way(ws, c)); });

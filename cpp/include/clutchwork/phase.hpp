@@ -359,8 +359,8 @@ CLUTCHWORK_INLINE bool all_finite(int n, const T* y) {
   return sum == 0;
 }
 
-/// Error that the motion up to the share s of a step may have, in units of the tolerance: what the interpolant misses of
-/// the equations of motion there, over that time. Only the end of a step is checked by its own estimate.
+/// Error that the motion up to the share s of a step may have, in units of the tolerance: what the interpolant misses
+/// of the equations of motion there, over that time. Only the end of a step is checked by its own estimate.
 template <class Form>
 double error_until(Form& form, Step<Form>& step, double s) {
   using T = typename Form::Scalar;
@@ -387,7 +387,7 @@ class Phase {
   // a step may be repeated so often to end on an event
   static constexpr int most_landings = 4;
   // of the tolerance: cuts come on top of steps, and there may be one every few steps
-  static constexpr double most_cut_error = 0.1;
+  static constexpr double most_cut_error = 0.3;
 
   Workspace<T>& ws_;
   Form form_;

@@ -95,7 +95,7 @@ struct Workspace {
   double time = 0;
   T *v = nullptr, *state = nullptr, *angle = nullptr, *work = nullptr, *prescribed_work = nullptr;
   int *mode = nullptr, *piece = nullptr, *forced = nullptr;
-  int *pressed = nullptr, *loaded = nullptr;  ///< contacts with a load above zero; those that can transmit at all
+  int *pressed = nullptr, *loaded = nullptr;     ///< contacts with a load above zero; those that can transmit at all
   int *compliant = nullptr, *heading = nullptr;  ///< contacts with a law that never sticks; sign of a rate
   int *fault = nullptr, *faulty = nullptr;       ///< what has failed in a contact; contacts that can
   int n_faulty = 0, failed = -1;
