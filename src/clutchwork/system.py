@@ -109,6 +109,13 @@ class System:
                     sizes[size] = max(sizes[size], length)
         return sizes
 
+    @property
+    def dependent(self) -> tuple[tuple[str, ...], ...]:
+        """Sets of contacts that depend on each other when locked together, so that their shares are a convention."""
+        from clutchwork.dependence import dependent_sets
+
+        return dependent_sets(self)
+
     def to_bytes(self) -> bytes:
         """The System as the compiled core reads it: little endian, every array aligned to 8 bytes."""
         head = MAGIC + struct.pack("<q", schema_hash(layout_text()))
