@@ -303,7 +303,7 @@ def test_a_collision_of_stiff_teeth_is_not_stepped_over() -> None:
     for stiffness in np.geomspace(1e9, 1e11, 41):
         d = cw.Driveline("teeth")
         a = d.shaft("a", inertia=0.3, speed=0.14)
-        teeth = {"teeth": 3, "gap": 0.2, "stiffness": float(stiffness), "damping": 0.0}
+        teeth: dict[str, Any] = {"teeth": 3, "gap": 0.2, "stiffness": float(stiffness), "damping": 0.0}
         d.add(cw.DogClutch("dog", base=d.housing, follower=a, **teeth, command=1.0, engaged=True))
         run = d.simulate(1.0, rtol=1e-5, atol=1e-5, points=2)
         assert at_end(run, "a.speed") == pytest.approx(-0.14, rel=0.02)
@@ -313,9 +313,8 @@ def test_a_sleeve_on_a_tooth_forgives_a_slip_just_above_its_limit() -> None:
     """It stands on a tooth when the slip rises 0.4 % above the limit: less than 1 % keeps it there, and it meshes."""
     d = cw.Driveline("teeth")
     a = d.shaft("a", inertia=1.0)
-    speed = cw.Table([(0.0, 4.5), (0.02, 4.5), (0.05, 5.02), (9.0, 5.02)])
-    d.add(cw.PrescribedSpeed("p", shaft=a, speed=speed))
-    teeth = {"teeth": 3, "gap": 0.2, "stiffness": 1e3, "speed": 5.0}
+    d.add(cw.PrescribedSpeed("p", shaft=a, speed=cw.Table([(0.0, 4.5), (0.02, 4.5), (0.05, 5.02), (9.0, 5.02)])))
+    teeth: dict[str, Any] = {"teeth": 3, "gap": 0.2, "stiffness": 1e3, "speed": 5.0}
     d.add(cw.DogClutch("dog", base=d.housing, follower=a, **teeth, command=1.0, initial_angle=1.0))
     assert at_end(d.simulate(0.22), "dog.sleeve") > 0.7
 
