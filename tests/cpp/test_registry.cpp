@@ -336,7 +336,7 @@ struct Probe {
       visit_contact(b.kind, [&](auto tag) { fill(tag, params, [&](auto&& f) { visit_contact_curves(b.kind, f); }); });
       visit_law(b.law, [&](auto tag) { fill(tag, law, [&](auto&& f) { visit_law_curves(b.law, f); }); });
       b.compliant = is_compliant_law(b.law);
-      b.sign = b.compliant || kind % 2 == 0 ? 1 : -1;
+      b.sign = b.compliant || kind % 2 == 0 ? 1 : -1, b.pressed = true;
       b.inputs = contact_inputs(b.kind), b.law_inputs = law_inputs_of(b.law), b.shaped = is_shaped(b.kind);
     }
     // a driveline of this contact alone
@@ -382,7 +382,7 @@ struct Probe {
       return rate + dt * turn;
     };
     compare_along(in_time, p.by_time, g_time, 1);
-    if (!b.held) compare_inputs(rate), compare_heat(rate, p);
+    compare_inputs(rate), compare_heat(rate, p);
   }
   /// What shared states do to the torque.
   void compare_inputs(double rate) {
@@ -418,12 +418,8 @@ void branches() {
     Probe probe(kind, g);
     const bool sticks = kind >= torque_kinds && !probe.b.compliant;
     compliant += probe.b.compliant, with_states += probe.b.states > 0;
-    for (int held = 0; held <= (sticks ? 1 : 0); ++held) {
-      probe.b.held = held != 0;
-      probe.compare(0.8 * (probe.b.sign < 0 ? -1 : 1));
-      if (!sticks) probe.compare(-0.6);
-    }
-    probe.b.held = false;
+    probe.compare(0.8 * (probe.b.sign < 0 ? -1 : 1));
+    if (!sticks) probe.compare(-0.6);
     if (is_switching(probe.b)) probe.b.piece = 1, probe.compare(0.7);
   }
   CHECK(compliant > 0 && with_states > 0);

@@ -348,3 +348,26 @@ def test_many_signals_with_a_knot_each_within_a_microsecond_are_no_zeno_sequence
     run = d.simulate(2.0, **TIGHT)
     assert run.status == "done"
     assert at_end(run, "s59.speed") == pytest.approx(1.0, rel=1e-6)
+
+
+def test_a_contact_that_leaves_zero_beside_a_stiff_spring_is_not_brought_back() -> None:
+    """The true slope replaces that of the interpolant only where that one leaves zero the wrong way.
+
+    A brake that holds 1 N m sticks and slips beside 1000 N m/rad under a slow sine, at a coarse tolerance.
+    """
+    for tolerance in (1e-2, 5e-3):
+        d = disc(("b", 1.0), torque=cw.Sine(amplitude=2.5, frequency=0.35))
+        d.add(cw.Spring("s", base=d.housing, follower=d.nodes[0], stiffness=1000.0))
+        assert d.simulate(3.0, rtol=tolerance, atol=tolerance).status == "done"
+
+
+def test_an_element_of_gms_on_its_way_back_does_not_turn_the_slip() -> None:
+    """Where the slip reverses, an element may be beyond its limit by the error of the step: it returns, and slides not."""
+    elements = ((2e-5, 0.1), (5e-5, 0.2), (1e-4, 0.3), (2e-4, 0.4))
+    law = cw.GMS(static=0.15, kinetic=0.1, speed=2.0, viscous=1e-3, elements=elements, attraction=100.0)
+    d = cw.Driveline("reversal")
+    a = d.shaft("a", inertia=1.0)
+    speed = cw.Table([(0.0, 0.0), (0.23, -1.7e-3), (0.31, 0.9e-3), (9.0, 0.9e-3)])
+    d.add(cw.PrescribedSpeed("p", shaft=a, speed=speed))
+    d.add(brake("b", a, 1.0, law))
+    assert d.simulate(0.6, rtol=1e-6, atol=1e-6).status == "done"

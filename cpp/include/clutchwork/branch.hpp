@@ -361,6 +361,16 @@ bool law_turns(const Branch<T>& b) {
   });
 }
 
+/// Whether a state that has just crossed goes on the way it points; one that is on its way back does not.
+template <class T>
+bool law_runs_on(const Branch<T>& b, int who) {
+  return visit_branch(b, [&](auto tag, const T*, const T*, const T*, int) {
+    using L = typename decltype(tag)::type;
+    if constexpr (requires { L::runs_on(0, 0); }) return L::runs_on(b.piece, who);
+    return true;
+  });
+}
+
 /// Whether an element or a law switches between pieces.
 template <class T>
 bool is_switching(const Branch<T>& b) {

@@ -136,7 +136,8 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   const double a1 = g1 - g0 + q0, a2 = q1 - q0, a3 = q2 - q1;
   // a guard that starts on its surface must leave it as the motion does, not as the interpolant does
   const bool fresh = abs(g0) <= 1e3 * noise;
-  const double mend = fresh ? guard.sign * step.h * value(ws.here.slope[k]) - a1 : 0.0;
+  const double leaving = guard.sign * step.h * value(ws.here.slope[k]);
+  const double mend = fresh && leaving * a1 <= 0 ? leaving - a1 : 0.0;
   double b[5] = {larger(g0, 0.0), g0 + (a1 + mend) / 4, g0 + a1 / 2 + a2 / 6, g0 + 0.75 * a1 + a2 / 2 + a3 / 4, g1};
   double scale = 0;
   for (double x : b) scale = larger(scale, abs(x));

@@ -231,10 +231,10 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   T* state = step.y0() + form.nz();
   int& heading = ws.heading[b.direction];
   b.piece = law_cross(ws, b, rate_of(ws, b.direction), who, state);
-  // a state reaches its limit the way the contact slips, however small the slip
+  // a state that starts to slide does so the way the contact slips, however small the slip
   if (who == turned) {
     heading = -heading;
-  } else if (b.law >= 0) {
+  } else if (b.law >= 0 && law_runs_on(b, who)) {
     heading = value(state[b.state + who]) < 0 ? backward : forward;
   }
   ws.piece[b.direction] = b.piece;

@@ -67,6 +67,8 @@ struct GMS {
     // only the slip toward its limit breaks an element loose
     return at.piece | ((value(at.rate) < 0) == (value(state[who]) < 0) ? 1 << who : back);
   }
+  /// Whether an element slides and is not on its way back.
+  static bool runs_on(int piece, int i) { return element_slides(piece, i) && !returns(piece, i); }
   template <class T>
   static bool turns(const Params<T>&, int piece) {
     return piece != 0;

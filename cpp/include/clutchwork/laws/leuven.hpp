@@ -72,6 +72,8 @@ struct Leuven {
     state[who] = side * p.static_ * T(element_share(p.elements, at.points, who));
     return at.piece | 1 << who | ((value(at.rate) < 0) != (value(side) < 0) ? against : 0);
   }
+  /// Whether an element slides with the slip.
+  static bool runs_on(int piece, int i) { return element_slides(piece, i) && !slides_back(piece, i); }
   template <class T>
   static bool turns(const Params<T>&, int piece) {
     return piece != 0;
