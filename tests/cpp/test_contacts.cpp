@@ -177,7 +177,7 @@ void plain_cases() {
   p.matrix = {1, 1, 1, 1}, p.gradient = {-3, -3}, p.capacity = p.upper = {10, 20}, p.lower = {-10, -20};
   CHECK(p.run());
   CHECK_NEAR(p.x[0] + p.x[1], 3, 1e-12);
-  CHECK_NEAR(p.x[1] / p.x[0], 4, 1e-6);
+  CHECK_NEAR(p.x[1] / p.x[0], 2, 1e-6);
 }
 
 }  // namespace
