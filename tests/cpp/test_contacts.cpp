@@ -136,16 +136,15 @@ double enumerate(const Problem& p) {
 
 void random_problems() {
   check::Random g{1};
-  int compared = 0, loose = 0;
+  int compared = 0;
   double worst = 0;
   for (int round = 0; round < 20000; ++round) {
     Problem p = random_problem(g);
     if (!CHECK(p.run())) continue;
     const double bad = violation(p);
     worst = larger(worst, bad);
-    // directions that are nearly dependent, which gears never give, keep a little of the weight
-    loose += bad > 1e-9;
-    if (!CHECK(bad <= 1e-6)) std::printf("  round %d, n %d: %.3g\n", round, p.n, bad);
+    // round-off over directions that are nearly dependent, which gears never give
+    if (!CHECK(bad <= 1e-9)) std::printf("  round %d, n %d: %.3g\n", round, p.n, bad);
     for (int i = 0; i < p.n; ++i) {
       CHECK_NEAR(p.slope[i], dot(p.n, &p.matrix[i * p.n], p.x.data()) + p.gradient[i], 1e-12 * p.scale(i));
     }
@@ -160,8 +159,7 @@ void random_problems() {
     CHECK(own <= least + 1e-9 * size);
   }
   CHECK(compared > 4000);
-  CHECK(loose <= 4);
-  std::printf("largest violation %.3g, %d above 1e-9\n", worst, loose);
+  std::printf("largest violation %.3g\n", worst);
 }
 
 /// The same problem gives the same bits, and equal contacts share by capacity.
