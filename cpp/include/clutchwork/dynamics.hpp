@@ -112,6 +112,13 @@ CLUTCHWORK_INLINE void multipliers(const Workspace<T>& ws, const T* torque, bool
   sparse_multipliers(ws, torque, np, out);
 }
 
+/// Size of the time derivative of a capacity, which follows the load.
+template <class T>
+T capacity_swing(const Workspace<T>& ws, int c, T capacity) {
+  const T load = load_of(ws, c);
+  return value(load) > 0 && value(capacity) < infinity ? abs(capacity * load_slope(ws, c) / load) : T(0);
+}
+
 /// Multipliers of the locked contacts, their drift and their capacities at the point that was linearized last.
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
@@ -136,6 +143,7 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
   for (int a = 0; a < m; ++a) {
     edge.noise[a] = T(1e-12) * size;
     edge.capacity[a] = capacity_at(ws, ws.locked[a], edge.multiplier[a]);
+    edge.swing[a] = load_bends(ws, ws.locked[a]) ? capacity_swing(ws, ws.locked[a], edge.capacity[a]) : T(0);
   }
   for (int k = 0; k < ws.n_sets; ++k) [[unlikely]]
     edge.room[k] = set_room(ws, k, edge.multiplier, edge.noise[0]);

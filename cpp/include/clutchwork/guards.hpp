@@ -344,7 +344,8 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
                  after = margin(ws, a, e1.multiplier[a], e1.capacity[a]);
     const double change = abs(value(e1.multiplier[a] - e0.multiplier[a])) + abs(value(e1.capacity[a] - e0.capacity[a]));
     const double drift = step.h * larger(abs(value(e0.drift[a])), abs(value(e1.drift[a])));
-    if (smaller(before, after) > larger(change, drift)) continue;
+    const double swing = step.h * value(larger(e0.swing[a], e1.swing[a]));
+    if (smaller(before, after) > larger(change, drift + swing)) continue;
     watched[n++] = a;
     m0 = smaller(m0, before), m1 = smaller(m1, after);
   }
@@ -367,7 +368,9 @@ template <class Form, class Integrator>
     const double before = value(ws.here.room[k]), after = value(ws.there.room[k]);
     const double coming = room_ahead(ws, k, ws.here, step.h), gone = room_ahead(ws, k, ws.there, -step.h);
     const double change = larger(abs(after - before), larger(before - coming, after - gone));
-    if (smaller(before, after) > change) continue;
+    bool bends = false;
+    for (int i = ws.set_first[k]; i < ws.set_first[k + 1]; ++i) bends = bends || load_bends(ws, ws.set_member[i]);
+    if (!bends && smaller(before, after) > change) continue;
     if (!step.dense) Integrator::prepare_dense(form, step);
     auto f = [&](double s) {
       torques_at(form, step, s);

@@ -143,6 +143,18 @@ T load_slope(const Workspace<T>& ws, int c) {
   });
 }
 
+/// Whether the load of a contact bends over time, so that it may dip between two instants.
+template <class T>
+bool load_bends(const Workspace<T>& ws, int c) {
+  const System& sys = ws.sys;
+  const int first = sys.contact_input[c];
+  for (int i = first; i < first + contact_inputs(sys.contact_kind[c]); ++i) {
+    const std::int64_t ref = sys.input_refs[i];
+    if (ref >= sys.inputs || !ws.signal[ref].linear) return true;
+  }
+  return false;
+}
+
 /// Whether a contact is pressed: a load now, or one that is about to rise from zero.
 template <class T>
 bool is_pressed(const Workspace<T>& ws, int c) {

@@ -80,6 +80,7 @@ struct Edge {
   T* multiplier;  ///< torque of each locked contact
   T* drift;       ///< its time derivative
   T* capacity;    ///< static torque of each locked contact
+  T* swing;       ///< size of its time derivative where its load bends over time, else zero
   T* noise;       ///< round-off of the torque of each locked contact
   T* room;        ///< what each dependent set has left of its limit load, as a share of the load
 };
@@ -256,7 +257,7 @@ void lay_out(W& ws, A& a) {
   decltype(&ws.here) edges[] = {&ws.here, &ws.there};
   for (auto* e : edges) {
     a.take(e->rate, nd), a.take(e->slope, nd), a.take(e->multiplier, nc), a.take(e->drift, nc);
-    a.take(e->capacity, nc), a.take(e->noise, nc), a.take(e->room, nc);
+    a.take(e->capacity, nc), a.take(e->swing, nc), a.take(e->noise, nc), a.take(e->room, nc);
   }
   a.take(ws.torque, nd), a.take(ws.output_torque, nd), a.scratch(ws.power, 4 * (nd + np));
   a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.keep(ws.watch, nc, 0, nc - 1);
