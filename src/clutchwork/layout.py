@@ -153,6 +153,11 @@ STATUS = (
         "look for inertias that differ by more than twelve orders of magnitude",
     ),
     ("bad_system", "the system bytes do not fit this core", "assemble the driveline again with this version"),
+    (
+        "jammed",
+        "prescribed speeds turn a freewheel backward, which nothing can hold",
+        "prescribe speeds that let it overrun, or put a shaft with inertia and a spring in between",
+    ),
     ("interrupted", "the run was interrupted", "run it again for the rest"),
 )
 

@@ -88,8 +88,9 @@ bool knots_crowd(Workspace<T>& ws) {
 /// Whether the load of a contact can pass zero before the next knot. A load is monotonic in each of its inputs while
 /// the others are held, so its extremes are at the corners of their ranges.
 template <class T>
-bool load_may_turn(const Workspace<T>& ws, int c) {
+bool load_may_turn(Workspace<T>& ws, int c) {
   const System& sys = ws.sys;
+  ws.load_size[c] = 0;
   return visit_contact(sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     double low[E::inputs > 0 ? E::inputs : 1], high[E::inputs > 0 ? E::inputs : 1];
@@ -98,12 +99,15 @@ bool load_may_turn(const Workspace<T>& ws, int c) {
       if (high[i] - low[i] == infinity || high[i] - low[i] != high[i] - low[i]) return true;
     }
     bool below = false, above = false;
+    double size = 0;
     for (unsigned corner = 0; corner < 1u << E::inputs; ++corner) {
       T at[E::inputs > 0 ? E::inputs : 1];
       for (int i = 0; i < E::inputs; ++i) at[i] = T(corner >> i & 1 ? high[i] : low[i]);
-      const bool falls = contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &at[0], sys.points) < T(0);
-      (falls ? below : above) = true;
+      const T load = contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &at[0], sys.points);
+      (load < T(0) ? below : above) = true;
+      size = larger(size, abs(value(load)));
     }
+    ws.load_size[c] = size;
     return below && above;
   });
 }
@@ -153,16 +157,31 @@ bool refresh_loads(Workspace<T>& ws) {
   return changed;
 }
 
-/// Decide the modes; freewheels that would have to hold more than they can give way for good on the way.
+/// Decide the modes; freewheels that would have to hold more than they can give way for good on the way. `running`:
+/// they are decided.
 template <class T>
-bool settle(Workspace<T>& ws, int located) {
+Status settle(Workspace<T>& ws, int located) {
   for (int round = 0; round <= ws.sys.contacts; ++round) {
     int who = located;
     const Settled settled = settle_contacts(ws, who);
-    if (settled != Settled::gives_way) return settled == Settled::yes;
+    if (settled == Settled::jams) {
+      ws.detail_component = int(ws.sys.elements) + who;
+      return Status::jammed;
+    }
+    if (settled != Settled::gives_way) return settled == Settled::yes ? Status::running : Status::no_mode;
     fail(ws, who);
   }
-  return false;
+  return Status::no_mode;
+}
+
+/// A freewheel that runs backward although everything is decided; -1: none.
+template <class T>
+int backward_freewheel(const Workspace<T>& ws) {
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (!ws.loaded[c] || !contact_one_way(ws, c)) continue;
+    if (value(rate_of(ws, int(ws.sys.elements) + c)) < -1e3 * slip_tolerance(ws)) return c;
+  }
+  return -1;
 }
 
 /// Decide the modes at the present instant and report what changed.
@@ -184,11 +203,18 @@ Status switch_modes(Workspace<T>& ws) {
   if (at_start) {
     for (int c = 0; c < nc; ++c) ws.impulse[c] = ws.mode[c] == locked && ws.mode_before[c] != locked;
   }
-  if (!settle(ws, ws.located)) return Status::no_mode;
+  const Status first = settle(ws, ws.located);
+  if (first != Status::running) return first;
   if (stops_short(ws, ws.located)) {
     if (!stop_within_tolerance(ws, ws.located)) return Status::no_mode;
-    // its impulse may bring others to rest
-    if (others_rest(ws, ws.located) && !settle(ws, -1)) return Status::no_mode;
+    // its impulse may bring others to rest, or break them loose
+    const Status again = settle(ws, -1);
+    if (again != Status::running) return again;
+  }
+  const int jammed = backward_freewheel(ws);
+  if (jammed >= 0) {
+    ws.detail_component = ne + jammed;
+    return Status::jammed;
   }
   for (int d = 0; d < ne; ++d) {
     if (edge_count(ws, d) > 0) ws.piece[d] = piece_of(ws, d, value(rate_of(ws, d)));

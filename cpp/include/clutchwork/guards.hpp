@@ -7,11 +7,14 @@ namespace clutchwork {
 
 /// The first thing that happens inside a step.
 struct Hit {
-  enum What : int { nothing, line, multiplier, set, load, law, fault, exit } what = nothing;
-  int index = -1;  ///< guard, locked contact, dependent set, contact, or branch
+  enum What : int { nothing, line, multiplier, set, parting, load, law, fault, exit } what = nothing;
+  int index = -1;  ///< guard, locked contact, dependent set, spare, contact, or branch
   double s = 1;    ///< where in the step, 0 to 1
   int who = -1;    ///< what of a law leaves its piece
 };
+
+/// Round-off of a load over its largest size: a load that dips below zero by less does not open its contact.
+inline constexpr double load_noise = 1e-11;
 
 /// Whether a zero at s comes before what has been found.
 CLUTCHWORK_INLINE bool is_first(const Hit& hit, double s) { return s >= 0 && (hit.what == Hit::nothing || s < hit.s); }
@@ -381,16 +384,36 @@ template <class Form, class Integrator>
   }
 }
 
+/// Where prescribed speeds part what locked contacts hold together.
+template <class Form, class Integrator>
+void find_parting(Form& form, Step<Form>& step, Hit& hit) {
+  auto& ws = form.ws;
+  const double zero = slip_tolerance(ws);
+  for (int i = 0; i < ws.n_driven; ++i) {
+    auto f = [&](double s) {
+      double slip = 0;
+      for (int p = 0; p < ws.sys.prescribed; ++p) {
+        slip += driven_share(ws, ws.driven[i], p) * signal_value(ws, ws.sys.prescribed_input[p], step.t + s * step.h);
+      }
+      return zero - abs(slip);
+    };
+    const double s = first_crossing(f, f(0), f(1), hit.s);
+    if (!is_first(hit, s)) continue;
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    hit = {Hit::parting, ws.driven[i], s, -1};
+  }
+}
+
 /// Where the load of a contact passes zero.
 template <class Form, class Integrator>
 void find_load(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
   for (int i = 0; i < ws.n_watch; ++i) {
     const int c = ws.watch[i];
-    const double sign = ws.pressed[c] ? 1.0 : -1.0;
+    const double sign = ws.pressed[c] ? 1.0 : -1.0, noise = load_noise * ws.load_size[c];
     auto f = [&](double s) {
       inputs_in(form, step, s);
-      return sign * value(load_of(ws, c));
+      return sign * value(load_of(ws, c)) + noise;
     };
     if (ws.n_shared_refs > 0 && !step.dense) Integrator::prepare_dense(form, step);
     const double l0 = f(0), l1 = f(1);
@@ -410,6 +433,7 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   if (ws.n_switching > 0) find_law_hit<Form, Integrator>(form, step, hit);
   if (ws.n_locked > 0) find_break_away<Form, Integrator>(form, step, hit);
   if (ws.n_sets > 0) find_set_limit<Form, Integrator>(form, step, hit);
+  if (ws.n_driven > 0) find_parting<Form, Integrator>(form, step, hit);
   if (ws.n_faulty > 0) find_fault<Form, Integrator>(form, step, hit);
   if (ws.n_bounded > 0) find_exit<Form, Integrator>(form, step, hit);
   if (ws.n_watch > 0) find_load<Form, Integrator>(form, step, hit);

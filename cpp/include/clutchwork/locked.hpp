@@ -64,6 +64,19 @@ void list_sets(Workspace<T>& ws, const int* label) {
   ws.set_first[ws.n_sets] = at;
 }
 
+/// Share of prescribed speed p in the slip of spare s while the carriers are locked.
+template <class T>
+double driven_share(const Workspace<T>& ws, int s, int p) {
+  const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements);
+  double size = abs(value(prescribed_share(ws, ne + ws.spare[s], p)));
+  T share = prescribed_share(ws, ne + ws.spare[s], p);
+  for (int a = 0; a < ws.n_locked; ++a) {
+    const T part = ws.tie[s * nc + a] * prescribed_share(ws, ne + ws.locked[a], p);
+    share -= part, size = larger(size, abs(value(part)));
+  }
+  return abs(value(share)) > 1e-12 * size ? value(share) : 0.0;
+}
+
 /// Sort the locked contacts into carriers and spares; all of them are carriers where no directions depend on others.
 template <class T>
 void list_locked(Workspace<T>& ws) {
@@ -73,7 +86,7 @@ void list_locked(Workspace<T>& ws) {
     if (ws.mode[c] == locked) ws.in_set[n] = 0, ws.locked[n++] = c;
   }
   ws.n_locked = n;
-  ws.n_spare = ws.n_sets = 0;
+  ws.n_spare = ws.n_sets = ws.n_driven = 0;
   if (!ws.redundant || n < 2) return;
   T* rows = ws.scratch;
   for (int a = 0; a < n; ++a) {
@@ -103,6 +116,11 @@ void list_locked(Workspace<T>& ws) {
       if (counts) tie[number[order[j]]] = share[j];
     }
     ws.spare[ws.n_spare++] = all[a];
+  }
+  for (int s = 0; s < ws.n_spare; ++s) {
+    bool driven = false;
+    for (int p = 0; p < ws.sys.prescribed; ++p) driven = driven || driven_share(ws, s, p) != 0;
+    if (driven) ws.driven[ws.n_driven++] = s;
   }
   join_sets(ws, order);
   list_sets(ws, order);

@@ -283,8 +283,9 @@ int turned_back(const Workspace<T>& ws, const int* list, int n, const T* x, cons
   return -1;
 }
 
-/// How a decision ended: all contacts have their mode, none was found, or a freewheel gives way first.
-enum class Settled { yes, no, gives_way };
+/// How a decision ended: all contacts have their mode, none was found, a freewheel gives way first, or prescribed
+/// speeds turn one backward.
+enum class Settled { yes, no, gives_way, jams };
 
 /// Give every contact at zero slip its torque or its direction of slip. `located`: the contact whose guard was hit, or
 /// the freewheel that gives way.
@@ -318,8 +319,12 @@ Settled settle_contacts(Workspace<T>& ws, int& located) {
     } else if (c == located && ws.cause == Cause::torque_limit && is_rigid(ws, c)) {
       // prescribed speeds have parted: there is no choice
       const double parting = slip != 0 ? slip : value(slip_slope(ws, c));
+      if (parting < 0 && contact_one_way(ws, c)) {
+        located = c;
+        return Settled::jams;
+      }
       candidate[c] = 0;
-      ws.mode[c] = parting < 0 && !contact_one_way(ws, c) ? backward : forward;
+      ws.mode[c] = parting < 0 ? backward : forward;
       ws.forced[c] = ws.mode[c];
     } else if (candidate[c] && ws.forced[c] != 0) {
       candidate[c] = 0;
@@ -368,13 +373,16 @@ Settled settle_contacts(Workspace<T>& ws, int& located) {
       double scale = abs(value(p.gradient[a]));
       for (int b = 0; b < n; ++b) scale = larger(scale, abs(value(p.matrix[a * n + b] * p.x[b])));
       const double acceleration = value(p.slope[a]), size = abs(acceleration) / mobility;
-      // between prescribed speeds only what leaves zero within a microsecond is a departure
-      const double small = is_rigid(ws, c) ? 1e6 * tolerance : larger(1e-10 * scale, 1e-12 * ws.effort * mobility);
+      // between prescribed speeds only what leaves zero within a microsecond is a departure; for one that has just come
+      // to rest, what leaves it within a millisecond
+      const bool arrived = c == located && ws.cause == Cause::slip_zero;
+      const double round_off = larger(1e-10 * scale, 1e-12 * ws.effort * mobility);
+      const double small = is_rigid(ws, c) ? 1e6 * tolerance : arrived ? larger(round_off, 1e3 * tolerance) : round_off;
       const bool noise = abs(acceleration) <= small;
       if (p.bound[a] == 0 || noise) continue;
       if (contact_one_way(ws, c) && acceleration < 0) {
         located = c;
-        return Settled::gives_way;
+        return is_rigid(ws, c) ? Settled::jams : Settled::gives_way;
       }
       if (size > most) first = a, most = size;
     }
@@ -386,7 +394,14 @@ Settled settle_contacts(Workspace<T>& ws, int& located) {
       continue;
     }
 
-    for (int a = 0; a < n; ++a) ws.torque[sys.elements + list[a]] = p.x[a];
+    for (int a = 0; a < n; ++a) {
+      ws.torque[sys.elements + list[a]] = p.x[a];
+      // no torque holds what prescribed speeds turn against freewheels alone
+      const double left = abs(value(p.slope[a])), most = 1e6 * tolerance + 1e-6 * abs(value(p.gradient[a]));
+      if (p.bound[a] != 0 || is_rigid(ws, list[a]) || !(left > most)) continue;
+      located = list[a];
+      return Settled::jams;
+    }
     const int back = turned_back(ws, list, n, p.x, released, q);
     if (back < 0) return Settled::yes;
     released[back] = -1;
@@ -488,16 +503,6 @@ bool settle_impulses(Workspace<T>& ws, bool at_start) {
 template <class T>
 bool stops_short(const Workspace<T>& ws, int located) {
   return located >= 0 && ws.mode[located] == locked && ws.sys.contact_tolerance[located] > 0;
-}
-
-/// Whether contacts that count as slipping are at rest, apart from one.
-template <class T>
-bool others_rest(const Workspace<T>& ws, int located) {
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (c == located || !ws.loaded[c] || ws.mode[c] == locked || !may_stick(ws, c) || is_rigid(ws, c)) continue;
-    if (abs(value(rate_of(ws, int(ws.sys.elements) + c))) <= slip_tolerance(ws)) return true;
-  }
-  return false;
 }
 
 /// A contact that may lock below a slip of its own is stopped by an impulse; the others that are locked stay so, but

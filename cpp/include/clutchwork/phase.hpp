@@ -219,7 +219,7 @@ bool pass_knot(Form& form, Step<Form>& step) {
   for (int k = 0; k < ws.n_sets; ++k) {
     if (value(ws.here.room[k]) < 0) return true;
   }
-  return false;
+  return ws.n_driven > 0;
 }
 
 /// The law of a contact goes to its next piece; it may move its states. False: it does so without end.
@@ -617,6 +617,10 @@ class Phase {
         ws_.cause = Cause::torque_limit;
         if (events_crowd(ws_, int(ws_.sys.elements) + ws_.set_member[ws_.set_first[hit.index]])) status_ = Status::zeno;
         return roll_over(hit.index);
+      case Hit::parting:
+        ws_.located = ws_.spare[hit.index];
+        ws_.cause = Cause::torque_limit;
+        return;
       case Hit::exit:
         ws_.detail_component = int(ws_.sys.elements) + hit.index;
         status_ = Status::out_of_table;

@@ -133,9 +133,10 @@ struct Workspace {
   int* locked = nullptr;  ///< contacts that are locked: carriers, which are independent, and rigid ones
 
   // locked contacts that depend on the carriers, and the sets that they make with them: locked.hpp
-  int n_spare = 0, n_sets = 0;
+  int n_spare = 0, n_sets = 0, n_driven = 0;
   int *spare = nullptr, *set_first = nullptr, *set_rank = nullptr, *set_member = nullptr, *set_place = nullptr;
   int* in_set = nullptr;     ///< of each locked contact
+  int* driven = nullptr;     ///< spares whose slip the prescribed speeds can move though the carriers are locked
   T* tie = nullptr;          ///< n_spare x contacts: direction of a spare in terms of the carriers
   T* set_memory = nullptr;   ///< one set at a time
   int* set_basis = nullptr;  ///< of the same
@@ -150,6 +151,7 @@ struct Workspace {
   int* block = nullptr;
   Edge<T> here{}, there{};
   T *torque = nullptr, *output_torque = nullptr, *slip_slope = nullptr, *torque_before = nullptr;
+  double* load_size = nullptr;  ///< largest size that the load of a watched contact may have, 0: not known
   int *watch = nullptr, *mode_before = nullptr, *impulse = nullptr;
   int *switching = nullptr, *chattering = nullptr;  ///< branches with laws that switch, or that jump with the slip
   int* bounded = nullptr;                           ///< branches whose laws can be left
@@ -243,7 +245,8 @@ void lay_out(W& ws, A& a) {
   a.scratch(ws.factor, nv * nv), a.scratch(ws.direction, nd * nv), a.scratch(ws.prescribed_momentum, np * nv);
   const auto most_spare = nc > 1 ? nc : 0;
   a.take(ws.spare, most_spare), a.take(ws.set_first, most_spare + 1), a.take(ws.set_rank, most_spare);
-  a.take(ws.set_member, most_spare), a.take(ws.set_place, most_spare), a.take(ws.in_set, nc);
+  a.take(ws.set_member, most_spare), a.take(ws.set_place, most_spare), a.take(ws.in_set, nc),
+      a.take(ws.driven, most_spare);
   a.scratch(ws.tie, most_spare * most_spare), a.take(ws.set_basis, 2 * most_spare + 2);
   a.scratch(ws.set_memory, most_spare * (3 * most_spare + 12) + 4);
   a.take(ws.locked, nc), a.take(ws.z_basis, nv * nv), a.take(ws.y_basis, nv * np), a.scratch(ws.mobility, nc * nc);
@@ -260,7 +263,7 @@ void lay_out(W& ws, A& a) {
     a.take(e->capacity, nc), a.take(e->swing, nc), a.take(e->noise, nc), a.take(e->room, nc);
   }
   a.take(ws.torque, nd), a.take(ws.output_torque, nd), a.scratch(ws.power, 4 * (nd + np));
-  a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.keep(ws.watch, nc, 0, nc - 1);
+  a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.keep(ws.watch, nc, 0, nc - 1), a.take(ws.load_size, nc);
   a.keep(ws.mode_before, nc, backward, open), a.keep(ws.impulse, nc, 0, 1);
   a.take(ws.sp_first, nd + 1), a.take(ws.sp_col, nd * nv), a.take(ws.sp_val, nd * nv);
   a.take(ws.m_first, nv + 1), a.take(ws.m_col, nv * nv), a.take(ws.m_val, nv * nv);

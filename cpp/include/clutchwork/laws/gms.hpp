@@ -49,12 +49,18 @@ struct GMS {
   static S room(const Params<T>& p, const At<S>& at, int i) {
     return S(1) - abs(at.state[i]) / (T(element_share(p.elements, at.points, i)) * sliding_level(p, at.rate));
   }
+  /// The same for one on its way back, on the side that it comes from: it may cross its whole range within a step.
+  template <class T, class S>
+  static S way_back(const Params<T>& p, const At<S>& at, int i) {
+    const S side = S(value(at.rate) > 0 ? -1 : 1);
+    return S(1) - side * at.state[i] / (T(element_share(p.elements, at.points, i)) * sliding_level(p, at.rate));
+  }
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
     S least = S(1);
     for (int i = 0; i < count(p); ++i) {
       if (element_slides(at.piece, i)) continue;
-      const S left = returns(at.piece, i) ? S(slack) - room(p, at, i) : room(p, at, i);
+      const S left = returns(at.piece, i) ? S(slack) - way_back(p, at, i) : room(p, at, i);
       if (left < least) least = left, who = i;
     }
     return least;
