@@ -134,7 +134,7 @@ STATUS = (
     (
         "chatter",
         "the torque jumps with the sign of the slip again and again, the contact cannot come to rest",
-        "give it a law that sticks, as coulomb or stribeck, or one with states, as lugre",
+        "give it a law that sticks, such as coulomb or stribeck, or one with states, such as lugre",
     ),
     (
         "out_of_table",
@@ -153,7 +153,7 @@ STATUS = (
         "look for inertias that differ by more than twelve orders of magnitude",
     ),
     ("bad_system", "the system bytes do not fit this core", "assemble the driveline again with this version"),
-    ("interrupted", "the run was interrupted", "run it again for the rest"),
+    ("interrupted", "the run was interrupted", "what was computed up to here is kept in .trajectory"),
 )
 
 
