@@ -105,4 +105,4 @@ def _spare(spare: tuple[Any, ...], by_place: list[str], known: list[str]) -> str
     values = "1 value is" if len(spare) == 1 else f"{len(spare)} values are"
     first = f"only {' and '.join(by_place)} may be" if by_place else "none may be"
     example = ", ".join(f"{name}=..." for name in known[: len(spare)])
-    return f"{values} positional, {first}; give the others by keyword, such as {example}"
+    return f"{values} positional, {first}; give the others by keyword{f', such as {example}' if example else ''}"

@@ -160,7 +160,7 @@ def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     # whether a reference leads to something of that unit is checked where the driveline is known
     elif not is_reference(value):
         remedy = f"give one of {kinds_of(Role.SIGNAL)}"
-        if isinstance(value, list | tuple):
+        if isinstance(value, list | tuple) and value and all(isinstance(pair, list | tuple) for pair in value):
             remedy = say('write {type = "table", points = [[time, value], ...]}', "wrap it: cw.Table([...])")
         if callable(value):
             remedy = "a function is a controller: give cw.Sampled(function, period), with the period in s"

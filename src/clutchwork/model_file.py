@@ -28,6 +28,7 @@ Nothing in a model file is evaluated.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -81,7 +82,7 @@ def _parsed(path: Path, text: str) -> Any:
         return tomllib.loads(text)
     except ValueError as error:
         fault = f"is not valid {path.suffix[1:].upper()}: {shortened(str(error))}"
-        raise ModelError([Problem("file", "", fault, remedy="correct that place")], str(path)) from None
+        raise ModelError([Problem("file", "", fault, remedy=_fix(str(error)))], str(path)) from None
 
 
 @contextmanager
@@ -155,3 +156,9 @@ def to_dict(driveline: Driveline, *, folder: str | Path | None = None, embed: bo
     if writer.problems:
         raise ModelError(writer.problems, driveline.name)
     return {key: value for key, value in data.items() if value not in ([], {})}
+
+
+def _fix(words: str) -> str:
+    """The place in a file that a parser complains of, to be fixed."""
+    found = re.search(r"line (\d+),? column (\d+)", words)
+    return f"fix line {found[1]}, column {found[2]}" if found else "fix the text there"

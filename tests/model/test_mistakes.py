@@ -158,7 +158,11 @@ CASES = {
         'name = "x"\nformat = 2',
         "file: format = 2: is not known; this version reads format 1",
     ),
-    "no toml": ('name = "two discs"', "name = two discs", "is not valid TOML: Invalid value (at line 2, column 8)"),
+    "no toml": (
+        'name = "two discs"',
+        "name = two discs",
+        "is not valid TOML: Invalid value (at line 2, column 8); fix line 2, column 8",
+    ),
     "key twice": ("gain = 0.1", "gain = 0.1\ngain = 0.2", "is not valid TOML: Cannot overwrite a value"),
 }
 

@@ -130,7 +130,7 @@ def test_shafts_and_masses():
         (lambda: cw.Node("a", inertai=1.0), "did you mean 'inertia'?"),
         (lambda: cw.HeatFlow(element=1.0), "unknown field 'element'; allowed: of"),
         (lambda: cw.simulate(d, 1.0, options=1e-6), "options is 1e-06: it must be cw.Options(...)"),
-        (lambda: d.simulate(1.0, 1e-6), "by place, only t_end may be"),
+        (lambda: d.simulate(1.0, 1e-6), "positional, only t_end may be"),
     ):
         with pytest.raises(cw.UseError) as caught:
             call()
