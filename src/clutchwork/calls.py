@@ -89,9 +89,9 @@ def _problems(
         rest = sorted((p for p in parameters if p.name in known), key=lambda p: p.default is not p.empty)
         yield _spare(spare, [p for p in by_place if p not in OWNERS], [p.name for p in rest if p.name not in given])
     for name in set(by_place[: len(args)]) & set(named):
-        yield f"{name} is given twice, by place and by keyword; give it once"
+        yield f"{name} is given twice, positional and by keyword; give it once"
     for name in unknown:
-        yield f"{name} is not known here{near(name, known)}; known are {listed(known)}"
+        yield f"unknown field {shown(name)}{near(name, known)}; allowed: {listed(known)}"
     for p in parameters[len(args) :]:
         lacks = p.default is p.empty and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) and p.name not in named
         # values by place are meant for some of them, and so is a name close to theirs
@@ -100,7 +100,9 @@ def _problems(
 
 
 def _spare(spare: tuple[Any, ...], by_place: list[str], known: list[str]) -> str:
+    if by_place == ["points"] and hasattr(spare[0], "__len__"):
+        return "times and values are positional; write pairs: cw.Table([(0, 0), (1, 2e5)])"
     values = "1 value is" if len(spare) == 1 else f"{len(spare)} values are"
     first = f"only {' and '.join(by_place)} may be" if by_place else "none may be"
     example = ", ".join(f"{name}=..." for name in known[: len(spare)])
-    return f"{values} given by place, {first}; give the others by keyword, such as {example}"
+    return f"{values} positional, {first}; give the others by keyword{f', such as {example}' if example else ''}"

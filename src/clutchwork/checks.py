@@ -130,7 +130,7 @@ def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
 
 def _port(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not isinstance(value, Node):
-        in_python = "give what `shaft`, `mass` or `housing` of the driveline handed out"
+        in_python = "pass the object returned by d.shaft(...), d.mass(...) or d.housing"
         remedy = say("give the name of one", in_python)
         yield at.problem("must be a shaft, a mass or the housing", value=shown(value), remedy=remedy)
     elif spec.domain and not value.fixed and value.domain is not Domain(spec.domain):
@@ -140,7 +140,7 @@ def _port(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
 
 def _thermal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not isinstance(value, ThermalNode):
-        in_python = f"give what `thermal` or `ambient` of the driveline handed out: {spec.doc}"
+        in_python = f"pass the object returned by d.thermal(...) or d.ambient(...): {spec.doc}"
         remedy = say(f"give the name of one: {spec.doc}", in_python)
         yield at.problem("must be a thermal node or an ambient", value=_shown(value), remedy=remedy)
 
@@ -151,12 +151,17 @@ def _shown(value: Any) -> str:
 
 def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if isinstance(value, Signal):
-        yield from object_problems(value, at)
+        found = list(object_problems(value, at))
+        yield from found
+        for name, message, remedy in () if found else value.unit_problems((at.unit, *spec.units)):
+            yield at.inner(name).problem(message, remedy=remedy)
     elif isinstance(value, Real) and not isinstance(value, bool):
         yield from number_problems(value, spec, at)
     # whether a reference leads to something of that unit is checked where the driveline is known
     elif not is_reference(value):
         remedy = f"give one of {kinds_of(Role.SIGNAL)}"
+        if isinstance(value, list | tuple) and value and all(isinstance(pair, list | tuple) for pair in value):
+            remedy = say('write {type = "table", points = [[time, value], ...]}', "wrap it: cw.Table([...])")
         if callable(value):
             remedy = "a function is a controller: give cw.Sampled(function, period), with the period in s"
         yield at.problem(f"must be a number in [{at.unit}] or a signal", value=shown(value), remedy=remedy)
@@ -218,7 +223,7 @@ def connection_problems(component: Component, nodes: Sequence[Node]) -> Iterator
     known = {id(node) for node in nodes}
     for name, node in joined.items():
         if not node.fixed and id(node) not in known:
-            found = near(node.name, [n.name for n in nodes])
+            found = near(node.name, [n.name for n in nodes if n.name != node.name])
             yield at.inner(name).problem("is of another driveline", shown(node.name), f"create it in this one{found}")
     moving = {name: node for name, node in joined.items() if not node.fixed}
     if not moving:

@@ -73,7 +73,7 @@ def _run_parser(run: argparse.ArgumentParser) -> None:
     run.add_argument("--plot", type=Path, metavar="FILE", help="write the picture (png, svg or pdf)")
     run.add_argument("--csv", type=Path, metavar="FILE", help="write all signals")
     run.add_argument("--events", type=Path, metavar="FILE", help="write the events")
-    run.add_argument("--json", action="store_true", help="tell the results as JSON on standard output")
+    run.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
     run.add_argument("--quiet", action="store_true", help="no report and no progress bar")
 
 
@@ -81,13 +81,13 @@ def _check_parser(check: argparse.ArgumentParser) -> None:
     check.set_defaults(command=_check)
     check.add_argument("model", type=Path, help="model file, TOML or JSON")
     check.add_argument("--ratio", metavar="A/B", help="shafts whose speed ratio is told; default: drive and load")
-    check.add_argument("--json", action="store_true", help="tell the results as JSON on standard output")
+    check.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
 
 
 def _demo_parser(demo: argparse.ArgumentParser) -> None:
     demo.set_defaults(command=_demo)
     demo.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "demo"), help="default: out/demo")
-    demo.add_argument("--json", action="store_true", help="tell the results as JSON on standard output")
+    demo.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
 
 
 def _run(asked: argparse.Namespace) -> int:

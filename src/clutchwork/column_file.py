@@ -13,7 +13,7 @@ from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain
-from math import inf, isfinite
+from math import inf, isclose, isfinite
 from operator import itemgetter
 from pathlib import Path
 from typing import BinaryIO
@@ -21,8 +21,10 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.column_heads import Head, meant, split
 from clutchwork.errors import FileError, near
 from clutchwork.files import open_regular, reason
+from clutchwork.quantity import QuantityError
 from clutchwork.shown import listed, shown
 
 Array = NDArray[np.float64]
@@ -38,34 +40,48 @@ COMMA, NEWLINE, RETURN = 44, 10, 13
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is asked of a file: its path as it was given, and the names of its columns."""
+    """What is asked of a file: its path as it was given, the names of its columns, and a factor on the values."""
 
     path: str
     time: str
     column: str
+    scale: float = 1.0
 
     def error(self, quantity: str, message: str, remedy: str) -> FileError:
         """A single mistake."""
         return FileError([(quantity, f"{shown(self.path)} {message}", remedy)])
 
 
-def read(path: Path, wanted: Wanted, scale: float) -> Array:
-    """Times and scaled values, one row each; FileError names what is wrong with the file, up to a few mistakes."""
+@dataclass(frozen=True)
+class Values:
+    """What was read: times and scaled values in SI, one row each, and the column that they are from."""
+
+    table: Array
+    head: Head
+
+
+def read(path: Path, wanted: Wanted) -> Values:
+    """The column of a file; FileError names what is wrong with the file, up to a few mistakes."""
     try:
         with open_regular(path, MOST_BYTES) as file:
-            return _scaled(_read(file, wanted), scale, wanted)
+            return _read(file, wanted)
     except FileNotFoundError:
-        raise wanted.error("path", "does not exist", f"put the file into {path.parent}") from None
+        raise wanted.error("path", "does not exist", f"put the file into {_folder(path)}") from None
     except OSError as error:
         raise wanted.error("path", f"cannot be read: {reason(error)}", "give a CSV text file") from None
     except (UnicodeDecodeError, csv.Error):
-        raise wanted.error("path", "cannot be read: it is no text in UTF-8", "give a CSV text file") from None
+        raise wanted.error("path", "cannot be read: it is not text in UTF-8", "give a CSV text file") from None
 
 
-def _scaled(table: Array, scale: float, wanted: Wanted) -> Array:
-    """The values times a factor, all finite and so are the slopes between them."""
+def _folder(path: Path) -> str:
+    """The folder in which a file is looked for, in full."""
+    return shown(str(path.absolute().parent))
+
+
+def _scaled(table: Array, factors: tuple[float, float], wanted: Wanted) -> Array:
+    """Times and values times a factor each, all finite and so are the slopes between them."""
     with np.errstate(all="ignore"):
-        made = table * [1.0, scale]
+        made = table * factors
         step = np.diff(made, axis=0)
         slopes = np.divide(step[:, 1], step[:, 0], out=np.zeros(len(step)), where=step[:, 0] > 0.0)
     if not np.all(np.isfinite(slopes)) or not np.all(np.isfinite(made)):
@@ -75,15 +91,18 @@ def _scaled(table: Array, scale: float, wanted: Wanted) -> Array:
     return made
 
 
-def _read(file: BinaryIO, wanted: Wanted) -> Array:
+def _read(file: BinaryIO, wanted: Wanted) -> Values:
     alike = _scan(file, wanted)
     with io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
         header, lines = _opened(text)
         if not header:
             raise wanted.error("path", "is empty", "give a header line and at least one line of numbers")
-        places = _places(header, wanted)
+        time, column = _heads(header, wanted)
+        factors = _factors(time, column, wanted)
+        places = header.index(time.text), header.index(column.text)
         made = _at_once(lines, places) if alike else None
-        return _by_cells(_opened(text)[1], header, places, wanted) if made is None else made
+        made = _by_cells(_opened(text)[1], header, places, wanted) if made is None else made
+    return Values(_scaled(made, factors, wanted), column)
 
 
 def _opened(text: io.TextIOWrapper) -> tuple[list[str], Iterator[list[str]]]:
@@ -102,7 +121,7 @@ def _scan(file: BinaryIO, wanted: Wanted) -> bool:
         starts = np.concatenate([[0], ends[:-1] + 1])
         count += len(ends)
         if b"\0" in block:
-            raise wanted.error("path", "cannot be read: it is no text", "give a CSV text file")
+            raise wanted.error("path", "cannot be read: it is not text", "give a CSV text file")
         if count > MOST_LINES + 1:
             raise wanted.error("path", f"has more than {MOST_LINES} lines", "give fewer samples")
         commas = np.add.reduceat((codes == COMMA).astype(np.intp), starts)
@@ -136,30 +155,48 @@ def _blocks(file: BinaryIO, wanted: Wanted) -> Iterator[bytes]:
         yield left + b"\n"
 
 
-def _places(header: list[str], wanted: Wanted) -> tuple[int, int]:
-    """Places of the time column and of the values."""
-    faults = [
-        fault
-        for quantity, name in (("time", wanted.time), ("column", wanted.column))
-        if (fault := _name_fault(header, quantity, name, wanted))
-    ]
+def _heads(header: list[str], wanted: Wanted) -> tuple[Head, Head]:
+    """Heads of the time column and of the values."""
+    found = meant(wanted.time, header), meant(wanted.column, header)
+    names = (("time", wanted.time, found[0]), ("column", wanted.column, found[1]))
+    faults = [_name_fault(header, *name, any(found), wanted) for name in names if len(name[2]) != 1]
     if faults:
         raise FileError(faults)
-    return header.index(wanted.time), header.index(wanted.column)
+    return found[0][0], found[1][0]
 
 
-def _name_fault(header: list[str], quantity: str, name: str, wanted: Wanted) -> tuple[str, str, str] | None:
-    path, found = shown(wanted.path), header.count(name)
-    if found > 1:
-        return quantity, f"{path} has {found} columns {shown(name)}", "give every column a name of its own"
-    if found == 1:
-        return None
+def _name_fault(
+    header: list[str], quantity: str, name: str, found: list[Head], asked: bool, wanted: Wanted
+) -> tuple[str, str, str]:
+    path, texts = shown(wanted.path), list(dict.fromkeys(head.text for head in found))
+    if len(texts) > 1:
+        return quantity, f"{path} has {len(found)} columns {shown(name)}", f"name one of them: {listed(texts)}"
+    if found:
+        return quantity, f"{path} has {len(found)} columns {shown(name)}", "give every column a name of its own"
     remedy = "the first line names the columns, with commas between them"
     if len(header) == 1 and ";" in header[0]:
         remedy = "separate the columns with commas, not with semicolons"
-    elif wanted.time in header or wanted.column in header:
-        remedy = f"the columns are {listed(header)}" + near(name, header)
+    elif asked:
+        hint = near(name, header) or near(split(name)[0], [split(head)[0] for head in header])
+        remedy = f"the columns are {listed(header)}{hint}"
     return quantity, f"{path} has no column {shown(name)}", remedy
+
+
+def _factors(time: Head, column: Head, wanted: Wanted) -> tuple[float, float]:
+    """Factors to SI of times and values, by the units of their heads; a scale that repeats the unit is refused."""
+    factors, faults = [], []
+    for quantity, head, units in (("time", time, ("s",)), ("column", column, ())):
+        try:
+            factors.append(head.factor(units))
+        except QuantityError as bad:
+            fault = f"column {shown(head.text)} of {shown(wanted.path)} {bad.message}"
+            faults.append((quantity, fault, bad.remedy))
+    if faults:
+        raise FileError(faults)
+    if factors[1] != 1.0 and isclose(factors[1], wanted.scale):
+        fault = f"repeats the unit of column {shown(column.text)} of {shown(wanted.path)}"
+        raise FileError([("scale", fault, "leave out scale: the values are converted by the unit of the column")])
+    return factors[0], factors[1] * wanted.scale
 
 
 def _at_once(lines: Iterator[list[str]], places: tuple[int, int]) -> Array | None:

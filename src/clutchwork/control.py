@@ -48,12 +48,13 @@ class Controller:
     def value(self, time: float, readings: Mapping[str, Any]) -> float:
         """Call the function; what it raises or a value that is not finite ends the run with its name."""
         try:
-            value = float(self.function(time, readings))
+            given = self.function(time, readings)
+            value = math.nan if given is None else float(given)
         except Exception as error:
             raise SimulationError(f"controller of {self.name!r} failed at {time:.9g} s: {error!r}") from error
         if not math.isfinite(value):
-            words = f"controller of {self.name!r} returned {value} at {time:.9g} s: return a finite number"
-            raise SimulationError(words)
+            words = f"controller of {self.name!r} returned {None if given is None else value} at {time:.9g} s"
+            raise SimulationError(f"{words}: return a finite number")
         return value
 
 

@@ -78,7 +78,7 @@ class Driveline:
     def add_node(self, node: Node) -> Node:
         """Add a shaft or a mass that was made elsewhere."""
         if not isinstance(node, Node):
-            raise UseError("d.add_node", [f"{shown(node)} is no shaft or mass; add a cw.Node, or call d.shaft(...)"])
+            raise UseError("d.add_node", [f"{shown(node)} is not a shaft or mass; add a cw.Node, or call d.shaft(...)"])
         self._nodes.append(node)
         return node
 
@@ -99,14 +99,14 @@ class Driveline:
     def add_thermal(self, node: ThermalNode) -> ThermalNode:
         """Add a thermal mass or an ambient that was made elsewhere."""
         if not isinstance(node, ThermalNode):
-            raise UseError("d.add_thermal", [f"{shown(node)} is no thermal node; add a cw.ThermalNode"])
+            raise UseError("d.add_thermal", [f"{shown(node)} is not a thermal node; add a cw.ThermalNode"])
         self._thermal.append(node)
         return node
 
     def add(self, element: E) -> E:
         """Add an element and hand it back; UseError, a TypeError, for what is none."""
         if not isinstance(element, Component):
-            raise UseError("d.add", [f"{shown(element)} is no element; add one such as cw.Clutch(...)"])
+            raise UseError("d.add", [f"{shown(element)} is not an element; add one such as cw.Clutch(...)"])
         self._elements.append(element)
         return element
 
@@ -164,7 +164,7 @@ class Driveline:
     def load(cls, path: str | Path) -> Driveline:
         """Read a model file, TOML or JSON; ModelError lists all its mistakes."""
         if not isinstance(path, str | Path):
-            raise UseError("cw.Driveline.load", [f"{shown(path)} is no path; give the name of a TOML or JSON file"])
+            raise UseError("cw.Driveline.load", [f"{shown(path)} is not a path; give the name of a TOML or JSON file"])
         from clutchwork.model_file import load
 
         return load(path)

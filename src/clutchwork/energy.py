@@ -83,11 +83,11 @@ class EnergyBalance:
         lines += [("kinetic energy, change", f"{self.kinetic:.3f}"), ("elastic energy, change", f"{self.elastic:.3f}")]
         lines += [("heat", f"{sum(self.heat.values()):.3f}")]
         lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.heat.items() if heat]
-        lines += [("of it in impulses", f"{self.impulses:.3f}")] if self.impulses else []
+        lines += [("thereof in impulses", f"{self.impulses:.3f}")] if self.impulses else []
         if self.thermal:
             lines += [("in thermal nodes", f"{sum(self.thermal.values()):.3f}")]
             lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.thermal.items() if heat]
-            lines += [("heat to no thermal node", f"{self.untracked:.3f}")]
+            lines += [("heat not assigned to a thermal node", f"{self.untracked:.3f}")]
         share = self.residual / self.turnover if self.turnover else 0.0
         lines += [("residual", f"{self.residual:.3e}"), ("residual / turnover", f"{share:.1e}")]
         return columns([("energy", "J"), *lines], right={1})

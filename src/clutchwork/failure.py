@@ -47,7 +47,7 @@ class StoppedEarly(RuntimeWarning):
 class Interrupted(KeyboardInterrupt):
     """Ctrl-C during a run; `trajectory` holds what was computed before.
 
-    It is a KeyboardInterrupt: what does not catch it ends as after any Ctrl-C.
+    It is a KeyboardInterrupt; a script that does not catch it ends with exit code 1, not that of a signal.
     """
 
     def __init__(self, message: str, trajectory: Trajectory) -> None:

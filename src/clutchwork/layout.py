@@ -134,7 +134,7 @@ STATUS = (
     (
         "chatter",
         "the torque jumps with the sign of the slip again and again, the contact cannot come to rest",
-        "give it a law that sticks, as coulomb or stribeck, or one with states, as lugre",
+        "give it a law that sticks, such as coulomb or stribeck, or one with states, such as lugre",
     ),
     (
         "out_of_table",
@@ -158,7 +158,7 @@ STATUS = (
         "prescribed speeds turn a freewheel backward, which nothing can hold",
         "prescribe speeds that let it overrun, or put a shaft with inertia and a spring in between",
     ),
-    ("interrupted", "the run was interrupted", "run it again for the rest"),
+    ("interrupted", "the run was interrupted", "what was computed up to here is kept in .trajectory"),
 )
 
 

@@ -28,6 +28,7 @@ Nothing in a model file is evaluated.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -57,7 +58,7 @@ def load(path: str | Path) -> Driveline:
     try:
         text = read_regular(path, MOST_BYTES).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        why = reason(error) if isinstance(error, OSError) else "it is no text in UTF-8"
+        why = reason(error) if isinstance(error, OSError) else "it is not text in UTF-8"
         problem = Problem("file", "", f"cannot be read: {why}", remedy="give a TOML or JSON file in UTF-8")
         raise ModelFileError([problem], str(path)) from None
     return _from_text(path, text.replace("\r\n", "\n"))
@@ -80,8 +81,8 @@ def _parsed(path: Path, text: str) -> Any:
 
         return tomllib.loads(text)
     except ValueError as error:
-        fault = f"is no {path.suffix[1:].upper()}: {shortened(str(error))}"
-        raise ModelError([Problem("file", "", fault, remedy="correct that place")], str(path)) from None
+        fault = f"is not valid {path.suffix[1:].upper()}: {shortened(str(error))}"
+        raise ModelError([Problem("file", "", fault, remedy=_fix(str(error)))], str(path)) from None
 
 
 @contextmanager
@@ -104,7 +105,7 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _no_constant(name: str) -> float:
-    raise ValueError(f"{name} is no number of a model file")
+    raise ValueError(f"{name} is not a number of a model file")
 
 
 def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines | None = None) -> Driveline:
@@ -155,3 +156,9 @@ def to_dict(driveline: Driveline, *, folder: str | Path | None = None, embed: bo
     if writer.problems:
         raise ModelError(writer.problems, driveline.name)
     return {key: value for key, value in data.items() if value not in ([], {})}
+
+
+def _fix(words: str) -> str:
+    """The place in a file that a parser complains of, to be fixed."""
+    found = re.search(r"line (\d+),? column (\d+)", words)
+    return f"fix line {found[1]}, column {found[2]}" if found else "fix the text there"

@@ -84,7 +84,7 @@ class Values:
             return part
         what = "shaft" if spec.what == "port" else "thermal node"
         remedy = f"known are {listed(known)}" if known else "add one: [[thermal]] or [[ambient]]"
-        return self._report(at, f"is no {what} of this model" + near(value, known), shown(value), remedy)
+        return self._report(at, f"is not a {what} of this model" + near(value, known), shown(value), remedy)
 
     def _other(self, value: Any, at: At) -> Any:
         """An input that a thermal node, an element or a shaft gives."""
@@ -122,6 +122,9 @@ class Values:
         signal = self._typed(value, Role.SIGNAL, place, ("type", "unit"))
         if isinstance(signal, Column):
             signal = replace(signal, scale=signal.scale * place.factor, folder=self.folder)
+            if "unit" in value and place.factor != 1.0 and (unit := replace(signal, scale=1.0).unit()):
+                fault = f"is given beside the unit [{unit}] of the column"
+                return self._report(at.inner("unit"), fault, shown(value["unit"]), "leave out unit")
         return BROKEN if factor is BROKEN else signal
 
 

@@ -161,6 +161,10 @@ class Signal:
         """
         raise NotImplementedError
 
+    def unit_problems(self, units: tuple[str, ...]) -> list[tuple[str, str, str]]:  # noqa: ARG002, most need none
+        """What does not fit the units of the driven quantity, where the values say their own, as `problems` does."""
+        return []
+
     def repeats(self) -> float:
         """Period [s] with which the pieces repeat from the start of the first one; 0: never."""
         return 0.0

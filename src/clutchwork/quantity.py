@@ -46,7 +46,7 @@ def in_si(value: Any, unit: str, others: tuple[str, ...] = (), factor: float = 1
         parts = units.split(value)
         if parts is None:
             raise QuantityError(
-                "is no number", shown(value), f"write a number in [{unit}], or a text such as '1.5 {unit}'"
+                "is not a number", shown(value), f"write a number in [{unit}], or a text such as '1.5 {unit}'"
             )
         if not parts[1]:
             raise QuantityError("is a text without unit", shown(value), "write the number without quotes")

@@ -88,7 +88,7 @@ def _no_model(given: object) -> str:
     remedy = "give a Driveline or a System"
     if isinstance(given, str | os.PathLike):
         remedy = f"a file is read by cw.Driveline.load({os.fspath(given)!r})"
-    return f"{shown(given)} is no model; {remedy}"
+    return f"{shown(given)} is not a model; {remedy}"
 
 
 def again(trajectory: Trajectory, times: Any) -> Trajectory:

@@ -47,11 +47,11 @@ def _cold(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     lowest = min(_temperatures(value, spec), default=COLDEST)
     if lowest >= COLDEST:
         return
-    remedy = f"temperatures are in K; {lowest:g} degC would be {lowest + 273.15:g} K"
+    remedy = f"temperatures are in kelvin; did you mean {lowest + 273.15:g} K ({lowest:g} degC)?"
     if isinstance(value, Real):
-        yield at.problem("is too cold to be meant", f"{lowest:g} K", remedy)
+        yield at.problem("is implausibly low", f"{lowest:g} K", remedy)
     else:
-        yield at.problem(f"reaches down to {lowest:g} K, too cold to be meant", remedy=remedy)
+        yield at.problem(f"reaches down to {lowest:g} K, implausibly low", remedy=remedy)
 
 
 def _temperatures(value: Any, spec: Spec) -> Iterable[float]:

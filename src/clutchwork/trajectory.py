@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.calls import explained
 from clutchwork.channels import Channels
 from clutchwork.control import Control
 from clutchwork.energy import EnergyBalance, balance
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from clutchwork.dependence import DependentPhase
+    from clutchwork.events import Event
     from clutchwork.system import System
 
 Array = NDArray[np.float64]
@@ -137,11 +139,15 @@ class Trajectory:
 
         return to_xarray(self, self._chosen(names))
 
-    def plot(self, path: str | Path | None = None, **choices: Any) -> Figure:
-        """Picture of speeds, lock-up, inputs and torques; written to `path` when given. Needs matplotlib."""
+    @explained("plot")
+    def plot(self, path: str | Path | None = None, *, lockup: Event | None = None) -> Figure:
+        """Picture of speeds, lock-up, inputs and torques; written to `path` when given. Needs matplotlib.
+
+        Parameters: lockup, the event to look at closely, by default the last one in which a contact locks.
+        """
         from clutchwork.plot import picture
 
-        return picture(self, path, **choices)
+        return picture(self, path, lockup=lockup)
 
     def _chosen(self, names: Any) -> tuple[str, ...]:
         if names is None:

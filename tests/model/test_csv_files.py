@@ -54,8 +54,8 @@ def test_the_first_few_bad_cells_are_named(tmp_path):
         ("time,p\n0,0\n1,1e999\n", "is not a finite number"),
         ("time,p\n0,0\n1\n", "is empty"),
         ("time,p\n0,0\n1e-320,1e300\n", "change too fast"),
-        ("time,p\n0,0\n1\0,1\n", "no text"),
-        (b"time,p\n0,\xff\n", "no text in UTF-8"),
+        ("time,p\n0,0\n1\0,1\n", "not text"),
+        (b"time,p\n0,\xff\n", "not text in UTF-8"),
         ("time,p\n" + "1" * 2_000_000, "has a line of more than"),
         ("time,p\n0," + "1" * 200_000 + "\n", "cannot be read"),
         ("\n0,1\n", "is empty"),
@@ -99,3 +99,70 @@ def test_errors_never_tell_the_content_of_other_files(tmp_path, content, capsys)
         said = capsys.readouterr().err
         is_asked = {"p", "time"} & set(content.partition("\n")[0].split(","))
         assert "secret" not in said or ("the columns are" in said and is_asked)
+
+
+@pytest.mark.parametrize(
+    ("head", "names", "points"),
+    [
+        ("time [s],c1 [bar]", {"column": "c1"}, (2.0, 3e5)),
+        ("time [ms],c1 [bar]", {"column": "c1 [bar]"}, (0.002, 3e5)),
+        ("time [ms],c1 [kPa]", {"column": "c1", "time": "time [ms]"}, (0.002, 3e3)),
+        ("t [min],c1", {"column": "c1 [bar]", "time": "t"}, (120.0, 3e5)),
+        ("time,c1 [-]", {"column": "c1"}, (2.0, 3.0)),
+        ("time,c1 [bar],c1", {"column": "c1"}, (2.0, 3e5 / 1e5)),
+        ("time,c1 [bar]", {"column": "c1", "scale": -2.0}, (2.0, -6e5)),
+    ],
+)
+def test_heads_with_units_are_converted(tmp_path, head, names, points):
+    cells = ",".join("2333"[: head.count(",") + 1])
+    found = _column(tmp_path, f"{head}\n{cells}\n", **names).points
+    assert found == (pytest.approx(points),)
+
+
+@pytest.mark.parametrize(
+    ("head", "more", "words"),
+    [
+        ("time,c1 [baar]", {}, "has the unknown unit 'baar'; did you mean 'bar'?; write one such as [bar]"),
+        ("time,c1 [degC]", {}, "whose zero is another; give it in [K]"),
+        ("time [bar],c1", {}, "is in a unit that does not fit; give it in [s]"),
+        ("time,c1 [bar],c1 [kPa]", {}, "has 2 columns 'c1'; name one of them: c1 [bar], c1 [kPa]"),
+        ("time,c1 [bar]", {"scale": 1e5}, "repeats the unit of column 'c1 [bar]' of 'p.csv'; leave out scale"),
+        ("time,c1 [bar]", {"column": "c1 [kPa]"}, "has no column 'c1 [kPa]'; the columns are time, c1 [bar]"),
+    ],
+)
+def test_units_of_heads_that_are_refused(tmp_path, head, more, words):
+    found = _column(
+        tmp_path, head + "\n1,2,3\n"[: 2 * head.count(",") + 3] + "\n", **{"column": "c1", **more}
+    ).problems()
+    assert any(words in f"{message}; {remedy}" for _, message, remedy in found)
+
+
+def _braked(torque):
+    d = cw.Driveline()
+    d.add(cw.Torque("t", shaft=d.shaft("a", inertia=1.0), torque=torque))
+    return d
+
+
+def test_the_driven_quantity_decides_which_unit_fits(tmp_path):
+    assert _braked(_column(tmp_path, "time,p [kNm]\n0,2\n")).check() == []
+    (problem,) = _braked(_column(tmp_path, "time,p [bar]\n0,2\n")).check()
+    assert str(problem) == (
+        "cw.Torque(\"t\"): torque.column 'p [bar]' is in a unit that does not fit; give it in [N m] or [N]"
+    )
+
+
+def test_what_a_run_writes_drives_another(tmp_path):
+    _braked(3.0).simulate(1.0).to_csv(tmp_path / "run.csv")
+    run = _braked(cw.Column("run.csv", "t.torque", folder=str(tmp_path))).simulate(1.0)
+    assert run["a.speed"][-1] == pytest.approx(3.0)
+
+
+def test_a_unit_beside_that_of_the_head_is_refused(tmp_path):
+    (tmp_path / "p.csv").write_text("time,p [kNm]\n0,2\n")
+    model = tmp_path / "model.toml"
+    model.write_text(
+        '[[shaft]]\nname = "a"\ninertia = 1.0\n[[element]]\nname = "t"\ntype = "torque"\nshaft = "a"\n'
+        'torque = {type = "column", path = "p.csv", column = "p", unit = "kNm"}\n'
+    )
+    with pytest.raises(cw.ModelError, match=r"is given beside the unit \[kNm\] of the column; leave out unit"):
+        cw.Driveline.load(model)

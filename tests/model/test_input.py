@@ -49,8 +49,10 @@ def test_numbers_beyond_all_floats(tmp_path, number):
 
 
 def test_integers_too_long_to_be_read(tmp_path):
-    assert "is no TOML" in _mistakes(tmp_path, f'[[shaft]]\nname = "a"\ninertia = {"9" * 5000}\n')
-    assert "is no JSON" in _mistakes(tmp_path, '{"shaft": [{"name": "a", "inertia": ' + "9" * 5000 + "}]}", "m.json")
+    assert "is not valid TOML" in _mistakes(tmp_path, f'[[shaft]]\nname = "a"\ninertia = {"9" * 5000}\n')
+    assert "is not valid JSON" in _mistakes(
+        tmp_path, '{"shaft": [{"name": "a", "inertia": ' + "9" * 5000 + "}]}", "m.json"
+    )
 
 
 @pytest.mark.parametrize(

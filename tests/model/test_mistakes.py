@@ -57,9 +57,9 @@ CASES = {
     "unknown shaft": (
         'base = "load"',
         'base = "laod"',
-        "base = 'laod': is no shaft of this model; did you mean 'load'?",
+        "base = 'laod': is not a shaft of this model; did you mean 'load'?",
     ),
-    "port is no text": ('base = "load"', "base = 3", "base = 3: is no shaft of this model"),
+    "port is no text": ('base = "load"', "base = 3", "base = 3: is not a shaft of this model"),
     "missing port": ('base = "load"', "", 'element "c1" (clutch): base is missing; give a shaft'),
     "missing parameter": ("gain = 0.1", "", "gain is missing; give a value in [m3]: torque per unit of pressure"),
     "missing law": ('friction = {type = "coulomb", static = 0.12, kinetic = 0.1}', "", "friction is missing"),
@@ -69,7 +69,7 @@ CASES = {
         "give pressure or normal_force",
     ),
     "pressure and force": ("gain = 0.1", "gain = 0.1\nnormal_force = 3.0", "normal_force is given beside 'pressure'"),
-    "text for a number": ("gain = 0.1", 'gain = "big"', "gain = 'big': is no number; write a number in [m3]"),
+    "text for a number": ("gain = 0.1", 'gain = "big"', "gain = 'big': is not a number; write a number in [m3]"),
     "number in quotes": (
         "gain = 0.1",
         'gain = "0.1"',
@@ -158,8 +158,12 @@ CASES = {
         'name = "x"\nformat = 2',
         "file: format = 2: is not known; this version reads format 1",
     ),
-    "no toml": ('name = "two discs"', "name = two discs", "is no TOML: Invalid value (at line 2, column 8)"),
-    "key twice": ("gain = 0.1", "gain = 0.1\ngain = 0.2", "is no TOML: Cannot overwrite a value"),
+    "no toml": (
+        'name = "two discs"',
+        "name = two discs",
+        "is not valid TOML: Invalid value (at line 2, column 8); fix line 2, column 8",
+    ),
+    "key twice": ("gain = 0.1", "gain = 0.1\ngain = 0.2", "is not valid TOML: Cannot overwrite a value"),
 }
 
 
@@ -205,7 +209,7 @@ def test_json_has_the_same_checks(tmp_path):
     text = '{"shaft": [{"name": "a", "inertia": 1, "inertia": 2}]}'
     assert "key 'inertia' stands twice" in _mistakes(tmp_path, text, "model.json")[0]
     text = '{"shaft": [{"name": "a", "inertia": NaN}]}'
-    assert "NaN is no number of a model file" in _mistakes(tmp_path, text, "model.json")[0]
+    assert "NaN is not a number of a model file" in _mistakes(tmp_path, text, "model.json")[0]
     text = '{"shaft": [{"name": "a", "inertia": "1"}]}'
     assert "is a text without unit" in _mistakes(tmp_path, text, "model.json")[0]
     assert "file: must be a table" in _mistakes(tmp_path, "[1, 2]", "model.json")[0]
@@ -275,7 +279,7 @@ def test_shaft_joined_to_a_mass():
 
 
 def test_what_is_no_element():
-    with pytest.raises(TypeError, match="is no element; add one such as"):
+    with pytest.raises(TypeError, match="is not an element; add one such as"):
         cw.Driveline().add("clutch")
 
 

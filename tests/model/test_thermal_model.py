@@ -230,10 +230,14 @@ FILE_MISTAKES = {
         "capacity = 500.0\nmass = 1.0",
         'thermal "plates": mass is not known here',
     ),
-    "unknown node": ('heat = "plates"', 'heat = "plate"', "is no thermal node of this model; did you mean 'plates'?"),
-    "shaft as thermal node": ('heat = "plates"', 'heat = "a"', "heat = 'a': is no thermal node of this model"),
-    "thermal node as shaft": ('shaft = "a"', 'shaft = "plates"', "shaft = 'plates': is no shaft of this model"),
-    "unknown part": ('"disc.surface"', '"disc.middle"', "cold = 'disc.middle': is no thermal node of this model"),
+    "unknown node": (
+        'heat = "plates"',
+        'heat = "plate"',
+        "is not a thermal node of this model; did you mean 'plates'?",
+    ),
+    "shaft as thermal node": ('heat = "plates"', 'heat = "a"', "heat = 'a': is not a thermal node of this model"),
+    "thermal node as shaft": ('shaft = "a"', 'shaft = "plates"', "shaft = 'plates': is not a shaft of this model"),
+    "unknown part": ('"disc.surface"', '"disc.middle"', "cold = 'disc.middle': is not a thermal node of this model"),
     "unknown element": ('of = "b1"', 'of = "b2"', "speed = 'b2': is not known; did you mean 'b1'?"),
 }
 

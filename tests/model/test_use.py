@@ -55,7 +55,7 @@ def test_a_wrong_keyword_of_a_constructor(cls):
             with pytest.raises(cw.UseError) as caught:
                 cls(*args, **given)
             (problem,) = caught.value.problems
-            assert f"{wrong} is not known here; did you mean {item.name!r}?" in problem
+            assert f"unknown field {wrong!r}; did you mean {item.name!r}?" in problem
             assert str(caught.value).startswith(f"cw.{cls.__name__}(")
 
 
@@ -81,7 +81,7 @@ def test_values_by_place_are_told_their_keywords(cls):
     needed = [item.name for item, _ in specs(cls) if item.default is MISSING and item.name not in by_place]
     with pytest.raises(cw.UseError) as caught:
         cls(*values, 1.0)
-    (problem,) = [words for words in caught.value.problems if "by place" in words]
+    (problem,) = [words for words in caught.value.problems if "positional" in words]
     assert all(word in problem for word in by_place)
     if needed:
         assert f"such as {needed[0]}=..." in problem
@@ -93,9 +93,9 @@ def test_all_mistakes_of_a_call_come_at_once():
         cw.Clutch("c", gian=1.0, pressures=2.0, nonsense=3.0)
     words = [problem.split(";")[0] for problem in caught.value.problems]
     assert words == [
-        "gian is not known here",
-        "pressures is not known here",
-        "nonsense is not known here",
+        "unknown field 'gian'",
+        "unknown field 'pressures'",
+        "unknown field 'nonsense'",
         "base is missing",
         "follower is missing",
         "friction is missing",
@@ -107,30 +107,30 @@ def test_all_mistakes_of_a_call_come_at_once():
 def test_shafts_and_masses():
     d = cw.Driveline()
     for call, words in (
-        (lambda: d.shaft("a", inertai=1.0), "inertai is not known here; did you mean 'inertia'?"),
+        (lambda: d.shaft("a", inertai=1.0), "unknown field 'inertai'; did you mean 'inertia'?"),
         (
             lambda: d.shaft("a", 0.2),
-            "1 value is given by place, only name may be; give the others by keyword, such as inertia",
+            "1 value is positional, only name may be; give the others by keyword, such as inertia",
         ),
-        (lambda: d.shaft("a", mass=0.2), "mass is not known here; known are name, inertia, speed, angle"),
+        (lambda: d.shaft("a", mass=0.2), "unknown field 'mass'; allowed: name, inertia, speed, angle"),
         (lambda: d.shaft(), "name is missing"),
-        (lambda: d.mass("m", inertia=1.0), "known are name, mass, speed, position"),
+        (lambda: d.mass("m", inertia=1.0), "allowed: name, mass, speed, position"),
         (lambda: d.thermal("t"), "capacity is missing"),
         (lambda: d.ambient("t", temperatures=1.0), "did you mean 'temperature'?"),
         (lambda: d.assemble(independents=()), "did you mean 'independent'?"),
         (lambda: d.shaft("a", name="b"), "name is given twice"),
-        (lambda: d.add("clutch"), "is no element; add one such as cw.Clutch"),
-        (lambda: d.add_node("a"), "is no shaft or mass"),
-        (lambda: d.add_thermal("a"), "is no thermal node"),
+        (lambda: d.add("clutch"), "is not an element; add one such as cw.Clutch"),
+        (lambda: d.add_node("a"), "is not a shaft or mass"),
+        (lambda: d.add_thermal("a"), "is not a thermal node"),
         (lambda: d.simulate(), "t_end is missing"),
         (lambda: cw.Driveline(names="x"), "cw.Driveline(): 1 problem"),
         (lambda: cw.Driveline("a", "b"), "only name may be"),
         (lambda: cw.Driveline.load(), "path is missing; give path=..."),
-        (lambda: cw.Driveline.load(3), "3 is no path; give the name of a TOML or JSON file"),
+        (lambda: cw.Driveline.load(3), "3 is not a path; give the name of a TOML or JSON file"),
         (lambda: cw.Node("a", inertai=1.0), "did you mean 'inertia'?"),
-        (lambda: cw.HeatFlow(element=1.0), "element is not known here; known are of"),
+        (lambda: cw.HeatFlow(element=1.0), "unknown field 'element'; allowed: of"),
         (lambda: cw.simulate(d, 1.0, options=1e-6), "options is 1e-06: it must be cw.Options(...)"),
-        (lambda: d.simulate(1.0, 1e-6), "by place, only t_end may be"),
+        (lambda: d.simulate(1.0, 1e-6), "positional, only t_end may be"),
     ):
         with pytest.raises(cw.UseError) as caught:
             call()
@@ -187,12 +187,12 @@ def test_options():
 
 def test_what_is_no_model(tmp_path):
     with pytest.raises(
-        cw.UseError, match=r"'model\.toml' is no model; a file is read by cw\.Driveline\.load\('model\.toml'\)"
+        cw.UseError, match=r"'model\.toml' is not a model; a file is read by cw\.Driveline\.load\('model\.toml'\)"
     ):
         cw.simulate("model.toml", 2)
     with pytest.raises(cw.UseError, match=r"Driveline\.load"):
         cw.simulate(tmp_path, 2)
-    with pytest.raises(cw.UseError, match="is no model; give a Driveline or a System"):
+    with pytest.raises(cw.UseError, match="is not a model; give a Driveline or a System"):
         cw.simulate(3.0, 2)
     with pytest.raises(cw.UseError, match="t_end is missing"):
         cw.simulate(_driveline())
@@ -206,7 +206,7 @@ def test_a_function_as_signal():
 
 def test_plots():
     run = _driveline().simulate(0.1)
-    with pytest.raises(cw.UseError, match="lokup is not known here; did you mean 'lockup'"):
+    with pytest.raises(cw.UseError, match="unknown field 'lokup'; did you mean 'lockup'"):
         run.plot(lokup=None)
     with pytest.raises(cw.UseError, match="lockup is 'c1': it must be an event"):
         run.plot(lockup="c1")
@@ -328,7 +328,7 @@ def test_every_temperature_of_the_registry_is_watched(cls, name):
         d = samples.driveline(cls)
         d._elements[0] = replace(d.elements[0], **{name: _celsius(getattr(d.elements[0], name) or 300.0)})
     found = _warned(d)
-    assert any(f"{name} " in words and "too cold to be meant" in words for words in found)
+    assert any(f"{name} " in words and "implausibly low" in words for words in found)
 
 
 @pytest.mark.parametrize("cls", [*samples.declared(*samples.ELEMENT_ROLES), *REGISTRY[Role.LAW].values()], ids=_name)
@@ -339,7 +339,7 @@ def test_temperatures_in_kelvin_are_not_warned_of(cls):
         d.add(cw.Brake("b", shaft=shaft, friction=samples.law(cls), gain=1.0, pressure=1.0, heat=lining))
     else:
         d = samples.driveline(cls)
-    assert not any("too cold" in words for words in _warned(d))
+    assert not any("implausibly low" in words for words in _warned(d))
 
 
 def test_temperatures_of_thermal_nodes():
@@ -350,7 +350,10 @@ def test_temperatures_of_thermal_nodes():
     d.ambient("oil", temperature=cw.Table([(0.0, 300.0), (1.0, 80.0)]))
     found = _warned(d)
     assert [words.partition(":")[0] for words in found] == ['thermal "plates"', 'ambient "air"', 'ambient "oil"']
-    assert "temperature = 20 K: is too cold to be meant; temperatures are in K; 20 degC would be 293.15 K" in found[0]
+    assert (
+        "temperature = 20 K: is implausibly low; temperatures are in kelvin; did you mean 293.15 K (20 degC)?"
+        in found[0]
+    )
     assert "temperature reaches down to 80 K" in found[2]
     with pytest.warns(cw.ModelWarning):
         assert len(d.assemble().warnings) == 3
@@ -361,3 +364,25 @@ def test_degrees_celsius_as_unit():
         data = {"shaft": [{"name": "a", "inertia": 1.0}], "ambient": [{"name": "air", "temperature": text}]}
         with pytest.raises(cw.ModelError, match=r"temperatures are in K; 0 degC is 273.15 K"):
             cw.Driveline.from_dict(data)
+
+
+def test_tables_are_pairs_in_a_table():
+    with pytest.raises(cw.UseError, match=r"write pairs: cw\.Table\(\[\(0, 0\), \(1, 2e5\)\]\)"):
+        cw.Table([0, 1], [0, 2e5])
+    d = cw.Driveline()
+    d.add(cw.Torque("t", shaft=d.shaft("a", inertia=1.0), torque=[(0, 0), (1, 2e5)]))
+    assert "wrap it: cw.Table([...])" in str(d.check()[0])
+
+
+def test_a_shaft_of_another_driveline_is_not_its_own_near_match():
+    d, other = cw.Driveline(), cw.Driveline()
+    d.shaft("engine", inertia=1.0)
+    d.add(cw.Torque("t", shaft=other.shaft("engine", inertia=1.0), torque=1.0))
+    assert any("is of another driveline" in str(p) and "did you mean" not in str(p) for p in d.check())
+
+
+def test_a_controller_that_returns_nothing_is_told_so():
+    d = cw.Driveline()
+    d.add(cw.Torque("t", shaft=d.shaft("a", inertia=1.0), torque=cw.Sampled(lambda *_: None, 0.1)))
+    with pytest.raises(cw.SimulationError, match="returned None at 0 s: return a finite number"):
+        d.simulate(1.0)

@@ -29,7 +29,7 @@ def add_command(subparsers: Any) -> None:
     export.add_argument("--method", choices=sorted(METHODS), help="default rodas5p")
     export.add_argument("--max-step", type=float, metavar="S", help="longest step of the solver [s]")
     export.add_argument("--signals", metavar="A,B", help="signals that are printed; default: all")
-    export.add_argument("--json", action="store_true", help="tell the result as JSON on standard output")
+    export.add_argument("--json", action="store_true", help="print the result as JSON on standard output")
 
 
 def export_command(asked: argparse.Namespace) -> int:

@@ -51,7 +51,7 @@ def add_command(subparsers: Any) -> None:
     fit.add_argument("--rest", type=float, metavar="SLIP", help="abs(slip) below which a sample counts as at rest")
     fit.add_argument("--confidence", type=float, default=0.95, help="of the intervals, default 0.95")
     fit.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "fit"), help="default: out/fit")
-    fit.add_argument("--json", action="store_true", help="tell the results as JSON on standard output")
+    fit.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
 
 
 def fit_command(asked: argparse.Namespace) -> int:

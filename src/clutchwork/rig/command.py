@@ -28,13 +28,13 @@ def add_command(subparsers: Any) -> None:
         epilog="Exit code 1: a run stopped early, other than by the chatter of a law that cannot rest.",
     )
     rig.set_defaults(command=rig_command)
-    rig.add_argument("experiment", help="drift, stick_slip, judder ...; all; list tells experiments, laws and presets")
+    rig.add_argument("experiment", help="drift, stick_slip, judder ...; all; list prints experiments, laws and presets")
     rig.add_argument("--laws", metavar="A,B", help="laws to compare, or all; default: those of the experiment")
     rig.add_argument("--preset", metavar="NAME", help="where the laws take their parameters from")
     rig.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a setting")
     rig.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "rig"), help="default: out/rig")
     rig.add_argument("--signals", action="store_true", help="write all signals of every run too")
-    rig.add_argument("--json", action="store_true", help="tell the results as JSON on standard output")
+    rig.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
 
 
 def rig_command(asked: argparse.Namespace) -> int:

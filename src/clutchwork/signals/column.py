@@ -17,28 +17,32 @@ from clutchwork.signals.table import pieces
 class Column(Signal):
     """Measured or prepared values: one column of a CSV file, linear over its time column, held outside.
 
-    The first line of the file names the columns; the separator is a comma. Equal times make a jump.
+    The first line of the file names the columns; the separator is a comma. Equal times make a jump. Values below a head
+    with a unit, such as `c1 [bar]`, are converted to SI, and so are times; it must fit the driven quantity. A name
+    without its unit finds that column too. Without a unit they are in SI.
     In a model file the path is relative to that file. A file that cannot be used raises `FileError`.
     """
 
     path: str = text("path of the CSV file", kw_only=False)
     column: str = text("name of the column with the values", kw_only=False)
-    time: str = text("name of the column with the times [s]", default="time", kw_only=False)
-    scale: float = param("1", "factor on the values, 1e5 for a file in bar", default=1.0)
+    time: str = text("name of the column with the times", default="time", kw_only=False)
+    scale: float = param(
+        "1", "factor on the values in SI; 1e5 for values in bar below a head without unit", default=1.0
+    )
     folder: str = field(default="", kw_only=True, repr=False, compare=False)
 
     @cached_property
-    def _table(self) -> Any:
-        """Times and values as read from the file, a row each."""
+    def _read(self) -> Any:
+        """Times and values of the file in SI, a row each, and the head of the column."""
         # numpy is no need of the build, which imports this declaration
         from clutchwork.column_file import Wanted, read
 
-        return read(Path(self.folder, self.path), Wanted(self.path, self.time, self.column), self.scale)
+        return read(Path(self.folder, self.path), Wanted(self.path, self.time, self.column, self.scale))
 
     @cached_property
     def points(self) -> tuple[tuple[float, float], ...]:
-        """(time, value) pairs as read from the file."""
-        return tuple(map(tuple, self._table.tolist()))
+        """(time, value) pairs of the file, in SI."""
+        return tuple(map(tuple, self._read.table.tolist()))
 
     @cached_property
     def _pieces(self) -> tuple[Segment, ...]:
@@ -47,10 +51,30 @@ class Column(Signal):
     def problems(self) -> list[tuple[str, str, str]]:
         """What is wrong with the file, as (quantity, what is wrong, remedy)."""
         try:
-            _ = self._table
+            _ = self._read
         except FileError as error:
             return error.problems
         return []
+
+    def unit_problems(self, units: tuple[str, ...]) -> list[tuple[str, str, str]]:
+        """A head whose unit fits none of those that the driven quantity may have."""
+        from clutchwork.quantity import QuantityError
+
+        try:
+            _ = self._read.head.factor(units)
+        except FileError:
+            # its mistakes are reported as those of the file
+            return []
+        except QuantityError as bad:
+            return [("column", f"{bad.value} {bad.message}", bad.remedy)]
+        return []
+
+    def unit(self) -> str:
+        """The unit that the head of the column says; empty where it says none, or the file cannot be used."""
+        try:
+            return str(self._read.head.unit)
+        except FileError:
+            return ""
 
     def segments(self) -> tuple[Segment, ...]:
         """One linear piece between every two times, constant ones outside."""
