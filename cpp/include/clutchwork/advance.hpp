@@ -50,6 +50,7 @@ bool start(Workspace<T>& ws) {
     ws.compliant[c] = is_compliant_law(sys.contact_law[c]);
     ws.fault[c] = sound;
     ws.forced[c] = ws.loaded[c] = ws.pressed[c] = 0;
+    ws.turned_at[c] = -infinity;
     const double slip = value(rate_of(ws, int(sys.elements) + c));
     ws.mode[c] = abs(slip) <= slip_tolerance(ws) ? open : slip > 0 ? forward : backward;
     ws.mode_before[c] = ws.mode[c];

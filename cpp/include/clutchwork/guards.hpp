@@ -13,7 +13,7 @@ struct Hit {
   int who = -1;    ///< what of a law leaves its piece
 };
 
-/// Round-off of a load over its largest size: a load that dips below zero by less does not open its contact.
+/// Round-off of a load over its largest size: a load that has passed zero passes it again only from farther away.
 inline constexpr double load_noise = 1e-11;
 
 /// Whether a zero at s comes before what has been found.
@@ -410,7 +410,12 @@ void find_load(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
   for (int i = 0; i < ws.n_watch; ++i) {
     const int c = ws.watch[i];
-    const double sign = ws.pressed[c] ? 1.0 : -1.0, noise = load_noise * ws.load_size[c];
+    const double sign = ws.pressed[c] ? 1.0 : -1.0;
+    // where it has just passed zero it must leave it before it passes again
+    inputs_in(form, step, 0.0);
+    const double least = load_noise * ws.load_size[c];
+    const bool grazes = step.t - ws.turned_at[c] <= 1e-3 && abs(value(load_of(ws, c))) <= least;
+    const double noise = grazes ? least : 0.0;
     auto f = [&](double s) {
       inputs_in(form, step, s);
       return sign * value(load_of(ws, c)) + noise;

@@ -633,6 +633,7 @@ class Phase {
         ws_.located = hit.index;
         ws_.cause = Cause::input;
         ws_.pressed[hit.index] = !ws_.pressed[hit.index];
+        ws_.turned_at[hit.index] = ws_.time;
         ws_.loaded[hit.index] = is_closed(ws_, hit.index);
     }
   }

@@ -152,6 +152,7 @@ struct Workspace {
   Edge<T> here{}, there{};
   T *torque = nullptr, *output_torque = nullptr, *slip_slope = nullptr, *torque_before = nullptr;
   double* load_size = nullptr;  ///< largest size that the load of a watched contact may have, 0: not known
+  double* turned_at = nullptr;  ///< [s] when the load of a contact passed zero last
   int *watch = nullptr, *mode_before = nullptr, *impulse = nullptr;
   int *switching = nullptr, *chattering = nullptr;  ///< branches with laws that switch, or that jump with the slip
   int* bounded = nullptr;                           ///< branches whose laws can be left
@@ -263,7 +264,8 @@ void lay_out(W& ws, A& a) {
     a.take(e->capacity, nc), a.take(e->swing, nc), a.take(e->noise, nc), a.take(e->room, nc);
   }
   a.take(ws.torque, nd), a.take(ws.output_torque, nd), a.scratch(ws.power, 4 * (nd + np));
-  a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.keep(ws.watch, nc, 0, nc - 1), a.take(ws.load_size, nc);
+  a.take(ws.slip_slope, nc), a.take(ws.torque_before, nc), a.keep(ws.watch, nc, 0, nc - 1), a.take(ws.load_size, nc),
+      a.take(ws.turned_at, nc);
   a.keep(ws.mode_before, nc, backward, open), a.keep(ws.impulse, nc, 0, 1);
   a.take(ws.sp_first, nd + 1), a.take(ws.sp_col, nd * nv), a.take(ws.sp_val, nd * nv);
   a.take(ws.m_first, nv + 1), a.take(ws.m_col, nv * nv), a.take(ws.m_val, nv * nv);
