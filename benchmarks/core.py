@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.timing import cpu
 from clutchwork import _core
-from clutchwork.layout import STATUS
+from clutchwork.declare.layout import STATUS
 
 METHODS = {"rodas5p": 1.0, "dopri5": 2.0}
 EMPTY = np.zeros(0)

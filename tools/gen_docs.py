@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import clutchwork  # noqa: F401  importing the package fills the registry
-from clutchwork.schema import REGISTRY, Role, Spec, State, specs
+from clutchwork.declare.schema import REGISTRY, Role, Spec, State, specs
 
 
 class Page(NamedTuple):

@@ -40,11 +40,11 @@ def load(root: Path) -> tuple[Any, Any]:
     package = types.ModuleType("clutchwork")
     package.__path__ = [str(root / "src/clutchwork")]
     sys.modules["clutchwork"] = package
-    schema = importlib.import_module("clutchwork.schema")
+    schema = importlib.import_module("clutchwork.declare.schema")
     for folder in ("elements", "laws"):
         for path in sorted((root / "src/clutchwork" / folder).glob("[!_]*.py")):
             importlib.import_module(f"clutchwork.{folder}.{path.stem}")
-    return schema, importlib.import_module("clutchwork.layout")
+    return schema, importlib.import_module("clutchwork.declare.layout")
 
 
 def unpaired(root: Path, schema: Any) -> Iterator[str]:

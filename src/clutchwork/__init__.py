@@ -20,31 +20,33 @@ from typing import TYPE_CHECKING, Any
 from clutchwork import elements as elements
 from clutchwork import laws as laws
 from clutchwork import signals as signals
-from clutchwork.calls import explain
-from clutchwork.driveline import Driveline as Driveline
-from clutchwork.errors import ClutchworkError as ClutchworkError
-from clutchwork.errors import ModelError as ModelError
-from clutchwork.errors import ModelWarning as ModelWarning
-from clutchwork.errors import OptionError as OptionError
-from clutchwork.errors import Problem as Problem
-from clutchwork.errors import UnknownName as UnknownName
-from clutchwork.errors import UseError as UseError
-from clutchwork.errors import near
-from clutchwork.layout import layout_text
-from clutchwork.node import Domain as Domain
-from clutchwork.node import HeatFlow as HeatFlow
-from clutchwork.node import Law as Law
-from clutchwork.node import Node as Node
-from clutchwork.node import Rate as Rate
-from clutchwork.node import Signal as Signal
-from clutchwork.node import ThermalNode as ThermalNode
-from clutchwork.schema import REGISTRY, schema_hash
+from clutchwork.base.errors import ClutchworkError as ClutchworkError
+from clutchwork.base.errors import ModelError as ModelError
+from clutchwork.base.errors import ModelWarning as ModelWarning
+from clutchwork.base.errors import OptionError as OptionError
+from clutchwork.base.errors import Problem as Problem
+from clutchwork.base.errors import UnknownName as UnknownName
+from clutchwork.base.errors import UseError as UseError
+from clutchwork.base.errors import near
+from clutchwork.declare.calls import explain
+from clutchwork.declare.core import core
+from clutchwork.declare.node import Domain as Domain
+from clutchwork.declare.node import HeatFlow as HeatFlow
+from clutchwork.declare.node import Law as Law
+from clutchwork.declare.node import Node as Node
+from clutchwork.declare.node import Rate as Rate
+from clutchwork.declare.node import Signal as Signal
+from clutchwork.declare.node import ThermalNode as ThermalNode
+from clutchwork.declare.schema import REGISTRY
+from clutchwork.face.driveline import Driveline as Driveline
 
 if TYPE_CHECKING:
     # what type checkers and editors shall know by name; at run time the registry decides
     from clutchwork import fit as fit
     from clutchwork import rig as rig
+    from clutchwork.assembly.system import System as System
     from clutchwork.codegen import export_c as export_c
+    from clutchwork.declare.options import Options as Options
     from clutchwork.elements.band_brake import BandBrake as BandBrake
     from clutchwork.elements.bearing_friction import BearingFriction as BearingFriction
     from clutchwork.elements.brake import Brake as Brake
@@ -83,10 +85,6 @@ if TYPE_CHECKING:
     from clutchwork.elements.torque_limiter import TorqueLimiter as TorqueLimiter
     from clutchwork.elements.wear import Wear as Wear
     from clutchwork.elements.wet_drag import WetDrag as WetDrag
-    from clutchwork.failure import FaultWarning as FaultWarning
-    from clutchwork.failure import Interrupted as Interrupted
-    from clutchwork.failure import SimulationError as SimulationError
-    from clutchwork.failure import StoppedEarly as StoppedEarly
     from clutchwork.laws.coefficient_table import CoefficientTable as CoefficientTable
     from clutchwork.laws.coulomb import Coulomb as Coulomb
     from clutchwork.laws.dahl import Dahl as Dahl
@@ -104,7 +102,12 @@ if TYPE_CHECKING:
     from clutchwork.laws.stribeck import Stribeck as Stribeck
     from clutchwork.laws.tanh import Tanh as Tanh
     from clutchwork.laws.temperature_table import TemperatureTable as TemperatureTable
-    from clutchwork.options import Options as Options
+    from clutchwork.results.trajectory import SimulationError as SimulationError
+    from clutchwork.results.trajectory import Trajectory as Trajectory
+    from clutchwork.run.failure import FaultWarning as FaultWarning
+    from clutchwork.run.failure import Interrupted as Interrupted
+    from clutchwork.run.failure import StoppedEarly as StoppedEarly
+    from clutchwork.run.simulation import simulate as simulate
     from clutchwork.signals.column import Column as Column
     from clutchwork.signals.constant import Constant as Constant
     from clutchwork.signals.pulse import Pulse as Pulse
@@ -113,23 +116,20 @@ if TYPE_CHECKING:
     from clutchwork.signals.sine import Sine as Sine
     from clutchwork.signals.step import Step as Step
     from clutchwork.signals.table import Table as Table
-    from clutchwork.simulation import simulate as simulate
-    from clutchwork.system import System as System
-    from clutchwork.trajectory import Trajectory as Trajectory
 
 __version__ = "0.1.0"
 
 # names that are loaded when they are first used, with their module
 _LAZY = {
-    "FaultWarning": "failure",
-    "Interrupted": "failure",
-    "Options": "options",
-    "SimulationError": "failure",
-    "StoppedEarly": "failure",
-    "System": "system",
-    "Trajectory": "trajectory",
+    "FaultWarning": "run.failure",
+    "Interrupted": "run.failure",
+    "Options": "declare.options",
+    "SimulationError": "results.trajectory",
+    "StoppedEarly": "run.failure",
+    "System": "assembly.system",
+    "Trajectory": "results.trajectory",
     "export_c": "codegen",
-    "simulate": "simulation",
+    "simulate": "run.simulation",
 }
 
 # packages that are imported when they are first used
@@ -174,15 +174,5 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
 
 
-def _refuse_stale_core() -> None:
-    """Stop with the remedy when the compiled core is missing or was built from other declarations."""
-    remedy = "build it in the project folder: make setup, or pip install -e ."
-    try:
-        from clutchwork import _core
-    except ImportError as error:
-        raise ImportError(f"the compiled core of clutchwork cannot be loaded ({error}); {remedy}") from error
-    if _core.schema_hash() != schema_hash(layout_text()):
-        raise ImportError(f"the compiled core of clutchwork was built from other declarations; {remedy}")
-
-
-_refuse_stale_core()
+# a package whose core is missing or stale refuses to be imported
+core()

@@ -2,6 +2,6 @@
 
 import sys
 
-from clutchwork.cli import main
+from clutchwork.command.main import main
 
 sys.exit(main())

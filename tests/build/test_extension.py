@@ -12,8 +12,8 @@ ELEMENT = '''"""Damper whose torque grows with the cube of the rate."""
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Node
-from clutchwork.schema import Role, component, param, port
+from clutchwork.declare.node import Component, Node
+from clutchwork.declare.schema import Role, component, param, port
 
 
 @component(Role.TORQUE)
@@ -56,8 +56,8 @@ LAW = '''"""Kinetic coefficient that falls hyperbolically."""
 
 from __future__ import annotations
 
-from clutchwork.node import Law
-from clutchwork.schema import Role, component, param
+from clutchwork.declare.node import Law
+from clutchwork.declare.schema import Role, component, param
 
 
 @component(Role.LAW)

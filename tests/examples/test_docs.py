@@ -84,7 +84,7 @@ def test_the_model_files_of_the_guide(elsewhere: Path) -> None:
 
 
 def test_every_status_is_explained() -> None:
-    from clutchwork.layout import STATUS
+    from clutchwork.declare.layout import STATUS
 
     page = (ROOT / "docs" / "guide" / "results.md").read_text(encoding="utf-8")
     internal = {"done", "rows_full", "events_full", "no_mode", "bad_system"}
@@ -92,7 +92,7 @@ def test_every_status_is_explained() -> None:
 
 
 def test_every_cause_is_explained() -> None:
-    from clutchwork.events import CAUSES
+    from clutchwork.results.events import CAUSES
 
     page = (ROOT / "docs" / "guide" / "results.md").read_text(encoding="utf-8")
     # a code that no event has
@@ -102,7 +102,7 @@ def test_every_cause_is_explained() -> None:
 def test_every_option_is_explained() -> None:
     from dataclasses import fields
 
-    from clutchwork.options import Options
+    from clutchwork.declare.options import Options
 
     page = (ROOT / "docs" / "guide" / "start.md").read_text(encoding="utf-8")
     assert [item.name for item in fields(Options) if f"`{item.name}`" not in page] == []

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from clutchwork.cli import main
+from clutchwork.command.main import main
 from clutchwork.fit import fit_csv
 from clutchwork.fit.command import law_from_text
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.errors import FileError
+from clutchwork.base.errors import FileError
 from clutchwork.fit import FitError, fit_csv, fit_law
 from support import rig_data
 

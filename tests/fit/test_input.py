@@ -12,8 +12,8 @@ import pytest
 
 import clutchwork as cw
 import clutchwork.fit.temperature
+from clutchwork.declare.schema import Spec
 from clutchwork.fit import FitError, fit_law
-from clutchwork.schema import Spec
 from support import rig_data
 
 LAW = cw.Stribeck(static=0.15, kinetic=0.1, speed=2.0)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
+from clutchwork.declare.schema import Role
 from clutchwork.fit import fit_law
 from clutchwork.fit.adjustable import default_free
 from clutchwork.fit.ordinates import ordinates
-from clutchwork.schema import Role
 from support import rig_data, samples
 
 # so rarely does a right interval miss: 1 in 1000, over some 80 parameters with fixed noise

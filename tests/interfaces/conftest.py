@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from clutchwork.failure import DONE, EVENTS_FULL, ROWS_FULL
-from clutchwork.layout import EVENT
+from clutchwork.declare.layout import EVENT
+from clutchwork.declare.status import DONE, EVENTS_FULL, ROWS_FULL
 
 
 class FakeRun:

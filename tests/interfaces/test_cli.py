@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from clutchwork.cli import main
+from clutchwork.command.main import main
 
 MODEL = """
 name = "two discs"

@@ -13,7 +13,7 @@ import pytest
 from tests.support import random_drivelines, samples
 
 import clutchwork as cw
-from clutchwork.schema import REGISTRY, Role
+from clutchwork.declare.schema import REGISTRY, Role
 
 COPIES = {
     **{f"pickle {p}": lambda thing, p=p: pickle.loads(pickle.dumps(thing, p)) for p in range(2, 6)},

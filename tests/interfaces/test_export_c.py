@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.channels import Channels
-from clutchwork.cli import main
-from clutchwork.simulation import new_run
-from clutchwork.wiring import wiring
+from clutchwork.assembly.wiring import wiring
+from clutchwork.command.main import main
+from clutchwork.results.channels import Channels
+from clutchwork.run.simulation import new_run
 
 feature = pytest.mark.feature
 

@@ -132,7 +132,7 @@ dt = 0.05
 """)
     code = """
 import sys
-from clutchwork.cli import main
+from clutchwork.command.main import main
 print("ready", flush=True)
 sys.exit(main(sys.argv[1:]))
 """
@@ -224,7 +224,7 @@ def test_an_interrupt_between_two_calls_of_the_core_keeps_the_trajectory():
 
 
 def test_an_interrupt_while_the_output_is_refined_keeps_the_whole_run(monkeypatch):
-    from clutchwork import simulation
+    from clutchwork.run import simulation
 
     passes, plain = [], simulation.record
 

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from clutchwork import record as module
-from clutchwork.control import Control, Controller
-from clutchwork.failure import DONE, INTERRUPTED, SimulationError
-from clutchwork.record import Recording, record
-from clutchwork.simulation import refined
+from clutchwork.declare.status import DONE, INTERRUPTED
+from clutchwork.results.trajectory import SimulationError
+from clutchwork.run import record as module
+from clutchwork.run.control import Control, Controller
+from clutchwork.run.record import Recording, record
+from clutchwork.run.simulation import refined
 
 Make = Callable[..., Any]
 

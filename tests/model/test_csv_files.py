@@ -7,8 +7,8 @@ import os
 import pytest
 
 import clutchwork as cw
-from clutchwork import column_file
-from clutchwork.cli import main
+from clutchwork.command.main import main
+from clutchwork.signals.bases import column_file
 
 
 def _column(tmp_path, text, **more):

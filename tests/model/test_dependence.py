@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import clutchwork as cw
-from clutchwork.dependence import dependent_sets
+from clutchwork.assembly.dependence import dependent_sets
 
 ONE = cw.Coulomb(static=1.0, kinetic=1.0)
 
@@ -22,7 +22,7 @@ def test_parallel_clutches_and_a_ring_are_sets_and_a_chain_is_none() -> None:
     d.add(clutch("alone", d.housing, d.shaft("f", inertia=1.0)))
     system = d.assemble()
     assert system.dependent == (("p", "q"), ("r", "s", "t"))
-    assert dependent_sets(system, ["p", "r", "s", "alone"]) == ()
+    assert dependent_sets([c.name for c in system.contacts], system.contact_rate, ["p", "r", "s", "alone"]) == ()
 
 
 def test_what_prescribed_speeds_move_alone_shares_nothing() -> None:
@@ -31,7 +31,7 @@ def test_what_prescribed_speeds_move_alone_shares_nothing() -> None:
     d.add(cw.PrescribedSpeed("m", shaft=a, speed=0.0))
     for name in ("p", "q"):
         d.add(clutch(name, d.housing, a))
-    assert dependent_sets(d.assemble()) == ()
+    assert d.assemble().dependent == ()
 
 
 def test_a_run_tells_from_when_to_when() -> None:

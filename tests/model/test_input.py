@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork import model_file
-from clutchwork.cli import main
-from clutchwork.errors import MOST_LINES, ModelFileError, near
-from clutchwork.options import MOST_ROWS, Options
-from clutchwork.shown import MOST_NAMES, listed, printable, shortened, shown
+from clutchwork.base.errors import MOST_LINES, ModelFileError, near
+from clutchwork.base.shown import MOST_NAMES, listed, printable, shortened, shown
+from clutchwork.command.main import main
+from clutchwork.declare.options import MOST_ROWS, Options
+from clutchwork.files import model_file
 from support import samples
 from support.fuzz import mutate
 

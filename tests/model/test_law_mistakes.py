@@ -8,8 +8,8 @@ import warnings
 import pytest
 
 import clutchwork as cw
-from clutchwork.checks import component_problems
-from clutchwork.cli import main
+from clutchwork.command.main import main
+from clutchwork.model.components import component_problems
 
 CURVE = {"static": 0.15, "kinetic": 0.1, "speed": 2.0}
 FOUR = [(2e-5, 0.1), (5e-5, 0.2), (1e-4, 0.3), (2e-4, 0.4)]

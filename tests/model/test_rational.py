@@ -7,7 +7,7 @@ from fractions import Fraction
 from hypothesis import given
 from hypothesis import strategies as st
 
-from clutchwork.rational import eliminate, exact, plus, smallest
+from clutchwork.declare.rational import eliminate, exact, plus, smallest
 
 NUMBERS = st.integers(-3, 3).map(Fraction)
 ROWS = st.lists(st.lists(NUMBERS, min_size=5, max_size=5), min_size=1, max_size=6)

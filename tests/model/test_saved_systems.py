@@ -7,8 +7,9 @@ import zipfile
 import pytest
 
 import clutchwork as cw
-from clutchwork import archive, files
-from clutchwork.system import SystemFormatError
+from clutchwork.assembly.system import SystemFormatError
+from clutchwork.base import archive
+from clutchwork.base import regular as files
 
 
 def _driveline():

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clutchwork as cw
-from clutchwork.errors import FileError
-from clutchwork.waveform import low_pass, piece_value, value
+from clutchwork.base.errors import FileError
+from clutchwork.signals.bases.waveform import low_pass, piece_value, value
 
 TABLE = cw.Table([(1.0, 2.0), (3.0, 6.0), (3.0, -1.0), (4.0, 0.0)])
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.layout import COUNTS, FIELDS, layout_text
-from clutchwork.schema import Role, kinds, schema_hash
-from clutchwork.system import SystemFormatError
+from clutchwork.assembly.system import SystemFormatError
+from clutchwork.declare.layout import COUNTS, FIELDS, layout_text
+from clutchwork.declare.schema import Role, kinds, schema_hash
 from support import six_speed
 
 

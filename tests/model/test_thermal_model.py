@@ -9,7 +9,7 @@ from typing import ClassVar
 import pytest
 
 import clutchwork as cw
-from clutchwork.schema import Role
+from clutchwork.declare.schema import Role
 
 LAW = cw.Coulomb(static=0.2, kinetic=0.1)
 

@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from clutchwork.quantity import QuantityError, curve_in_si, factor_to_si, in_si
-from clutchwork.schema import Spec
-from clutchwork.units import parse, split
+from clutchwork.declare.quantity import QuantityError, curve_in_si, factor_to_si, in_si
+from clutchwork.declare.schema import Spec
+from clutchwork.declare.units import parse, split
 
 
 @pytest.mark.parametrize(

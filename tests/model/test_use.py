@@ -9,10 +9,10 @@ from dataclasses import MISSING, replace
 import pytest
 
 import clutchwork as cw
-from clutchwork.cli import main
-from clutchwork.errors import FileError, ModelFileError, UnknownName
-from clutchwork.schema import REGISTRY, Role, specs
-from clutchwork.temperatures import COLDEST
+from clutchwork.base.errors import FileError, ModelFileError, UnknownName
+from clutchwork.command.main import main
+from clutchwork.declare.schema import REGISTRY, Role, specs
+from clutchwork.model.temperatures import COLDEST
 from support import samples
 
 DECLARED = samples.declared(*Role)
@@ -326,7 +326,7 @@ def test_every_temperature_of_the_registry_is_watched(cls, name):
         d.add(cw.Brake("b", shaft=d.nodes[0], friction=law, gain=1.0, pressure=1.0))
     else:
         d = samples.driveline(cls)
-        d._elements[0] = replace(d.elements[0], **{name: _celsius(getattr(d.elements[0], name) or 300.0)})
+        d._model.elements[0] = replace(d.elements[0], **{name: _celsius(getattr(d.elements[0], name) or 300.0)})
     found = _warned(d)
     assert any(f"{name} " in words and "implausibly low" in words for words in found)
 

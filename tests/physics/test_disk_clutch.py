@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.failure import FaultWarning
+from clutchwork.run.failure import FaultWarning
 from support.runs import EXACT, TIGHT, assert_switches, at_end
 
 feature = pytest.mark.feature
@@ -110,7 +110,7 @@ def ports() -> dict[str, cw.Node]:
 
 @feature("wear: de-rating factor")
 def test_derating_scales_the_torque_and_tends_to_uniform_wear() -> None:
-    from clutchwork.geometry import derating_when_worn, mean_radius
+    from clutchwork.elements.bases.geometry import derating_when_worn, mean_radius
 
     ro, ri = 0.075, 0.05
     worn = derating_when_worn(2 * ro, 2 * ri)
@@ -670,7 +670,7 @@ def test_wear_follows_the_energy_of_sliding() -> None:
 @feature("wear: changes the de-rating and the touch point")
 def test_wear_lowers_the_derating_and_raises_the_touch_point() -> None:
     """A ring worn by many times its running-in depth has the capacity of uniform wear, less the shifted threshold."""
-    from clutchwork.geometry import derating_when_worn, mean_radius
+    from clutchwork.elements.bases.geometry import derating_when_worn, mean_radius
 
     d = cw.Driveline("worn")
     base, follower = d.shaft("base", inertia=J2), d.shaft("follower", inertia=J1, speed=W0)

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 import clutchwork as cw
-from clutchwork.schema import REGISTRY, Role, specs
+from clutchwork.declare.schema import REGISTRY, Role, specs
 from support import samples
 from support.amount import amount
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.pools import coefficients
-from clutchwork.schema import Role, inputs
+from clutchwork.declare.schema import Role, inputs
+from clutchwork.model.pools import coefficients
 from support import samples
 from support.amount import amount
 from support.random_laws import random_law

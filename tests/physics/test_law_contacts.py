@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.schema import REGISTRY, Role, specs
+from clutchwork.declare.schema import REGISTRY, Role, specs
 from support import samples
 
 # residual over energy turned over: asked for

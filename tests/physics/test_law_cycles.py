@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import clutchwork as cw
-from clutchwork.schema import REGISTRY, Role
+from clutchwork.declare.schema import REGISTRY, Role
 from support import samples
 from support.friction import core, sets
 from support.friction.histories import sweeps

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.schema import REGISTRY, Role
+from clutchwork.declare.schema import REGISTRY, Role
 from support.friction import core, sets
 from support.friction.build import COUNTERPARTS, counterpart
 from support.friction.compare import assert_agree

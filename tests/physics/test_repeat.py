@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from clutchwork import _core
-from clutchwork.layout import STATUS
+from clutchwork.declare.layout import STATUS
 from support import random_drivelines, six_speed
 
 DONE = [name for name, *_ in STATUS].index("done")

@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import clutchwork as cw
-from clutchwork.waveform import value
+from clutchwork.signals.bases.waveform import value
 from support.msl import compare
 from support.msl.elements import missing
 from support.msl.model import translate

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import clutchwork as cw
-from clutchwork import units
-from clutchwork.schema import COMPILED_ROLES, REGISTRY, Role, kinds, schema_hash, schema_text, specs
+from clutchwork.declare import units
+from clutchwork.declare.schema import COMPILED_ROLES, REGISTRY, Role, kinds, schema_hash, schema_text, specs
 from support import samples
 
 ALL = samples.declared(*Role)

@@ -8,8 +8,8 @@ from dataclasses import MISSING, replace
 import pytest
 
 import clutchwork as cw
-from clutchwork.checks import component_problems
-from clutchwork.schema import specs
+from clutchwork.declare.schema import specs
+from clutchwork.model.components import component_problems
 from support import samples
 
 ELEMENTS = samples.declared(*samples.ELEMENT_ROLES)

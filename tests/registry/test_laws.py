@@ -7,10 +7,11 @@ import math
 import pytest
 
 import clutchwork as cw
-from clutchwork.checks import At, object_problems
-from clutchwork.pools import coefficients
-from clutchwork.schema import REGISTRY, Role
-from clutchwork.schema import specs as fields_of
+from clutchwork.declare.schema import REGISTRY, Role
+from clutchwork.declare.schema import specs as fields_of
+from clutchwork.model.fields import object_problems
+from clutchwork.model.numbers import At
+from clutchwork.model.pools import coefficients
 from support import samples
 
 LAWS = samples.declared(Role.LAW)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.checks import ports
-from clutchwork.massless import _damps, _is_spring
-from clutchwork.parts import take_apart
-from clutchwork.schema import Role, specs
+from clutchwork.declare.ports import ports
+from clutchwork.declare.schema import Role, specs
+from clutchwork.model.massless import _damps, _is_spring
+from clutchwork.model.parts import take_apart
 from support import samples
 
 ACTING = samples.declared(Role.TORQUE, Role.CONTACT)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from clutchwork import rig
-from clutchwork.cli import main
+from clutchwork.command.main import main
 
 pytest.importorskip("matplotlib")
 

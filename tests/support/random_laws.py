@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.checks import At
-from clutchwork.law_checks import law_problems
-from clutchwork.schema import Spec, inputs, specs
+from clutchwork.declare.schema import Spec, inputs, specs
+from clutchwork.model.fields import law_problems
+from clutchwork.model.numbers import At
 
 # points along every axis of a table
 POINTS = 4

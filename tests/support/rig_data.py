@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import clutchwork as cw
-from clutchwork.errors import ModelWarning
+from clutchwork.base.errors import ModelWarning
 from clutchwork.fit.adjustable import faults
 from clutchwork.fit.ordinates import axis, ordinates, tables, with_ordinates
 from clutchwork.fit.sliding import coefficients
-from clutchwork.tables import Tabulated
+from clutchwork.laws.bases.tables import Tabulated
 from support import samples
 
 Array = NDArray[np.float64]

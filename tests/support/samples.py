@@ -7,8 +7,8 @@ from dataclasses import MISSING
 from typing import Any
 
 import clutchwork as cw
-from clutchwork.schema import REGISTRY, Role, Spec, inputs, specs
-from clutchwork.tables import Tabulated
+from clutchwork.declare.schema import REGISTRY, Role, Spec, inputs, specs
+from clutchwork.laws.bases.tables import Tabulated
 
 ELEMENT_ROLES = tuple(role for role in Role if role not in (Role.LAW, Role.SIGNAL))
 

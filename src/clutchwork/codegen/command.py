@@ -9,7 +9,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-from clutchwork.options import METHODS
+from clutchwork.declare.options import METHODS
 
 SETTINGS = ("rtol", "atol", "method", "dt", "max_step")
 
@@ -34,9 +34,9 @@ def add_command(subparsers: Any) -> None:
 
 def export_command(asked: argparse.Namespace) -> int:
     """Export and tell; the exit code."""
+    from clutchwork.base.errors import ModelWarning
     from clutchwork.codegen import export_c
-    from clutchwork.driveline import Driveline
-    from clutchwork.errors import ModelWarning
+    from clutchwork.face.driveline import Driveline
 
     given = {name: getattr(asked, name) for name in SETTINGS if getattr(asked, name) is not None}
     signals = None if asked.signals is None else [name.strip() for name in asked.signals.split(",")]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from clutchwork.codegen.text import literal
-from clutchwork.forms import LOCKED, Affine, Column, Form, Linear, Mode, Power, Slip, Total
+from clutchwork.results.forms import LOCKED, Affine, Column, Form, Linear, Mode, Power, Slip, Total
 
 
 def expression(form: Form, columns: list[str]) -> str:

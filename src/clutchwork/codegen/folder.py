@@ -6,15 +6,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.channels import Channels
+from clutchwork.assembly.wiring import wiring
 from clutchwork.codegen.model import Exported, chosen, files
 from clutchwork.codegen.sources import sources
-from clutchwork.driveline import Driveline
-from clutchwork.options import Options, end_time
-from clutchwork.wiring import wiring
+from clutchwork.declare.options import Options, end_time
+from clutchwork.face.driveline import Driveline
+from clutchwork.results.channels import Channels
 
 if TYPE_CHECKING:
-    from clutchwork.system import System
+    from clutchwork.assembly.system import System
 
 TEMPLATES = Path(__file__).parent / "templates"
 # intervals of the grid when no spacing is given

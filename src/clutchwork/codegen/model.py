@@ -6,16 +6,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from clutchwork.channels import Channel, Channels
+from clutchwork.assembly.system import System
+from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.codegen.expression import expression
 from clutchwork.codegen.text import comment, enumeration, identifiers, literal, string
-from clutchwork.forms import Mode
-from clutchwork.layout import EVENT, MODES, STATUS
-from clutchwork.options import Options
-from clutchwork.rows import numbers
-from clutchwork.simulation import new_run
-from clutchwork.system import System
-from clutchwork.wiring import Wiring, wiring
+from clutchwork.declare.layout import EVENT, MODES, STATUS
+from clutchwork.declare.options import Options
+from clutchwork.results.channels import Channel, Channels
+from clutchwork.results.forms import Mode
+from clutchwork.results.rows import numbers
+from clutchwork.run.grid import output_grid
+from clutchwork.run.simulation import new_run
 
 MADE = "Made by clutchwork. Do not edit: export the model again."
 BYTES_PER_LINE = 16
@@ -72,7 +73,7 @@ class Exported:
     @property
     def instants(self) -> int:
         """Number of instants of the grid."""
-        grid = self.options.changed({"dt": self.dt, "times": None}).grid(self.t_end)
+        grid = output_grid(self.options.changed({"dt": self.dt, "times": None}), self.t_end)
         return 0 if grid is None else len(grid)
 
 

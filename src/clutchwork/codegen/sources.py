@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from clutchwork.declare.core import core
+
 # what the build installs beside the compiled core, CMakeLists.txt
 INSTALLED = "native"
 CHECKOUT = Path(__file__).resolve().parents[3]
@@ -17,9 +19,7 @@ ENDINGS = (".cpp", ".hpp", ".h")
 
 def sources() -> dict[Path, bytes]:
     """Headers, sources and licence of the core, by their paths in the folder that holds them."""
-    from clutchwork import _core
-
-    installed = Path(_core.__file__).parent / INSTALLED
+    installed = Path(core().__file__).parent / INSTALLED
     if (installed / REGISTRY).is_file():
         return dict(_below(installed))
     if (CHECKOUT / "cpp" / "src").is_dir():

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import tau
 
-from clutchwork.heating import Heating
-from clutchwork.node import Law, Node, SignalLike
-from clutchwork.schema import Role, component, flag, law, option, param, port, signal
+from clutchwork.declare.node import Law, Node, SignalLike
+from clutchwork.declare.schema import Role, component, flag, law, option, param, port, signal
+from clutchwork.elements.bases.heating import Heating
 
 
 @component(Role.CONTACT)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from clutchwork.heating import Heating
-from clutchwork.node import Law, Node
-from clutchwork.schema import Role, component, law, option, param, port
+from clutchwork.declare.node import Law, Node
+from clutchwork.declare.schema import Role, component, law, option, param, port
+from clutchwork.elements.bases.heating import Heating
 
 
 @component(Role.CONTACT)

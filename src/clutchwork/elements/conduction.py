@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, ThermalNode
-from clutchwork.schema import Role, component, param, port
+from clutchwork.declare.node import Component, ThermalNode
+from clutchwork.declare.schema import Role, component, param, port
 
 
 @component(Role.FLOW)

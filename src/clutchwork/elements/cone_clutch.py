@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import pi, sin
 
+from clutchwork.declare.node import Component, Law, Node, SignalLike, ThermalNode
+from clutchwork.declare.schema import Role, component, law, option, param, port, signal
+from clutchwork.elements.bases.geometry import Found, effective_radius, ring_problems
+from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.plate_contact import PlateContact
-from clutchwork.geometry import Found, effective_radius, ring_problems
-from clutchwork.heating import Heating
-from clutchwork.node import Component, Law, Node, SignalLike, ThermalNode
-from clutchwork.schema import Role, component, law, option, param, port, signal
 
 
 @component(Role.COMPOSITE)

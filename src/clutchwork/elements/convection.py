@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Points, SignalLike, ThermalNode
-from clutchwork.schema import Role, component, curve, port, signal
+from clutchwork.declare.node import Component, Points, SignalLike, ThermalNode
+from clutchwork.declare.schema import Role, component, curve, port, signal
 
 
 @component(Role.FLOW)

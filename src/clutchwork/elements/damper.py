@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.heating import Heating
-from clutchwork.node import Node, Passive
-from clutchwork.schema import Role, component, param, port
+from clutchwork.declare.node import Node, Passive
+from clutchwork.declare.schema import Role, component, param, port
+from clutchwork.elements.bases.heating import Heating
 
 
 @component(Role.TORQUE)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from clutchwork.node import Component, Points, Signal, SignalLike
-from clutchwork.schema import Role, State, choice, component, curve, option, param, signal
-from clutchwork.tables import Found, few_points
-from clutchwork.waveform import value
+from clutchwork.declare.node import Component, Points, Signal, SignalLike
+from clutchwork.declare.schema import Role, State, choice, component, curve, option, param, signal
+from clutchwork.laws.bases.tables import Found, few_points
+from clutchwork.signals.bases.waveform import value
 
 
 @component(Role.PROCESS, states=(State("clamp_force", "N", "force on the linings"),))

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import pi
 
+from clutchwork.declare.node import HOUSING, Component, Law, Node, SignalLike, ThermalNode
+from clutchwork.declare.schema import Role, component, law, option, param, port, signal
+from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.plate_contact import PlateContact
-from clutchwork.heating import Heating
-from clutchwork.node import HOUSING, Component, Law, Node, SignalLike, ThermalNode
-from clutchwork.schema import Role, component, law, option, param, port, signal
 
 
 @component(Role.COMPOSITE)

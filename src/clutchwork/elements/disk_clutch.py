@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import cached_property
 
+from clutchwork.declare.node import Component, HeatFlow, Law, Node, SignalLike, ThermalNode
+from clutchwork.declare.schema import Role, choice, component, law, option, param, port, signal
+from clutchwork.elements.bases.geometry import Found, derating_when_worn, effective_radius, ring_problems
+from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.plates import fault_problems, trigger
 from clutchwork.elements.damper import Damper
 from clutchwork.elements.one_way_clutch import OneWayClutch
 from clutchwork.elements.plate_contact import PlateContact
 from clutchwork.elements.wear import Wear
-from clutchwork.geometry import Found, derating_when_worn, effective_radius, ring_problems
-from clutchwork.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
-from clutchwork.node import Component, HeatFlow, Law, Node, SignalLike, ThermalNode
-from clutchwork.plates import fault_problems, trigger
-from clutchwork.schema import Role, choice, component, law, option, param, port, signal
 
 
 @component(Role.COMPOSITE)

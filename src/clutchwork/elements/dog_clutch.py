@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import tau
 from typing import ClassVar
 
-from clutchwork.heating import Heating
-from clutchwork.node import Node, SignalLike
-from clutchwork.schema import Role, State, component, flag, option, param, port, signal
-from clutchwork.tables import Found
+from clutchwork.declare.node import Node, SignalLike
+from clutchwork.declare.schema import Role, State, component, flag, option, param, port, signal
+from clutchwork.elements.bases.heating import Heating
+from clutchwork.laws.bases.tables import Found
 
 
 @component(

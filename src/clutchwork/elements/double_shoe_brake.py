@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from clutchwork.heating import Heating
-from clutchwork.node import Law, Node, SignalLike
-from clutchwork.schema import Role, choice, component, law, option, param, port, signal
-from clutchwork.tables import Found
+from clutchwork.declare.node import Law, Node, SignalLike
+from clutchwork.declare.schema import Role, choice, component, law, option, param, port, signal
+from clutchwork.elements.bases.heating import Heating
+from clutchwork.laws.bases.tables import Found
 
 
 @component(Role.CONTACT)

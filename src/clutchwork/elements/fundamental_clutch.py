@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.heating import Heating
+from clutchwork.declare.node import Law, Node, SignalLike
+from clutchwork.declare.schema import Role, component, option, port, signal
+from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
-from clutchwork.node import Law, Node, SignalLike
-from clutchwork.schema import Role, component, option, port, signal
 
 
 @component(Role.CONTACT)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from clutchwork.node import Component, Node
-from clutchwork.rational import exact
-from clutchwork.schema import Role, component, param, port
+from clutchwork.declare.node import Component, Node
+from clutchwork.declare.rational import exact
+from clutchwork.declare.schema import Role, component, param, port
 
 
 @component(Role.GEAR)

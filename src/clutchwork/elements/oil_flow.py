@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, SignalLike, ThermalNode
-from clutchwork.schema import Role, component, param, port, signal
+from clutchwork.declare.node import Component, SignalLike, ThermalNode
+from clutchwork.declare.schema import Role, component, param, port, signal
 
 
 @component(Role.FLOW)

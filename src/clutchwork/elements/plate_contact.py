@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from clutchwork.heating import Heating
-from clutchwork.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Law, Node, SignalLike
-from clutchwork.schema import Role, choice, component, flag, law, option, param, port, signal
+from clutchwork.declare.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Law, Node, SignalLike
+from clutchwork.declare.schema import Role, choice, component, flag, law, option, param, port, signal
+from clutchwork.elements.bases.heating import Heating
 
 
 @component(Role.CONTACT)

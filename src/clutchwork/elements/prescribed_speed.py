@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Node, SignalLike
-from clutchwork.schema import Role, component, option, port, signal
+from clutchwork.declare.node import Component, Node, SignalLike
+from clutchwork.declare.schema import Role, component, option, port, signal
 
 
 @component(Role.MOTION)

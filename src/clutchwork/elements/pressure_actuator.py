@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from clutchwork.geometry import Found
-from clutchwork.node import Component, SignalLike
-from clutchwork.schema import Role, State, component, option, param, signal
-from clutchwork.speech import say
+from clutchwork.declare.node import Component, SignalLike
+from clutchwork.declare.schema import Role, State, component, option, param, signal
+from clutchwork.declare.speech import say
+from clutchwork.elements.bases.geometry import Found
 
 
 @component(

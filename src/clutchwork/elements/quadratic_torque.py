@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Node
-from clutchwork.schema import Role, component, flag, param, port
+from clutchwork.declare.node import Component, Node
+from clutchwork.declare.schema import Role, component, flag, param, port
 
 
 @component(Role.TORQUE)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from clutchwork.heating import Heating
-from clutchwork.node import Node, SignalLike
-from clutchwork.schema import Role, component, param, port, signal
+from clutchwork.declare.node import Node, SignalLike
+from clutchwork.declare.schema import Role, component, param, port, signal
+from clutchwork.elements.bases.heating import Heating
 
 
 @component(Role.TORQUE)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Node, Points
-from clutchwork.schema import Role, component, curve, param, port
+from clutchwork.declare.node import Component, Node, Points
+from clutchwork.declare.schema import Role, component, curve, param, port
 
 
 @component(Role.TORQUE)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.heating import Heating
+from clutchwork.declare.node import Law, Node
+from clutchwork.declare.schema import Role, component, law, option, param, port
+from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
-from clutchwork.node import Law, Node
-from clutchwork.schema import Role, component, law, option, param, port
 
 
 @component(Role.CONTACT)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, Node, Passive
-from clutchwork.schema import Role, State, component, param, port
+from clutchwork.declare.node import Component, Node, Passive
+from clutchwork.declare.schema import Role, State, component, param, port
 
 
 @component(Role.TORQUE, states=(State("spring_torque", "N m", "stiffness times twist"),))

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import pi, sin
 
+from clutchwork.declare.node import Component, Law, Node, SignalLike, ThermalNode
+from clutchwork.declare.schema import Role, component, law, param, port, signal
+from clutchwork.elements.bases.geometry import Found
+from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.dog_clutch import DogClutch, gap_problems
 from clutchwork.elements.plate_contact import PlateContact
-from clutchwork.geometry import Found
-from clutchwork.heating import Heating
-from clutchwork.node import Component, Law, Node, SignalLike, ThermalNode
-from clutchwork.schema import Role, component, law, param, port, signal
 
 
 @component(Role.COMPOSITE)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
+from clutchwork.declare.node import Component, ThermalNode
+from clutchwork.declare.schema import Role, component, param
 from clutchwork.elements.conduction import Conduction
-from clutchwork.node import Component, ThermalNode
-from clutchwork.schema import Role, component, param
 
 
 @component(Role.COMPOSITE)

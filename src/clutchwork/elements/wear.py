@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Component, SignalLike
-from clutchwork.schema import Role, State, component, param, signal
+from clutchwork.declare.node import Component, SignalLike
+from clutchwork.declare.schema import Role, State, component, param, signal
 
 
 @component(Role.PROCESS, states=(State("depth", "m", "depth of wear"),))

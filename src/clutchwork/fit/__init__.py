@@ -15,22 +15,22 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.errors import near
+from clutchwork.base.errors import near
 
 if TYPE_CHECKING:
     from clutchwork.fit.failure import FitError as FitError
-    from clutchwork.fit.failure import UndeterminedError as UndeterminedError
     from clutchwork.fit.law import fit_csv as fit_csv
     from clutchwork.fit.law import fit_law as fit_law
     from clutchwork.fit.result import FitResult as FitResult
     from clutchwork.fit.result import Parameter as Parameter
+    from clutchwork.fit.result import UndeterminedError as UndeterminedError
 
 # names that are loaded when they are first used, with their module: the command line imports this package to ask less
 _LAZY = {
     "FitError": "failure",
     "FitResult": "result",
     "Parameter": "result",
-    "UndeterminedError": "failure",
+    "UndeterminedError": "result",
     "fit_csv": "law",
     "fit_law": "law",
 }

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.checks import CHECKS, At
+from clutchwork.declare.schema import Spec, specs
 from clutchwork.fit.ordinates import ABOVE, STATIC, ordinates, rivals, tables, with_ordinates
 from clutchwork.fit.sliding import coefficients
-from clutchwork.schema import Spec, specs
-from clutchwork.tables import Tabulated
+from clutchwork.laws.bases.tables import Tabulated
+from clutchwork.model.fields import CHECKS
+from clutchwork.model.numbers import At
 
 if TYPE_CHECKING:
-    from clutchwork.node import Law
+    from clutchwork.declare.node import Law
 
 _TINY = 1e-9
 

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from clutchwork.declare.node import Law
     from clutchwork.fit.result import FitResult
     from clutchwork.fit.unknown import Bounds
-    from clutchwork.node import Law
 
 DETERMINED, OPEN = 0, 1
 _LISTS = re.compile(r"[-+.\de]+(//?[-+.\de]+)+", re.IGNORECASE)
@@ -83,8 +83,8 @@ def fit_command(asked: argparse.Namespace) -> int:
 
 def law_from_text(kind: str, text: str) -> Law:
     """A law from its kind and `name=value,...`, read as in a model file: units, near matches and bounds included."""
-    from clutchwork.driveline import Driveline
-    from clutchwork.errors import ModelWarning
+    from clutchwork.base.errors import ModelWarning
+    from clutchwork.face.driveline import Driveline
 
     values = {name: _value(value) for name, value in _pairs("--start", text)}
     shaft = {"name": "shaft", "inertia": 1.0}
@@ -103,9 +103,9 @@ def law_from_text(kind: str, text: str) -> Law:
 
 def law_data(law: Law) -> dict[str, Any]:
     """A law as in a model file."""
+    from clutchwork.declare.node import Node
     from clutchwork.elements.bearing_friction import BearingFriction
-    from clutchwork.model_writer import Writer
-    from clutchwork.node import Node
+    from clutchwork.files.writer import Writer
 
     bearing = BearingFriction("bearing", shaft=Node("shaft"), friction=law, torque=1.0)
     data: dict[str, Any] = Writer(None, embed=True).element(bearing)["friction"]
@@ -114,7 +114,7 @@ def law_data(law: Law) -> dict[str, Any]:
 
 def _model_line(law: Law) -> str:
     """The line of a model file."""
-    from clutchwork.model_writer import toml
+    from clutchwork.files.writer import toml
 
     line = toml({"element": {"friction": _rounded(law_data(law))}}).splitlines()[-1]
     return f"for a model file (all digits are in fit.json):\n{line}"

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from clutchwork.errors import ClutchworkError
-
-if TYPE_CHECKING:
-    from clutchwork.fit.result import FitResult
+from clutchwork.base.errors import ClutchworkError
 
 
 class FitError(ClutchworkError, ValueError):
@@ -17,14 +14,6 @@ class FitError(ClutchworkError, ValueError):
     def __init__(self, quantity: str, message: str, remedy: str) -> None:
         self.quantity, self.message, self.remedy = quantity, message, remedy
         super().__init__(f"{quantity} {message}; {remedy}")
-
-
-class UndeterminedError(ClutchworkError, RuntimeError):
-    """The measurements do not determine all free parameters; `result` holds what they do say."""
-
-    def __init__(self, result: FitResult) -> None:
-        self.result = result
-        super().__init__(result.message)
 
 
 def scipy(module: str) -> Any:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.declare.node import Law as LawBase
 from clutchwork.fit import table
 from clutchwork.fit.adjustable import faults
 from clutchwork.fit.elsewhere import widened
@@ -22,10 +23,9 @@ from clutchwork.fit.search import Search, Solution
 from clutchwork.fit.temperature import at_temperature
 from clutchwork.fit.unknown import Bounds
 from clutchwork.fit.unknowns import Unknowns
-from clutchwork.node import Law as LawBase
 
 if TYPE_CHECKING:
-    from clutchwork.node import Law
+    from clutchwork.declare.node import Law
 
 
 def fit_law(

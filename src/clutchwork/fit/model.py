@@ -8,8 +8,8 @@ from clutchwork.fit.running import Running
 from clutchwork.fit.sliding import Sliding, Smooth
 
 if TYPE_CHECKING:
+    from clutchwork.declare.node import Law
     from clutchwork.fit.measurement import Measurement
-    from clutchwork.node import Law
 
 Model: TypeAlias = Sliding | Smooth | Running
 

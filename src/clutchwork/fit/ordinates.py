@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.declare.schema import Spec, specs
 from clutchwork.fit.failure import FitError
-from clutchwork.schema import Spec, specs
-from clutchwork.tables import Tabulated
+from clutchwork.laws.bases.tables import Tabulated
 
 if TYPE_CHECKING:
+    from clutchwork.declare.node import Law
     from clutchwork.fit.measurement import Measurement
-    from clutchwork.node import Law
 
 Array = NDArray[np.float64]
 

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.fit.failure import UndeterminedError
-from clutchwork.fit.measurement import Measurement
-from clutchwork.text import columns
+from clutchwork.base.errors import ClutchworkError, near
+from clutchwork.base.text import columns
+from clutchwork.fit.fitted import Fitted
+from clutchwork.fit.picture import picture
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from clutchwork.node import Law
 
 Array = NDArray[np.float64]
 
@@ -48,28 +47,23 @@ class Parameter:
         return f"{self.name} is not determined: " + "; ".join(part for part in open_ends if part)
 
 
-@dataclass(frozen=True, eq=False)
-class FitResult:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FitResult(Fitted):
     """A fitted law, its parameters with their intervals, and how well it describes the samples.
 
     A parameter that the samples do not determine keeps a value, but no meaning: look at `determined`, `undetermined`
     and `message`, or call `raise_for_status`. Its value has then been chosen by the start value.
     """
 
-    law: Law
     parameters: tuple[Parameter, ...]
     correlation: Array = field(repr=False)  # of the parameters, those that must be above zero by their logarithm
     confidence: float  # of the intervals
-    rms: float  # N m, of the residuals over the samples that give an equation
     r2: float  # share of the variation of the torque that the law describes
     alike: float  # correlation of neighbouring residuals, 0 where it may be chance
     converged: bool
     faults: tuple[str, ...]  # rules of the law that the fitted values break
     advice: tuple[str, ...]  # what the fitted values allow and is rarely wanted
     rest: float  # slip below which a sample counts as at rest
-    samples: Measurement = field(repr=False)
-    fitted: Array = field(repr=False)  # torque of the fitted law at the samples [N m]
-    equations: NDArray[np.bool_] = field(repr=False)  # samples that give an equation; the others only a bound
 
     @property
     def against(self) -> float:
@@ -77,11 +71,6 @@ class FitResult:
         slip, torque = self.samples.slip, self.samples.torque
         slides = np.abs(slip) > self.rest
         return 0.0 if self.law.own_states() else float(np.sum(slip * torque * slides < 0.0) / np.sum(slides))
-
-    @property
-    def residuals(self) -> Array:
-        """Fitted minus measured torque [N m]."""
-        return self.fitted - self.samples.torque
 
     @property
     def undetermined(self) -> tuple[Parameter, ...]:
@@ -121,8 +110,6 @@ class FitResult:
         return "\n".join(lines)
 
     def __getitem__(self, name: str) -> Parameter:
-        from clutchwork.errors import near
-
         for parameter in self.parameters:
             if parameter.name == name:
                 return parameter
@@ -136,8 +123,6 @@ class FitResult:
 
     def plot(self, path: str | Path | None = None) -> Figure:
         """Measured and fitted torque over time and slip, residuals; written to `path` when given. Needs matplotlib."""
-        from clutchwork.fit.picture import picture
-
         return picture(self, path)
 
     def data(self) -> dict[str, Any]:
@@ -166,3 +151,11 @@ class FitResult:
             lines.append([p.name, *numbers, p.unit, f"{p.start:.5g}", "" if p.determined else "not determined"])
         parts = [head, columns(lines, right=(1, 2, 3, 5)), self.message, self.notes]
         return "\n\n".join(part for part in parts if part)
+
+
+class UndeterminedError(ClutchworkError, RuntimeError):
+    """The measurements do not determine all free parameters; `result` holds what they do say."""
+
+    def __init__(self, result: FitResult) -> None:
+        self.result = result
+        super().__init__(result.message)

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.driveline import Driveline
-from clutchwork.errors import ModelWarning
-from clutchwork.failure import StoppedEarly
+from clutchwork.assembly.records import frozen
+from clutchwork.base.errors import ModelWarning
+from clutchwork.declare.options import Options
+from clutchwork.face.driveline import Driveline
 from clutchwork.fit.sliding import at_rest
-from clutchwork.options import Options
-from clutchwork.pools import Pools
-from clutchwork.simulation import simulate
-from clutchwork.system import frozen
+from clutchwork.model.pools import Pools
+from clutchwork.run.failure import StoppedEarly
+from clutchwork.run.simulation import simulate
 
 if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.declare.node import Law
     from clutchwork.fit.measurement import Measurement
-    from clutchwork.node import Law
-    from clutchwork.system import System
 
 Array = NDArray[np.float64]
 

@@ -10,16 +10,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.column_file import MOST_BYTES
-from clutchwork.column_heads import meant, split
-from clutchwork.errors import near
-from clutchwork.files import open_regular
+from clutchwork.base.errors import near
+from clutchwork.base.regular import open_regular
+from clutchwork.base.shown import listed
+from clutchwork.declare.quantity import QuantityError
+from clutchwork.declare.units import parse
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.measurement import Measurement, measurement
-from clutchwork.quantity import QuantityError
-from clutchwork.shown import listed
+from clutchwork.signals.bases.column_file import MOST_BYTES
+from clutchwork.signals.bases.column_heads import meant, split
 from clutchwork.signals.column import Column
-from clutchwork.units import parse
 
 Array = NDArray[np.float64]
 

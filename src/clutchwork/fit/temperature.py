@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clutchwork.declare.schema import inputs
 from clutchwork.fit.failure import FitError
-from clutchwork.schema import inputs
 
 if TYPE_CHECKING:
+    from clutchwork.declare.node import Law
     from clutchwork.fit.measurement import Measurement
-    from clutchwork.node import Law
 
 TEMPERATURE = "temperature"
 _REMEDY = "give the measured temperature [K], a number or a row"

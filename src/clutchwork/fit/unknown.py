@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, TypeAlias
 from clutchwork.fit.adjustable import kinetic
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.ordinates import ABOVE, STATIC, ordinates, rival
-from clutchwork.tables import Tabulated
+from clutchwork.laws.bases.tables import Tabulated
 
 if TYPE_CHECKING:
-    from clutchwork.node import Law
-    from clutchwork.schema import Spec
+    from clutchwork.declare.node import Law
+    from clutchwork.declare.schema import Spec
 
 Pair: TypeAlias = "tuple[float | None, float | None]"
 Bounds: TypeAlias = "Mapping[str, Pair]"

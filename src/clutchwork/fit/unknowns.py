@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.errors import near
+from clutchwork.base.errors import near
 from clutchwork.fit.adjustable import adjustable, default_free, fixed, kinetic, sum_is_held
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.ordinates import ordinates, with_ordinates
 from clutchwork.fit.unknown import REACH, Bounds, Unknown, below_static, unknowns_of
 
 if TYPE_CHECKING:
-    from clutchwork.node import Law
+    from clutchwork.declare.node import Law
 
 Array = NDArray[np.float64]
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Law, Points
-from clutchwork.schema import Role, component, curve, param
-from clutchwork.tables import Found, beyond_the_ends, continued, slip_axis
+from clutchwork.declare.node import Law, Points
+from clutchwork.declare.schema import Role, component, curve, param
+from clutchwork.laws.bases.tables import Found, beyond_the_ends, continued, slip_axis
 
 
 @component(Role.LAW)

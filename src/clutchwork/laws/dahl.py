@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.node import Law
-from clutchwork.schema import Role, State, component, param
+from clutchwork.declare.node import Law
+from clutchwork.declare.schema import Role, State, component, param
 
 
 @component(Role.LAW, states=(State("elastic", "1", "elastic coefficient"),))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from clutchwork.node import SignalLike
-from clutchwork.schema import Role, component, numbers, signal
-from clutchwork.tables import Found, Tabulated, continued, crossing, few_points, slip_axis
+from clutchwork.declare.node import SignalLike
+from clutchwork.declare.schema import Role, component, numbers, signal
+from clutchwork.laws.bases.tables import Found, Tabulated, continued, crossing, few_points, slip_axis
 
 
 @component(Role.LAW)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Points
-from clutchwork.schema import Role, component, curve, param
-from clutchwork.tables import Found, Tabulated, continued, crossing, few_points, not_positive, slip_axis
+from clutchwork.declare.node import Points
+from clutchwork.declare.schema import Role, component, curve, param
+from clutchwork.laws.bases.tables import Found, Tabulated, continued, crossing, few_points, not_positive, slip_axis
 
 
 @component(Role.LAW)

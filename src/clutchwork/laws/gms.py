@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.node import Points
-from clutchwork.schema import Role, State, component, curve, param
-from clutchwork.stribeck import Found, StribeckCurve, element_problems, kinetic_problems
+from clutchwork.declare.node import Points
+from clutchwork.declare.schema import Role, State, component, curve, param
+from clutchwork.laws.bases.stribeck import Found, StribeckCurve, element_problems, kinetic_problems
 
 FEWEST, LARGEST = 4, 10
 

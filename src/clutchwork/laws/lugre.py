@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.schema import Role, State, component, param
-from clutchwork.stribeck import Found, StribeckCurve, kinetic_problems, passivity_advice
+from clutchwork.declare.schema import Role, State, component, param
+from clutchwork.laws.bases.stribeck import Found, StribeckCurve, kinetic_problems, passivity_advice
 
 
 @component(Role.LAW, states=(State("elastic", "1", "elastic coefficient, stiffness times deflection"),))

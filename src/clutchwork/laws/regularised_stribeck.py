@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.schema import Role, component, param
-from clutchwork.stribeck import StribeckCurve
+from clutchwork.declare.schema import Role, component, param
+from clutchwork.laws.bases.stribeck import StribeckCurve
 
 
 @component(Role.LAW)

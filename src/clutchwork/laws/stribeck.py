@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from clutchwork.schema import Role, component
-from clutchwork.stribeck import StribeckCurve
+from clutchwork.declare.schema import Role, component
+from clutchwork.laws.bases.stribeck import StribeckCurve
 
 
 @component(Role.LAW)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.node import Law
-from clutchwork.schema import Role, component, param
+from clutchwork.declare.node import Law
+from clutchwork.declare.schema import Role, component, param
 
 
 @component(Role.LAW)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Points, SignalLike
-from clutchwork.schema import Role, component, curve, signal
-from clutchwork.tables import Found, Tabulated, continued, crossing, few_points, not_positive
+from clutchwork.declare.node import Points, SignalLike
+from clutchwork.declare.schema import Role, component, curve, signal
+from clutchwork.laws.bases.tables import Found, Tabulated, continued, crossing, few_points, not_positive
 
 
 @component(Role.LAW)

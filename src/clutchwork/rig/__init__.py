@@ -15,13 +15,14 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.errors import near
+from clutchwork.base.errors import near
 
 if TYPE_CHECKING:
     from clutchwork.rig import presets as presets
     from clutchwork.rig.bench import Bench as Bench
     from clutchwork.rig.experiment import EXPERIMENTS as EXPERIMENTS
     from clutchwork.rig.experiment import Experiment as Experiment
+    from clutchwork.rig.experiment import Result as Result
     from clutchwork.rig.functions import breakaway as breakaway
     from clutchwork.rig.functions import drift as drift
     from clutchwork.rig.functions import hysteresis as hysteresis
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from clutchwork.rig.looks import title as title
     from clutchwork.rig.presets import PRESETS as PRESETS
     from clutchwork.rig.presets import Preset as Preset
-    from clutchwork.rig.result import Result as Result
     from clutchwork.rig.table import Table as Table
 
 # names that are loaded when they are first used, with their module: the command line imports this package to ask less
@@ -43,7 +43,7 @@ _LAZY = {
     "Experiment": "experiment",
     "PRESETS": "presets",
     "Preset": "presets",
-    "Result": "result",
+    "Result": "experiment",
     "Table": "table",
     "title": "looks",
 }

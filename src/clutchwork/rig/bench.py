@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.driveline import Driveline
+from clutchwork.base.errors import ModelWarning
+from clutchwork.declare.node import Domain, Law, Node, SignalLike
+from clutchwork.declare.options import Options
 from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.prescribed_speed import PrescribedSpeed
 from clutchwork.elements.torque import Torque
-from clutchwork.errors import ModelWarning
-from clutchwork.failure import StoppedEarly
-from clutchwork.node import Domain, Law, Node, SignalLike
-from clutchwork.options import Options
+from clutchwork.face.driveline import Driveline
+from clutchwork.results.trajectory import Trajectory
 from clutchwork.rig.presets import Preset
-from clutchwork.trajectory import Trajectory
+from clutchwork.run.failure import StoppedEarly
 
 Array = NDArray[np.float64]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, TypeAlias
 
-from clutchwork.errors import near
-from clutchwork.node import Law
+from clutchwork.base.errors import near
+from clutchwork.declare.node import Law
 from clutchwork.rig.presets import Preset
 
 # names, instances or both; with a mapping the keys are the labels

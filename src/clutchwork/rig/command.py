@@ -10,11 +10,10 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.errors import near
+from clutchwork.base.errors import near
 
 if TYPE_CHECKING:
-    from clutchwork.rig.experiment import Experiment
-    from clutchwork.rig.result import Result
+    from clutchwork.rig.experiment import Experiment, Result
 
 DONE, STOPPED = 0, 1
 EVERY, LIST = "all", "list"
@@ -95,8 +94,8 @@ def outcomes(
 
 def listing() -> str:
     """The experiments with their settings, the laws and the presets."""
+    from clutchwork.base.text import columns
     from clutchwork.rig import EXPERIMENTS, PRESETS
-    from clutchwork.text import columns
 
     lines = ["experiments"]
     for name, cls in EXPERIMENTS.items():

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from clutchwork.errors import near
-from clutchwork.options import Options
+from clutchwork.base.errors import near
+from clutchwork.declare.node import Law
+from clutchwork.declare.options import Options
+from clutchwork.results.plot.figure import figure_of
+from clutchwork.results.trajectory import Trajectory
 from clutchwork.rig.bench import ACCURATE, Bench
 from clutchwork.rig.chosen import Laws, chosen
 from clutchwork.rig.presets import Preset, preset_of
-from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Cell, Column, Table
+from clutchwork.rig.trial import NOT_REACHED, Runs, Trial, found
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,6 +69,69 @@ class Experiment:
         benches = [Bench(label, law, of, options) for label, law in chosen(laws, of, self.usual).items()]
         trials = {bench.label: Trial(bench, self.run(bench)) for bench in benches}
         return Result(self, of, trials, self.table(of, trials))
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What an experiment gave: print it for the table, `plot` it for the picture."""
+
+    experiment: Experiment
+    preset: Preset
+    trials: Mapping[str, Trial]
+    table: Table
+
+    @property
+    def laws(self) -> dict[str, Law]:
+        """The laws by label."""
+        return {label: trial.bench.law for label, trial in self.trials.items()}
+
+    @property
+    def runs(self) -> dict[str, Runs]:
+        """The trajectories by label of the law and name of the case."""
+        return {label: trial.runs for label, trial in self.trials.items()}
+
+    @property
+    def complete(self) -> bool:
+        """Whether all runs reached their end, but for those that chatter: to show that is what they are there for."""
+        return all(run.status == "chatter" for trial in self.trials.values() for run in trial.early)
+
+    def __getitem__(self, wanted: str | tuple[str, str]) -> Trajectory:
+        """The trajectory of a law, `result["lugre"]`, or of one case of it, `result["lugre", "sliding"]`."""
+        label, case = wanted if isinstance(wanted, tuple) else (wanted, None)
+        trial = found(self.trials, label, "law")
+        return next(iter(trial.runs.values())) if case is None else trial[case]
+
+    @property
+    def rows(self) -> int:
+        """Rows of panels in the picture: one, or as many as the laws need that have panels of their own."""
+        return -(-len(self.trials) // self.experiment.across) if self.experiment.across else 1
+
+    def plot(self, path: str | Path | None = None) -> Figure:
+        """Draw the picture and write it to `path` (png, svg or pdf) when given; needs matplotlib."""
+        with figure_of(self.experiment.height * self.rows) as figure:
+            self.experiment.draw(figure, self)
+            if path is not None:
+                Path(path).parent.mkdir(parents=True, exist_ok=True)
+                figure.savefig(path)
+        return figure
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write picture and table into a folder; their paths."""
+        picture, table = (Path(folder, f"{self.experiment.name}.{ending}") for ending in ("png", "csv"))
+        self.plot(picture)
+        self.table.to_csv(table)
+        return [picture, table]
+
+    @property
+    def messages(self) -> dict[str, str]:
+        """What the runs that stopped early say about it, by law."""
+        return {label: trial.early[0].message for label, trial in self.trials.items() if trial.early}
+
+    def __str__(self) -> str:
+        told = "\n".join(f"{label} {message}" for label, message in self.messages.items())
+        return f"{self.experiment.title}; {self.preset.title}\n\n{self.table}" + (f"\n\n{told}" if told else "")
+
+    __repr__ = __str__
 
 
 EXPERIMENTS: dict[str, type[Experiment]] = {}

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.plot.style import COLOURS, DASHES
-from clutchwork.schema import REGISTRY, Role
+from clutchwork.declare.schema import REGISTRY, Role
+from clutchwork.results.plot.style import COLOURS, DASHES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from clutchwork.errors import near
-from clutchwork.node import Domain, Law
-from clutchwork.schema import REGISTRY, Role
+from clutchwork.base.errors import near
+from clutchwork.declare.node import Domain, Law
+from clutchwork.declare.schema import REGISTRY, Role
 
 # deflection over static/stiffness and share; the weak ones bring a body to rest that swings on its contact
 ELEMENTS = (

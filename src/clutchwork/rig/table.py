@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from clutchwork.errors import near
-from clutchwork.text import columns
+from clutchwork.base.errors import near
+from clutchwork.base.text import columns
 
 Cell: TypeAlias = "float | str"
 

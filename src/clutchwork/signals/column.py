@@ -7,9 +7,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from clutchwork.errors import FileError
-from clutchwork.node import Segment, Signal
-from clutchwork.schema import Role, component, param, text
+from clutchwork.base.errors import FileError
+from clutchwork.declare.node import Segment, Signal
+from clutchwork.declare.schema import Role, component, param, text
 from clutchwork.signals.table import pieces
 
 
@@ -35,7 +35,7 @@ class Column(Signal):
     def _read(self) -> Any:
         """Times and values of the file in SI, a row each, and the head of the column."""
         # numpy is no need of the build, which imports this declaration
-        from clutchwork.column_file import Wanted, read
+        from clutchwork.signals.bases.column_file import Wanted, read
 
         return read(Path(self.folder, self.path), Wanted(self.path, self.time, self.column, self.scale))
 
@@ -58,7 +58,7 @@ class Column(Signal):
 
     def unit_problems(self, units: tuple[str, ...]) -> list[tuple[str, str, str]]:
         """A head whose unit fits none of those that the driven quantity may have."""
-        from clutchwork.quantity import QuantityError
+        from clutchwork.declare.quantity import QuantityError
 
         try:
             _ = self._read.head.factor(units)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from clutchwork.node import Segment, Signal
-from clutchwork.schema import Role, component, function, param
+from clutchwork.declare.node import Segment, Signal
+from clutchwork.declare.schema import Role, component, function, param
 
 
 @component(Role.SIGNAL)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from clutchwork.node import Segment, Signal
-from clutchwork.schema import Role, component, param
+from clutchwork.declare.node import Segment, Signal
+from clutchwork.declare.schema import Role, component, param
 
 
 @component(Role.SIGNAL)

@@ -15,9 +15,9 @@ from random import Random
 from typing import Any
 
 import clutchwork as cw
-from clutchwork.cli import main
+from clutchwork.command.main import main
+from clutchwork.files.writer import toml
 from clutchwork.fit import table
-from clutchwork.model_writer import toml
 from support import samples
 from support.fuzz import mutate
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import clutchwork as cw
-from clutchwork.schema import Role
+from clutchwork.declare.schema import Role
 
 from .elements import ENTRIES, constant_speed, missing, position_signal
 from .initial import measure, start

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
-from clutchwork.node import Segment
+from clutchwork.declare.node import Segment
 
 
 class UnsupportedError(NotImplementedError):

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import clutchwork as cw
-from clutchwork.node import Segment, Signal
+from clutchwork.declare.node import Segment, Signal
 
 from .pieces import Piece, Pieces, UnsupportedError, Wave, at, product, scaled, total
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from clutchwork.rig.bench import Bench, position
-from clutchwork.rig.experiment import Experiment, experiment
+from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.result import Result, Runs, Trial
 from clutchwork.rig.table import Column
+from clutchwork.rig.trial import Runs, Trial
 from clutchwork.signals.sine import Sine
 from clutchwork.signals.table import Table as Course
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from clutchwork.node import Signal
+    from clutchwork.declare.node import Signal
 
 
 class Swinging(NamedTuple):

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.rig.bench import Bench, friction, position, speed
-from clutchwork.rig.experiment import Experiment, experiment
+from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.result import Result, Runs, Trial
 from clutchwork.rig.table import Column
+from clutchwork.rig.trial import Runs, Trial
 from clutchwork.signals.sine import Sine
 
 if TYPE_CHECKING:

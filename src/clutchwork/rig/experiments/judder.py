@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.driveline import Driveline
 from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.prescribed_speed import PrescribedSpeed
 from clutchwork.elements.spring_damper import SpringDamper
+from clutchwork.face.driveline import Driveline
 from clutchwork.rig.bench import Bench, speed
-from clutchwork.rig.experiment import Experiment, experiment
+from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import GREY, GUIDE, head, legend_below, looks, nested, title
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Column, Table
+from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from clutchwork.trajectory import Trajectory
+    from clutchwork.results.trajectory import Trajectory
 
 
 @experiment

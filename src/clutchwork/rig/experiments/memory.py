@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.rig.bench import Bench, friction, position
-from clutchwork.rig.experiment import Experiment, experiment
+from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small, title
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.result import Result, Runs, Trial
 from clutchwork.rig.table import Column
+from clutchwork.rig.trial import Runs, Trial
 from clutchwork.signals.table import Table as Course
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.trajectory import Trajectory
+    from clutchwork.results.trajectory import Trajectory
 
 
 @experiment

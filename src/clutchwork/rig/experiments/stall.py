@@ -9,24 +9,24 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.driveline import Driveline
+from clutchwork.declare.node import Domain
 from clutchwork.elements.clutch import Clutch
 from clutchwork.elements.resisting_torque import ResistingTorque
 from clutchwork.elements.spring_damper import SpringDamper
 from clutchwork.elements.torque import Torque
-from clutchwork.node import Domain
+from clutchwork.face.driveline import Driveline
 from clutchwork.rig.bench import Bench
-from clutchwork.rig.experiment import Experiment, experiment
+from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import looks, title
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Column
+from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 from clutchwork.signals.table import Table as Course
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.trajectory import Trajectory
+    from clutchwork.results.trajectory import Trajectory
 
 
 @experiment

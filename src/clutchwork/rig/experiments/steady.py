@@ -12,17 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.rig.bench import Bench, friction
-from clutchwork.rig.experiment import Experiment, experiment
+from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import GREY, legend_below, nested
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Column, Table
+from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 from clutchwork.signals.table import Table as Course
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.trajectory import Trajectory
+    from clutchwork.results.trajectory import Trajectory
 
 
 @experiment

@@ -8,21 +8,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.driveline import Driveline
 from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.prescribed_speed import PrescribedSpeed
 from clutchwork.elements.spring import Spring
+from clutchwork.face.driveline import Driveline
 from clutchwork.rig.bench import Bench
-from clutchwork.rig.experiment import Experiment, experiment
+from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.result import NOT_REACHED, Result, Runs, Trial
 from clutchwork.rig.table import Column
+from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.trajectory import Trajectory
+    from clutchwork.results.trajectory import Trajectory
 
 
 @experiment

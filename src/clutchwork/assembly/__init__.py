@@ -1,0 +1,1 @@
+"""From a model to the frozen System that the core reads."""

@@ -1,0 +1,197 @@
+"""Model -> System: the arrays that the compiled core reads, over the independent speeds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.inputs import Wires
+from clutchwork.assembly.places import places
+from clutchwork.assembly.records import TYPES, Gearing, frozen
+from clutchwork.assembly.shared_states import Shared, flow_arrays, heat_arrays
+from clutchwork.base.errors import ModelError
+from clutchwork.declare.layout import FIELDS
+from clutchwork.declare.ports import ports
+from clutchwork.declare.rational import Row, plus
+from clutchwork.declare.schema import Role, kinds
+from clutchwork.model.kinematics import apart, kinematics
+from clutchwork.model.model import Model
+from clutchwork.model.parts import take_apart
+from clutchwork.model.pools import Pools
+from clutchwork.model.problems import model_advice
+from clutchwork.model.start import start
+from clutchwork.model.structure import Kinematics, Mechanism
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+
+Array = NDArray[Any]
+
+
+def assembled(whole: Model, independent: Sequence[str] = ()) -> dict[str, Any]:
+    """The fields of the System of a model without mistakes; ModelError reports those of its structure."""
+    parts = take_apart(whole.elements, whole.thermal)
+    model = Mechanism(tuple(whole.nodes), parts.components)
+    made, problems = kinematics(model, independent)
+    if made is None:
+        raise ModelError(problems)
+    _arrange(model, made, independent)
+    speeds, motions, problems = start(model, made)
+    if problems:
+        raise ModelError(problems)
+    shared = Shared(parts.thermal, tuple(model.role(Role.PROCESS)))
+    where = places(parts.thermal, shared.processes, [component for component, _ in model.acting])
+    pools, wires, columns = Pools(), Wires(where), Columns(model, made)
+    wires.surround(parts.thermal)
+    arrays = _inertia(model, made, columns)
+    arrays |= _rates(model, made, columns, Role.TORQUE, "element")
+    arrays |= _rates(model, made, columns, Role.CONTACT, "contact")
+    states = list[float]()
+    arrays |= _elements(model, pools, wires, states)
+    arrays |= _contacts(model, pools, wires, states)
+    arrays |= flow_arrays(model, pools, wires)
+    arrays |= heat_arrays(model, where)
+    arrays |= shared.arrays(pools, wires, states)
+    arrays |= {"prescribed_input": wires.prescribe(motions)}
+    arrays |= wires.arrays()
+    arrays |= {"params": pools.params, "points": pools.points, "initial_speed": [float(speed) for speed in speeds]}
+    return {
+        "name": whole.name,
+        "arrays": frozen(_shaped(arrays, model, made)),
+        "nodes": model.nodes,
+        "elements": tuple(model.role(Role.TORQUE)),
+        "contacts": tuple(model.role(Role.CONTACT)),
+        "motions": tuple(model.role(Role.MOTION)),
+        "gears": tuple(_gears(model)),
+        "thermal": parts.thermal,
+        "flows": tuple(model.role(Role.FLOW)),
+        "processes": shared.processes,
+        "inputs": tuple(wires.inputs),
+        "links": tuple(wires.links),
+        "sums": parts.sums,
+        "independent": tuple(model.nodes[n].name for n in made.independent),
+        "parameters": pools.places,
+        "notes": tuple(made.notes),
+        "warnings": tuple(str(advice) for advice in model_advice(whole)),
+    }
+
+
+def _arrange(model: Mechanism, made: Kinematics, wanted: Sequence[str]) -> None:
+    """Order the independent speeds: as wanted, else so that those that act on each other are close."""
+    if wanted:
+        made.independent.sort(key=lambda node: wanted.index(model.nodes[node].name))
+        return
+    touching: dict[int, set[int]] = {node: set() for node in made.independent}
+    for row in (*made.speeds, *(made.over(row) for _, row in model.acting)):
+        together = touching.keys() & row.keys()
+        for node in together:
+            touching[node] |= together - {node}
+    made.independent[:] = apart(made.independent, lambda node: sorted(touching[node]))
+
+
+class Columns:
+    """Places of the independent speeds and of the prescribed ones in the arrays."""
+
+    def __init__(self, model: Mechanism, made: Kinematics) -> None:
+        first = len(model.nodes)
+        self.speeds = {node: place for place, node in enumerate(made.independent)}
+        self.prescribed = {first + number: number for number in range(len(model.role(Role.MOTION)))}
+
+    def split(self, rows: Sequence[Row]) -> tuple[Array, Array]:
+        """Rows over the independent speeds and over the prescribed ones."""
+        return _matrix(rows, self.speeds), _matrix(rows, self.prescribed)
+
+
+def _matrix(rows: Sequence[Row], places: Mapping[int, int]) -> Array:
+    made = np.zeros((len(rows), len(places)))
+    for number, row in enumerate(rows):
+        for column, value in row.items():
+            if column in places:
+                made[number, places[column]] = float(value)
+    return made
+
+
+def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, Any]:
+    """Basis and mass matrix, computed as fractions and rounded once."""
+    basis, basis_prescribed = columns.split(made.speeds)
+    rows: dict[int, Row] = {node: {} for node in made.independent}
+    for inertia, speed in zip(model.inertia, made.speeds, strict=True):
+        for node in speed.keys() & rows.keys() if inertia else ():
+            rows[node] = plus(rows[node], inertia * speed[node], speed)
+    mass, mass_prescribed = columns.split(list(rows.values()))
+    return {
+        "basis": basis,
+        "basis_prescribed": basis_prescribed,
+        "inertia": [float(inertia) for inertia in model.inertia],
+        "mass": mass,
+        "mass_prescribed": mass_prescribed,
+        "massless": [node in made.massless for node in made.independent],
+        "initial_angle": [node.angle for node in model.nodes],
+    }
+
+
+def _rates(model: Mechanism, made: Kinematics, columns: Columns, role: Role, prefix: str) -> dict[str, Any]:
+    rates, prescribed = columns.split([made.over(row) for c, row in model.acting if c.role is role])
+    return {
+        f"{prefix}_rate": rates,
+        f"{prefix}_rate_prescribed": prescribed,
+        f"{prefix}_kind": [kinds(role).index(component.kind) for component in model.role(role)],
+    }
+
+
+def _elements(model: Mechanism, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
+    params, offsets, refs = list[int](), list[int](), list[int]()
+    for element in model.role(Role.TORQUE):
+        params.append(pools.add(element, element.name))
+        offsets.append(len(states))
+        refs.append(wires.connect(element))
+        states += element.initial_states() if element.states else ()
+    return {
+        "element_param": params,
+        "element_state": offsets,
+        "element_input": refs,
+    }
+
+
+def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
+    contacts = model.role(Role.CONTACT)
+    laws, offsets = kinds(Role.LAW), list[int]()
+    for contact in contacts:
+        # bristles start without deflection
+        offsets.append(len(states))
+        states += [0.0] * len(contact.friction.own_states())
+    return {
+        "contact_param": [pools.add(contact, contact.name) for contact in contacts],
+        "contact_input": [wires.connect(contact) for contact in contacts],
+        "contact_law": [laws.index(contact.friction.kind) for contact in contacts],
+        "contact_law_param": [pools.add(contact.friction, f"{contact.name}.friction") for contact in contacts],
+        "contact_law_input": [wires.connect_law(contact) for contact in contacts],
+        "contact_state": offsets,
+        "contact_tolerance": [_tolerance(contact) for contact in contacts],
+        "contact_initial": [int(contact.locked) for contact in contacts],
+    }
+
+
+def _tolerance(contact: Any) -> float:
+    """Slip below which a contact may lock; the band of a Karnopp law widens it."""
+    return max(float(contact.tolerance), float(getattr(contact.friction, "band", 0.0)))
+
+
+def _gears(model: Mechanism) -> Iterable[Gearing]:
+    for gear in model.role(Role.GEAR):
+        joined = ports(gear)
+        for row in gear.rows():
+            yield Gearing(gear, {port: (model.index.get(id(joined[port]), -1), float(c)) for port, c in row.items()})
+
+
+def _shaped(arrays: Mapping[str, Any], model: Mechanism, made: Kinematics) -> dict[str, Array]:
+    """The arrays with the type and shape that the layout says."""
+    sizes = {"nodes": len(model.nodes), "speeds": len(made.independent), "prescribed": len(model.role(Role.MOTION))}
+    shaped = {}
+    for name, kind, shape, _ in FIELDS:
+        lengths = [size if isinstance(size, int) else sizes.get(size, len(arrays[name])) for size in shape]
+        shaped[name] = np.array(arrays[name], dtype=TYPES[kind]).reshape(lengths)
+    return shaped

@@ -1,0 +1,36 @@
+"""Where thermal nodes, processes and rates stand in a System: what references between components lead to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode
+from clutchwork.model.parts import sensor_name, state_name
+
+
+@dataclass(frozen=True)
+class Places:
+    """Numbers of shared states and directions by name."""
+
+    shared: Mapping[str, int]  # thermal node, or "process.state"
+    directions: Mapping[str, int]  # torque element or contact
+
+    def of(self, value: Any) -> tuple[str, int]:
+        """Sort and number of a reference; ambients, whose temperature is a signal, are no case of it."""
+        if isinstance(value, Rate | HeatFlow | Node):
+            acting = value if isinstance(value, Node) else value.of
+            name = sensor_name(acting) if isinstance(acting, Node) else acting.name
+            return "heat" if isinstance(value, HeatFlow) else "rate", self.directions[name]
+        return "shared", self.shared[state_name(value)]
+
+
+def places(thermal: Sequence[ThermalNode], processes: Sequence[Any], acting: Sequence[Component]) -> Places:
+    """Shared states: thermal nodes, then those of processes; directions: torque elements, then contacts."""
+    names = [node.name for node in thermal]
+    names += [f"{process.name}.{state.name}" for process in processes for state in type(process).states]
+    return Places(
+        {name: number for number, name in enumerate(names)},
+        {component.name: number for number, component in enumerate(acting)},
+    )

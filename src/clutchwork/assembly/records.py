@@ -1,0 +1,50 @@
+"""What a System holds besides numbers: its inputs, links and gears by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.declare.node import Component, Signal
+
+TYPES: dict[str, np.dtype[Any]] = {"f8": np.dtype("<f8"), "i4": np.dtype("<i4")}
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Input:
+    """One signal of a System: "c1.pressure", its unit, and what drives it."""
+
+    name: str
+    unit: str
+    signal: Signal
+
+
+@dataclass(frozen=True)
+class Link:
+    """An input that another component gives: "c1.pressure" from an actuator."""
+
+    name: str
+    unit: str
+    sort: str  # "input" (the temperature of an ambient) or "shared"
+    number: int
+
+
+@dataclass(frozen=True)
+class Gearing:
+    """One rigid row of a gear: sum over its ports of coefficient * speed = 0."""
+
+    gear: Component
+    ports: Mapping[str, tuple[int, float]]  # port -> (node or -1 for the housing, coefficient)
+
+
+def frozen(arrays: Mapping[str, Array]) -> Mapping[str, Array]:
+    """The arrays, no longer writeable."""
+    for array in arrays.values():
+        array.flags.writeable = False
+    return MappingProxyType(dict(arrays))

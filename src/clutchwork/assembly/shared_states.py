@@ -1,0 +1,86 @@
+"""States that any component may read: heat of thermal nodes, and those of processes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.declare.ports import thermal_ports
+from clutchwork.declare.schema import Role, kinds
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.inputs import Wires
+    from clutchwork.assembly.places import Places
+    from clutchwork.declare.node import ThermalNode
+    from clutchwork.model.pools import Pools
+    from clutchwork.model.structure import Mechanism
+
+
+@dataclass(frozen=True)
+class Shared:
+    """The shared states in order: thermal nodes, then processes.
+
+    That of a thermal mass is the heat that it holds above the start, so its temperature is
+    temperature at the start + heat/capacity; that of an ambient is the heat that it took up.
+    """
+
+    thermal: tuple[ThermalNode, ...]
+    processes: tuple[Any, ...]
+
+    def arrays(self, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
+        """Processes, and the start and scale of all shared states, which follow the given states."""
+        scale, offset = list[float](), list[float]()
+        for node in self.thermal:
+            states.append(0.0)
+            scale.append(1.0 if node.capacity is None else 1.0 / node.capacity)
+            offset.append(0.0 if node.capacity is None else float(node.temperature))  # type: ignore[arg-type]
+        first = list[int]()
+        for process in self.processes:
+            own = state_scales(process)
+            first.append(len(states))
+            states += [start / unit for start, unit in zip(process.initial_states(), own, strict=True)]
+            scale += own
+            offset += [0.0] * len(own)
+        return {
+            "process_kind": [kinds(Role.PROCESS).index(process.kind) for process in self.processes],
+            "process_param": [pools.add(process, process.name) for process in self.processes],
+            "process_input": [wires.connect(process) for process in self.processes],
+            "process_state": first,
+            "shared_scale": scale,
+            "shared_offset": offset,
+            "initial_state": states,
+        }
+
+
+def state_scales(process: Any) -> tuple[float, ...]:
+    """What one unit of each state of a process is worth."""
+    return process.state_scales() or (1.0,) * len(process.states)
+
+
+def flow_arrays(model: Mechanism, pools: Pools, wires: Wires) -> dict[str, Any]:
+    """Flows and the thermal nodes at their ends."""
+    flows = model.role(Role.FLOW)
+    ends = [[wires.places.shared[node.name] for node in thermal_ports(flow).values()] for flow in flows]
+    return {
+        "flow_kind": [kinds(Role.FLOW).index(flow.kind) for flow in flows],
+        "flow_param": [pools.add(flow, flow.name) for flow in flows],
+        "flow_input": [wires.connect(flow) for flow in flows],
+        "flow_from": [left for left, _ in ends],
+        "flow_to": [entered for _, entered in ends],
+    }
+
+
+def heat_arrays(model: Mechanism, where: Places) -> dict[str, Any]:
+    """Paths of heat from elements and contacts to thermal nodes."""
+    warm = [(number, component) for number, (component, _) in enumerate(model.acting) if _node_of_heat(component)]
+    return {
+        "heat_direction": [number for number, _ in warm],
+        "heat_to": [where.shared[component.heat.name] for _, component in warm],
+        "heat_share": [float(component.heat_share) for _, component in warm],
+    }
+
+
+def _node_of_heat(component: Any) -> ThermalNode | None:
+    """Thermal node that takes the heat of an element."""
+    node: ThermalNode | None = getattr(component, "heat", None)
+    return node

@@ -1,0 +1,157 @@
+"""The frozen System: flat arrays that the compiled core reads, and the names that belong to them."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from clutchwork.assembly.assemble import assembled
+from clutchwork.assembly.dependence import dependent_sets
+from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
+from clutchwork.base import archive
+from clutchwork.base.errors import ClutchworkError, ModelError, near
+from clutchwork.base.regular import reason
+from clutchwork.base.shown import shortened
+from clutchwork.declare.layout import COUNTS, FIELDS, layout_text
+from clutchwork.declare.node import Component, Node, ThermalNode
+from clutchwork.declare.schema import schema_hash
+from clutchwork.files.model_file import from_dict, to_dict
+from clutchwork.model.model import Model
+
+MAGIC = b"CLUTCHWK"
+
+
+class SystemFormatError(ClutchworkError, ValueError):
+    """Bytes or a file that hold no System of this version."""
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """A driveline ready to run; never changes, so any number of runs and threads may share it.
+
+    `arrays` holds what `layout.FIELDS` lists; each is also an attribute: `system.mass`.
+    Elements, contacts, motions, flows, processes and nodes stand in the order of their arrays.
+    """
+
+    name: str
+    arrays: Mapping[str, Array]
+    nodes: tuple[Node, ...] = ()
+    elements: tuple[Component, ...] = ()
+    contacts: tuple[Component, ...] = ()
+    motions: tuple[Component, ...] = ()
+    gears: tuple[Gearing, ...] = ()
+    thermal: tuple[ThermalNode, ...] = ()
+    flows: tuple[Component, ...] = ()
+    processes: tuple[Component, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    links: tuple[Link, ...] = ()
+    sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # "c1" -> parts that count as "c1"
+    independent: tuple[str, ...] = ()  # names of the nodes with independent speeds
+    parameters: Mapping[str, int] = field(default_factory=dict)  # "c1.gain" -> place in params
+    notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()  # what the driveline was warned of when it was assembled
+    model: Mapping[str, Any] = field(default_factory=dict)  # the driveline as in a model file
+
+    def __getattr__(self, name: str) -> Array:
+        try:
+            return self.__dict__["arrays"][name]  # type: ignore[no-any-return]
+        except KeyError:
+            raise AttributeError(f"a System has no {name!r}{near(name, [n for n, *_ in FIELDS])}") from None
+
+    def __getstate__(self) -> dict[str, Any]:
+        # a view of a dictionary cannot be pickled; what is cached comes again
+        fields = {name: value for name, value in vars(self).items() if name != "counts"}
+        return fields | {"arrays": dict(self.arrays)}
+
+    def __setstate__(self, fields: dict[str, Any]) -> None:
+        vars(self).update(fields | {"arrays": frozen(fields["arrays"])})
+
+    @cached_property
+    def counts(self) -> dict[str, int]:
+        """Sizes as `layout.COUNTS` lists them."""
+        sizes = {name: 0 for name, _ in COUNTS}
+        for name, _, shape, _ in FIELDS:
+            for size, length in zip(shape, self.arrays[name].shape, strict=True):
+                if isinstance(size, str):
+                    sizes[size] = max(sizes[size], length)
+        return sizes
+
+    @property
+    def dependent(self) -> tuple[tuple[str, ...], ...]:
+        """Sets of contacts that depend on each other when locked together, so that their shares are a convention."""
+        return dependent_sets([contact.name for contact in self.contacts], self.contact_rate)
+
+    @classmethod
+    def of(cls, model: Model, independent: Sequence[str] = ()) -> System:
+        """The System of a model without mistakes; `independent` names the shafts with the independent speeds."""
+        return cls(**assembled(model, independent), model=_source(model))
+
+    def to_bytes(self) -> bytes:
+        """The System as the compiled core reads it: little endian, every array aligned to 8 bytes."""
+        head = MAGIC + struct.pack("<q", schema_hash(layout_text()))
+        head += struct.pack(f"<{len(COUNTS)}q", *(self.counts[name] for name, _ in COUNTS))
+        parts = [head]
+        for name, kind, _, _ in FIELDS:
+            data = np.ascontiguousarray(self.arrays[name], dtype=TYPES[kind]).tobytes()
+            parts.append(data + bytes(-len(data) % 8))
+        return b"".join(parts)
+
+    @classmethod
+    def from_bytes(cls, data: bytes, name: str = "system") -> System:
+        """A System without names from the bytes of `to_bytes`."""
+        head = len(MAGIC) + 8 + 8 * len(COUNTS)
+        if len(data) < head or data[: len(MAGIC)] != MAGIC:
+            raise SystemFormatError("these bytes hold no System; take those of System.to_bytes")
+        if struct.unpack_from("<q", data, len(MAGIC))[0] != schema_hash(layout_text()):
+            raise SystemFormatError("this System was assembled by another version; assemble the driveline again")
+        sizes = dict(zip((n for n, _ in COUNTS), struct.unpack_from(f"<{len(COUNTS)}q", data, 16), strict=True))
+        arrays, start = {}, head
+        for item, kind, shape, _ in FIELDS:
+            lengths = [size if isinstance(size, int) else sizes[size] for size in shape]
+            count = int(np.prod(lengths))
+            if start + count * TYPES[kind].itemsize > len(data):
+                raise SystemFormatError(f"these bytes end within {item!r}; the file is cut off")
+            arrays[item] = np.frombuffer(data, TYPES[kind], count, start).reshape(lengths)
+            start += -(-count * TYPES[kind].itemsize // 8) * 8
+        return cls(name=name, arrays=frozen(arrays))
+
+    def save(self, path: str | Path) -> None:
+        """Write arrays and model to an archive; nothing in it is code."""
+        if not self.model:
+            raise SystemFormatError(
+                "this System has a controller in Python or no names; save its driveline or to_bytes()"
+            )
+        stored = {"model": json.dumps(dict(self.model), allow_nan=False), "independent": json.dumps(self.independent)}
+        archive.write(path, {"content": self.to_bytes(), **{key: value.encode() for key, value in stored.items()}})
+
+    @classmethod
+    def load(cls, path: str | Path) -> System:
+        """Read a file that `save` wrote; SystemFormatError or ModelError for any other."""
+        try:
+            content, *texts = archive.read(path, ("content", "model", "independent"))
+            model, independent = map(json.loads, texts)
+        except (ValueError, RecursionError, OSError) as error:
+            why = reason(error) if isinstance(error, OSError) else shortened(str(error))
+            raise SystemFormatError(f"{path}: no System can be read: {why}; write it with System.save") from None
+        if not isinstance(independent, list) or not all(isinstance(name, str) for name in independent):
+            raise SystemFormatError(f"{path}: its independent speeds are no names; write it with System.save")
+        named = cls.of(from_dict(model), independent)
+        plain = cls.from_bytes(content, named.name)
+        if any(plain.arrays[name].shape != array.shape for name, array in named.arrays.items()):
+            raise SystemFormatError(f"{path}: its arrays do not fit its model; write it with System.save")
+        return replace(named, arrays=plain.arrays)
+
+
+def _source(model: Model) -> Mapping[str, Any]:
+    """The model as plain data; empty when it holds Python functions."""
+    try:
+        return to_dict(model, embed=True)
+    except ModelError:
+        return {}

@@ -1,0 +1,230 @@
+"""The command line: run | check | demo | rig | fit | export | --version.
+
+Exit codes: 0 done; 1 the run stopped early (what was asked for is written up to there); 2 the command line or an
+option is wrong; 3 the model is wrong, every mistake is listed; 4 a file, such as the model, is missing or cannot be
+read or written, or a package is missing; 130 interrupted (a run writes what was asked for up to there).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import warnings
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.base.errors import ModelError, ModelFileError, ModelWarning
+from clutchwork.command.progress import Bar
+from clutchwork.declare.options import METHODS, Options, end_time
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.face.driveline import Driveline
+    from clutchwork.results.trajectory import Trajectory
+
+DONE, STOPPED, USAGE, MODEL, FILE, INTERRUPTED = 0, 1, 2, 3, 4, 130
+DEMO = Path("examples", "six_speed", "model.toml")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Entry point; the exit code."""
+    asked = parser().parse_args(arguments)
+    try:
+        return int(asked.command(asked))
+    except ModelFileError as error:
+        return _fail(asked, FILE, str(error), [str(problem) for problem in error.problems])
+    except ModelError as error:
+        return _fail(asked, MODEL, str(error), [str(problem) for problem in error.problems])
+    except (OSError, ImportError) as error:
+        return _fail(asked, FILE, str(error))
+    except (ValueError, TypeError, KeyError) as error:
+        return _fail(asked, USAGE, str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error))
+    except KeyboardInterrupt:
+        return _fail(asked, INTERRUPTED, "interrupted")
+
+
+def parser() -> argparse.ArgumentParser:
+    """What the command line understands."""
+    top = argparse.ArgumentParser(prog="clutchwork", description=__doc__.partition("\n")[0], epilog=_codes())
+    top.add_argument("--version", action="version", version=_version())
+    commands = top.add_subparsers(required=True, metavar="command")
+    _run_parser(commands.add_parser("run", help="compute the motion of a model", epilog=_codes()))
+    _check_parser(commands.add_parser("check", help="check a model and list its ratios, without running it"))
+    _demo_parser(commands.add_parser("demo", help="launch and 3-4 shift of a six-speed planetary gearbox"))
+    for module in ("rig", "fit", "codegen"):
+        import_module(f"clutchwork.{module}.command").add_command(commands)
+    return top
+
+
+def _run_parser(run: argparse.ArgumentParser) -> None:
+    run.set_defaults(command=_run)
+    run.add_argument("model", type=Path, help="model file, TOML or JSON")
+    run.add_argument("--t-end", type=float, metavar="S", help="end time [s]; default: t_end of the [simulation] table")
+    run.add_argument("--rtol", type=float, help="relative tolerance, default 1e-6")
+    run.add_argument("--atol", type=float, help="absolute tolerance, default 1e-8")
+    run.add_argument("--method", choices=sorted(METHODS), help="default rodas5p")
+    run.add_argument("--dt", type=float, metavar="S", help="spacing of the output [s]; default: refined steps")
+    run.add_argument("--max-step", type=float, metavar="S", help="longest step of the solver [s]")
+    run.add_argument("--ratio", metavar="A/B", help="shafts whose speed ratio is told; default: drive and load")
+    run.add_argument("--out", type=Path, metavar="DIR", help="write picture.png, trajectory.csv and events.csv there")
+    run.add_argument("--plot", type=Path, metavar="FILE", help="write the picture (png, svg or pdf)")
+    run.add_argument("--csv", type=Path, metavar="FILE", help="write all signals")
+    run.add_argument("--events", type=Path, metavar="FILE", help="write the events")
+    run.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
+    run.add_argument("--quiet", action="store_true", help="no report and no progress bar")
+
+
+def _check_parser(check: argparse.ArgumentParser) -> None:
+    check.set_defaults(command=_check)
+    check.add_argument("model", type=Path, help="model file, TOML or JSON")
+    check.add_argument("--ratio", metavar="A/B", help="shafts whose speed ratio is told; default: drive and load")
+    check.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
+
+
+def _demo_parser(demo: argparse.ArgumentParser) -> None:
+    demo.set_defaults(command=_demo)
+    demo.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "demo"), help="default: out/demo")
+    demo.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
+
+
+def _run(asked: argparse.Namespace) -> int:
+    from clutchwork.command import report
+    from clutchwork.face.driveline import Driveline
+    from clutchwork.results.ratios import phases
+
+    driveline = Driveline.load(asked.model)
+    system = _assembled(driveline)
+    shafts = _shafts(system, asked.ratio)
+    run, code = _simulated(driveline, system, asked)
+    found = phases(run, shafts) if shafts and len(run) else []
+    written = _write(run, asked) if len(run) else []
+    if asked.json:
+        _print_json(report.run_data(run, found, shafts) | {"files": [str(path) for path in written]})
+    elif not asked.quiet:
+        print(report.run_text(run, found, shafts))
+        print("\n".join(["", *(f"wrote {path}" for path in written)]) if written else "", end="\n" if written else "")
+    if not run.finished:
+        print(f"clutchwork: {run.message}", file=sys.stderr)
+    return code
+
+
+def _assembled(driveline: Driveline) -> System:
+    """The system of a model; what it is warned of is told on standard error."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        system = driveline.assemble()
+    for text in system.warnings:
+        print(f"warning: {text}", file=sys.stderr)
+    return system
+
+
+def _simulated(driveline: Driveline, system: System, asked: argparse.Namespace) -> tuple[Trajectory, int]:
+    """Run with the settings of the file, overruled by those of the command line; what came of it, and the exit code."""
+    from clutchwork.run.failure import Interrupted, StoppedEarly
+    from clutchwork.run.simulation import simulate
+
+    settings = dict(driveline.simulation)
+    for name in ("t_end", "rtol", "atol", "method", "dt", "max_step"):
+        given = getattr(asked, name)
+        settings |= {} if given is None else {name: given}
+    if "t_end" not in settings:
+        raise ValueError("no end time: give --t-end, or t_end in the [simulation] table of the model file")
+    t_end = end_time(settings.pop("t_end"))
+    with warnings.catch_warnings(), Bar(hidden=asked.quiet or asked.json) as bar:
+        # told by exit code and message instead
+        warnings.simplefilter("ignore", StoppedEarly)
+        try:
+            run = simulate(system, t_end, options=Options().changed(settings), progress=bar.show)
+        except Interrupted as stop:
+            return stop.trajectory, INTERRUPTED
+    return run, DONE if run.finished else STOPPED
+
+
+def _write(run: Trajectory, asked: argparse.Namespace) -> list[Path]:
+    """Write the wanted files; their paths."""
+    folder = asked.out
+    wanted: list[tuple[Path | None, Callable[[Path], object]]] = [
+        (asked.plot or (folder and folder / "picture.png"), run.plot),
+        (asked.csv or (folder and folder / "trajectory.csv"), run.to_csv),
+        (asked.events or (folder and folder / "events.csv"), run.events.to_csv),
+    ]
+    written = []
+    for path, write in wanted:
+        if path is not None:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write(path)
+            written.append(path)
+    return written
+
+
+def _check(asked: argparse.Namespace) -> int:
+    from clutchwork.command import report
+    from clutchwork.face.driveline import Driveline
+
+    system = _assembled(Driveline.load(asked.model))
+    shafts = _shafts(system, asked.ratio)
+    if asked.json:
+        _print_json(report.model_data(system, shafts))
+    else:
+        print(report.model_text(system, shafts))
+    return DONE
+
+
+def _demo(asked: argparse.Namespace) -> int:
+    """The demonstration is a plain run of the model in the examples."""
+    model = _demo_model()
+    line = ["run", str(model), "--out", str(asked.out), "--plot", str(asked.out / "shift.png")]
+    return int(_run(parser().parse_args([*line, "--json"] if asked.json else line)))
+
+
+def _demo_model() -> Path:
+    """The model beside the sources, or below the working directory or one above it."""
+    here = Path.cwd()
+    for folder in (Path(__file__).resolve().parents[3], here, *here.parents):
+        if (folder / DEMO).is_file():
+            return folder / DEMO
+    raise FileNotFoundError(f"{DEMO} not found: run this in the folder of the clutchwork sources")
+
+
+def _shafts(system: System, asked: str | None) -> tuple[str, str] | None:
+    from clutchwork.assembly.wiring import wiring
+    from clutchwork.base.errors import near
+    from clutchwork.results.ratios import input_and_output
+
+    if asked is None:
+        return input_and_output(wiring(system))
+    names = [node.name for node in wiring(system).nodes]
+    # a name may hold a slash itself
+    cuts = [(asked[:place], asked[place + 1 :]) for place, sign in enumerate(asked) if sign == "/"]
+    for upper, lower in cuts:
+        if upper in names and lower in names:
+            return upper, lower
+    missing = next((name for name in (cuts[0] if cuts else (asked,)) if name not in names), asked)
+    raise ValueError(f"--ratio {asked}: no shaft {missing!r}{near(missing, names)}; write it as input/output")
+
+
+def _fail(asked: argparse.Namespace, code: int, message: str, problems: Sequence[str] = ()) -> int:
+    if getattr(asked, "json", False):
+        _print_json({"error": message, "problems": list(problems), "exit_code": code})
+    print(f"clutchwork: {message}", file=sys.stderr)
+    return code
+
+
+def _print_json(data: dict[str, Any]) -> None:
+    print(json.dumps(data, indent=2))
+
+
+def _codes() -> str:
+    return " ".join((__doc__ or "").partition("\n\n")[2].split())
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return f"clutchwork {version('clutchwork')}"
+    except PackageNotFoundError:
+        return "clutchwork (not installed)"

@@ -1,0 +1,156 @@
+"""What the command line tells about a run or a model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.assembly.wiring import wiring
+from clutchwork.base.text import columns
+from clutchwork.results.ratios import Gears, Phase, gears
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.results.events import Events
+    from clutchwork.results.trajectory import Trajectory
+
+MOST_LINES = 40
+# signals whose last value is told
+FINAL = (".speed", ".temperature")
+
+
+def run_text(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] | None) -> str:
+    """Events, gears, energy and effort of a run."""
+    if not len(run):
+        return "nothing was computed"
+    parts = [event_text(run.events)]
+    if phases and shafts is not None:
+        parts.append(phase_text(phases, shafts))
+        parts += change_text(phases, shafts)
+    parts += dependent_text(run)
+    if run.options.work:
+        parts.append(str(run.energy))
+    parts.append(effort_text(run))
+    return "\n\n".join(parts)
+
+
+def event_text(events: Events) -> str:
+    """The events, the first ones when there are many."""
+    text = str(events[:MOST_LINES])
+    return text + (f"\n... and {len(events) - MOST_LINES} more" if len(events) > MOST_LINES else "")
+
+
+def phase_text(phases: Sequence[Phase], shafts: tuple[str, str]) -> str:
+    """Which contacts were locked when, and the ratio that they gave."""
+    head = ("from s", "to s", "locked", f"{shafts[0]}/{shafts[1]} by gears", "at the end")
+    lines = [
+        (f"{p.begin:.6f}", f"{p.end:.6f}", " ".join(p.closed) or "-", number(p.kinematic), number(p.measured))
+        for p in phases[:MOST_LINES]
+    ]
+    return columns([head, *lines], right={0, 1, 3, 4})
+
+
+def change_text(phases: Sequence[Phase], shafts: tuple[str, str]) -> list[str]:
+    """The ratio of the first and of the last gear, when there are two."""
+    known = [phase for phase in phases if phase.kinematic is not None and math.isfinite(phase.kinematic)]
+    if len(known) < 2:
+        return []
+    gears, seen = ([number(getattr(known[k], name)) for k in (0, -1)] for name in ("kinematic", "measured"))
+    ratio = f"ratio {shafts[0]}/{shafts[1]}"
+    return [f"{ratio} before and after: {' -> '.join(seen)} at the ends of the phases, {' -> '.join(gears)} by gears"]
+
+
+def dependent_text(run: Trajectory) -> list[str]:
+    """When the shares of locked contacts in their load were a convention."""
+    if not run.dependent:
+        return []
+    found = run.dependent[:MOST_LINES]
+    lines = [f"{phase.begin:.6f} to {phase.end:.6f} s: {' '.join(phase.contacts)}" for phase in found]
+    return ["locked contacts that depend on each other; they share their load by capacity:\n" + "\n".join(lines)]
+
+
+def effort_text(run: Trajectory) -> str:
+    """Steps and time that the run took."""
+    s = run.statistics
+    return (
+        f"{run.time[-1]:g} s computed in {1e3 * s['core_seconds']:.3f} ms"
+        f" ({1e3 * s['seconds']:.1f} ms with all signals at {len(run)} instants),"
+        f" {s.get('steps', 0):g} steps, {s.get('rejected', 0):g} rejected, {len(run.events)} events"
+    )
+
+
+def run_data(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] | None) -> dict[str, Any]:
+    """The same as plain data for JSON."""
+    return {
+        "status": run.status,
+        "message": run.message,
+        "warnings": list(run.system.warnings),
+        "time_s": float(run.time[-1]) if len(run) else 0.0,
+        "events": [_finite(asdict(event)) for event in run.events],
+        "ratio_of": list(shafts) if shafts else None,
+        "phases": [_finite(asdict(phase)) for phase in phases],
+        "dependent": [asdict(phase) for phase in run.dependent] if len(run) else [],
+        "energy": run.energy.as_dict() if run.options.work and len(run) else None,
+        "final": {name: float(run[name][-1]) for name in run.names if name.endswith(FINAL) and len(run)},
+        "statistics": dict(run.statistics),
+    }
+
+
+def model_text(system: System, shafts: tuple[str, str] | None) -> str:
+    """Size of a model, the ratios that its contacts can give, and which of these depend on each other."""
+    parts = [", ".join(f"{count} {name}" for name, count in sizes(system).items())]
+    dependent = "; ".join(" ".join(names) for names in system.dependent)
+    if dependent:
+        parts.append(f"depend on each other when locked together, and share their load by capacity: {dependent}")
+    if shafts is None:
+        return "\n\n".join(parts)
+    found = gears(system, shafts)
+    lines = [(" ".join(closed) or "-", number(value)) for closed, value in found.ratios]
+    if lines:
+        parts.append(columns([("closed", f"{shafts[0]}/{shafts[1]}"), *lines], right={1}))
+    if found.untried is not None:
+        parts.append(f"not tried: {found.untried} or more contacts closed at once, there are too many such sets")
+    return "\n\n".join(parts)
+
+
+def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]:
+    """The same as plain data for JSON."""
+    found = gears(system, shafts) if shafts else Gears((), None)
+    return {
+        "warnings": list(system.warnings),
+        "sizes": sizes(system),
+        "ratio_of": list(shafts) if shafts else None,
+        "gears": [{"closed": list(closed), "ratio": value} for closed, value in found.ratios],
+        "gears_untried_from": found.untried,
+        "dependent": [list(names) for names in system.dependent],
+    }
+
+
+def sizes(system: System) -> dict[str, int]:
+    """How much of what a model has."""
+    parts = wiring(system)
+    more = {"thermal nodes": parts.thermal, "heat flows": parts.flows, "processes": parts.processes}
+    return {
+        "shafts and masses": len(parts.nodes),
+        "independent speeds": int(system.basis.shape[1]),
+        "gear rows": len(parts.gears),
+        "torque elements": sum(not branch.hidden for branch in parts.elements),
+        "contacts": len(parts.contacts),
+        "prescribed speeds": len(parts.motions),
+        "inputs": len(parts.inputs),
+        **{name: len(things) for name, things in more.items() if things},
+    }
+
+
+def _finite(data: dict[str, Any]) -> dict[str, Any]:
+    """JSON has no infinity."""
+    return {name: None if isinstance(x, float) and not math.isfinite(x) else x for name, x in data.items()}
+
+
+def number(value: float | None) -> str:
+    """A ratio in words."""
+    if value is None:
+        return "free"
+    return f"{value:.4f}" if math.isfinite(value) else "held"

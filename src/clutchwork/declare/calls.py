@@ -1,0 +1,106 @@
+"""Calls with wrong arguments: all that is wrong with one at once, in the words of its declaration."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import is_dataclass
+from typing import Any, TypeVar
+
+from clutchwork.base.errors import UseError, near, nearest
+from clutchwork.base.shown import listed, shown
+from clutchwork.declare.schema import specs
+from clutchwork.declare.wanted import wanted
+
+OWNERS = ("self", "cls")
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def explained(call: str) -> Callable[[F], F]:
+    """Let a function answer a call that does not fit it with a UseError that names every mistake."""
+
+    def wrap(function: F) -> F:
+        @functools.wraps(function)
+        def called(*args: Any, **named: Any) -> Any:
+            try:
+                return function(*args, **named)
+            except TypeError:
+                problems = list(_problems(function, args, named, {}))
+                if not problems:
+                    raise
+                raise UseError(call, problems) from None
+
+        return called  # type: ignore[return-value]
+
+    return wrap
+
+
+def explain(cls: Any) -> None:
+    """Let the constructor of a declaration do so."""
+    made = cls.__init__
+
+    @functools.wraps(made)
+    def construct(self: Any, *args: Any, **named: Any) -> None:
+        try:
+            made(self, *args, **named)
+        except TypeError:
+            problems = list(_problems(made, (self, *args), named, _meanings(cls)))
+            if not problems:
+                raise
+            raise UseError(f"cw.{cls.__name__}({_name(args, named)})", problems) from None
+
+    cls.__init__ = construct
+
+
+def _name(args: tuple[Any, ...], named: Mapping[str, Any]) -> str:
+    name = args[0] if args else named.get("name")
+    return shown(name).replace("'", '"') if isinstance(name, str) else ""
+
+
+def _meanings(cls: type) -> dict[str, str]:
+    """What each field asks for; that of the unit of what a signal drives is left open."""
+    if not is_dataclass(cls):
+        return {}
+    return {
+        item.name: f"give {wanted(spec, spec.unit).replace(' in [*]', '').replace(' and [*]', '')}: {spec.doc}"
+        for item, spec in specs(cls)
+    }
+
+
+def _problems(
+    function: Callable[..., Any], args: tuple[Any, ...], named: Mapping[str, Any], meanings: Mapping[str, str]
+) -> Iterator[str]:
+    """What does not fit the parameters of a function; nothing where all does."""
+    parameters = list(inspect.signature(function).parameters.values())
+    if any(p.kind is p.VAR_POSITIONAL for p in parameters):
+        return
+    by_place = [p.name for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
+    known = [p.name for p in parameters if p.name not in OWNERS and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
+    open_ended = any(p.kind is p.VAR_KEYWORD for p in parameters)
+    unknown = [] if open_ended else [name for name in named if name not in known]
+    given = {*by_place[: len(args)], *named}
+    meant = {nearest(name, [other for other in known if other not in given]) for name in unknown}
+    spare = args[len(by_place) :]
+    if spare:
+        # those that must be given first
+        rest = sorted((p for p in parameters if p.name in known), key=lambda p: p.default is not p.empty)
+        yield _spare(spare, [p for p in by_place if p not in OWNERS], [p.name for p in rest if p.name not in given])
+    for name in set(by_place[: len(args)]) & set(named):
+        yield f"{name} is given twice, positional and by keyword; give it once"
+    for name in unknown:
+        yield f"unknown field {shown(name)}{near(name, known)}; allowed: {listed(known)}"
+    for p in parameters[len(args) :]:
+        lacks = p.default is p.empty and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) and p.name not in named
+        # values by place are meant for some of them, and so is a name close to theirs
+        if lacks and p.name not in meant and not (spare and p.kind is p.KEYWORD_ONLY):
+            yield f"{p.name} is missing; {meanings.get(p.name, f'give {p.name}=...')}"
+
+
+def _spare(spare: tuple[Any, ...], by_place: list[str], known: list[str]) -> str:
+    if by_place == ["points"] and hasattr(spare[0], "__len__"):
+        return "times and values are positional; write pairs: cw.Table([(0, 0), (1, 2e5)])"
+    values = "1 value is" if len(spare) == 1 else f"{len(spare)} values are"
+    first = f"only {' and '.join(by_place)} may be" if by_place else "none may be"
+    example = ", ".join(f"{name}=..." for name in known[: len(spare)])
+    return f"{values} positional, {first}; give the others by keyword{f', such as {example}' if example else ''}"

@@ -1,0 +1,200 @@
+"""What components attach to, and the bases of elements, laws and signals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from clutchwork.declare.schema import State
+
+
+class Domain(Enum):
+    """Kind of motion of a node."""
+
+    ROTATION = "rotation"
+    TRANSLATION = "translation"
+
+
+@dataclass(frozen=True)
+class Node:
+    """A shaft, a mass or the housing, as `Driveline.shaft`, `.mass` and `.housing` hand it out."""
+
+    name: str
+    domain: Domain = Domain.ROTATION
+    inertia: float = 0.0  # kg m2, or kg for a mass
+    speed: float | None = None  # rad/s or m/s at the start; None: follows from the others, else 0
+    angle: float = 0.0  # rad or m at the start
+    fixed: bool = False  # the housing
+
+    def __reduce__(self) -> str | tuple[Any, ...]:
+        # there is one housing, copies included
+        if self is HOUSING:
+            return "HOUSING"
+        return Node, (self.name, self.domain, self.inertia, self.speed, self.angle, self.fixed)
+
+
+HOUSING = Node("housing", fixed=True)
+
+
+@dataclass(frozen=True)
+class ThermalNode:
+    """A mass that holds heat, or an ambient of given temperature, as `Driveline.thermal` and `.ambient` hand it out."""
+
+    name: str
+    capacity: float | None = None  # J/K; None: an ambient, whose temperature does not depend on the heat it takes
+    temperature: SignalLike = 300.0  # K, of a mass at the start, of an ambient over time
+
+
+class Passive(NamedTuple):
+    """Torque `-(stiffness twist + damping rate)` on the follower, in N m/rad and N m s/rad, or N/m and N s/m."""
+
+    stiffness: float
+    damping: float
+
+
+@dataclass(frozen=True)
+class Component:
+    """An element with a name that is its path in results and errors."""
+
+    one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
+    lossy: ClassVar[bool] = False  # a torque element whose work is heat, what it stores apart
+
+    name: str
+
+    def parts(self) -> Iterable[Component | ThermalNode]:
+        """What it is made of, named `{self.name}.{part}`; nothing: it is one piece.
+
+        One part may have the name of the component itself and stands for it in events and results. Parts refer to
+        each other by name, so `HeatFlow(self)` is that of this part.
+        """
+        return ()
+
+    def part(self, name: str) -> Component | ThermalNode:
+        """A part by its name within this component; KeyError when there is none."""
+        named = {part.name: part for part in self.parts()}
+        return named[f"{self.name}.{name}"]
+
+    def state_scales(self) -> tuple[float, ...]:
+        """Of a process: what one unit of each of its states in the solver is worth, 1 where nothing is said.
+
+        The tolerances of a run are absolute too, so a state should not be small against 1.
+        """
+        return ()
+
+    def passive(self) -> Passive | None:
+        """Stiffness and damping of an element whose torque is nothing else; None: its torque is another.
+
+        The damping of such elements determines the speed of a shaft without inertia, and springs alone keep their
+        balance there. An element that is none never carries such a shaft.
+        """
+        return None
+
+    def sums(self) -> tuple[str, ...]:
+        """Names of parts, within it, whose torque, power, work and heat count as those of its own name."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Law:
+    """A friction law; it has no name of its own.
+
+    A law that sticks is set-valued: it locks exactly. One that does not is compliant: its torque is a function of
+    slip and of its own states, and it never locks.
+    """
+
+    sticks: ClassVar[bool] = True
+    states: ClassVar[tuple[State, ...]] = ()
+
+    def own_states(self) -> tuple[State, ...]:
+        """The states in use, the first ones of `states`."""
+        return self.states
+
+    def advice(self) -> list[tuple[str, str, str]]:
+        """Properties that are allowed and rarely wanted, as (quantity, what is so, remedy); each becomes a warning."""
+        return []
+
+    def sliding(self) -> float | None:
+        """Kinetic coefficient at vanishing slip; None: the compiled core is asked."""
+        return None
+
+
+class Segment(NamedTuple):
+    """One piece of a signal.
+
+    With s = t - start its value is c0 + c1 s + c2 s^2 + c3 s^3 + amplitude exp(-decay s) sin(omega s + phase), and a
+    second wave of the same form.
+    """
+
+    start: float
+    c0: float = 0.0
+    c1: float = 0.0
+    c2: float = 0.0
+    c3: float = 0.0
+    amplitude: float = 0.0
+    omega: float = 0.0
+    phase: float = 0.0
+    decay: float = 0.0
+    amplitude_2: float = 0.0
+    omega_2: float = 0.0
+    phase_2: float = 0.0
+    decay_2: float = 0.0
+
+    @property
+    def waves(self) -> tuple[tuple[float, float, float, float], ...]:
+        """Amplitude, omega, phase and decay of each wave that is there."""
+        return tuple(wave for wave in (self[5:9], self[9:13]) if wave[0] != 0.0)
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A value over time in the unit of the quantity that it drives."""
+
+    def segments(self) -> tuple[Segment, ...]:
+        """Pieces in order of their start.
+
+        The first one starts at or before t = 0; where the pieces repeat it may start later, and until then the
+        signal rests at the value with which the last one starts.
+        """
+        raise NotImplementedError
+
+    def unit_problems(self, units: tuple[str, ...]) -> list[tuple[str, str, str]]:  # noqa: ARG002, most need none
+        """What does not fit the units of the driven quantity, where the values say their own, as `problems` does."""
+        return []
+
+    def repeats(self) -> float:
+        """Period [s] with which the pieces repeat from the start of the first one; 0: never."""
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Rate:
+    """Rate of an element, or slip of a contact, as an input of a flow or process [rad/s]."""
+
+    of: Component
+
+
+@dataclass(frozen=True)
+class HeatFlow:
+    """Heat that an element or a contact makes, as an input of a flow or process [W]."""
+
+    of: Component
+
+
+# what an input accepts
+SignalLike: TypeAlias = "float | Signal | ThermalNode | Component | tuple[Component, str] | Node | Rate | HeatFlow"
+# (x, y) pairs of a curve
+Points: TypeAlias = "Sequence[tuple[float, float]]"
+# units of the gain of a contact, on shafts and on masses: torque or force per pressure, per force, per share
+GAIN_OF_PRESSURE = ("m3", "m2")
+GAIN_OF_FORCE = ("m", "1", "N m", "N")
+
+
+def is_reference(value: object) -> bool:
+    """Whether an input is given by another component or node."""
+    if isinstance(value, tuple):
+        return len(value) == 2 and isinstance(value[0], Component) and isinstance(value[1], str)
+    return isinstance(value, ThermalNode | Component | Node | Rate | HeatFlow)

@@ -1,0 +1,20 @@
+"""What a field of a declaration asks for, in words."""
+
+from __future__ import annotations
+
+from clutchwork.declare.schema import Role, Spec
+from clutchwork.declare.speech import kinds_of
+
+
+def wanted(spec: Spec, unit: str) -> str:
+    """What a field asks for, in words."""
+    if spec.choices:
+        return f"one of {', '.join(spec.choices)}"
+    return {
+        "port": "a shaft",
+        "thermal": "a thermal node",
+        "law": f"a friction law ({kinds_of(Role.LAW)})",
+        "curve": f"points in [{spec.unit_x}] and [{unit}]",
+        "numbers": f"a list of numbers in [{unit}]",
+        "text": "a text",
+    }.get(spec.what, f"a value in [{unit}]")

@@ -1,0 +1,16 @@
+"""What all elements have in common that turn work into heat."""
+
+from __future__ import annotations
+
+from clutchwork.declare.node import Component, ThermalNode
+from clutchwork.declare.schema import family, option, port
+
+
+@family
+class Heating(Component):
+    """An element whose heat may go to a thermal node."""
+
+    heat: ThermalNode | None = port("thermal node that takes its heat", default=None, domain="thermal", last=True)
+    heat_share: float = option(
+        "1", "share of it, the rest is not followed", default=1.0, at_least=0.0, at_most=1.0, last=True
+    )

@@ -1,0 +1,190 @@
+"""Build and check a model: shafts, masses, the housing, and the elements between them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from clutchwork.base.errors import ModelError, Problem, UseError, warn
+from clutchwork.base.shown import shown
+from clutchwork.declare.calls import explained
+from clutchwork.declare.node import HOUSING, Component, Domain, Node, Signal, ThermalNode
+from clutchwork.declare.speech import words_of_files
+from clutchwork.model.model import Model
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.results.trajectory import Trajectory
+
+E = TypeVar("E", bound=Component)
+
+
+class Driveline:
+    """A driveline under construction.
+
+    Mistakes are collected, not raised one by one: `check` lists all of them, `assemble` and `simulate` raise
+    `ModelError` with all of them.
+    """
+
+    def __init__(self, name: str = "driveline") -> None:
+        """Start an empty driveline."""
+        self._model = Model(name)
+
+    @property
+    def name(self) -> str:
+        """Name of the driveline."""
+        return self._model.name
+
+    @property
+    def simulation(self) -> dict[str, Any]:
+        """Settings of a run, as in [simulation] of a model file: t_end, dt, rtol ..."""
+        return self._model.settings
+
+    @property
+    def nodes(self) -> tuple[Node, ...]:
+        """Shafts and masses in the order in which they were added."""
+        return tuple(self._model.nodes)
+
+    @property
+    def thermal_nodes(self) -> tuple[ThermalNode, ...]:
+        """Thermal masses and ambients in the order in which they were added."""
+        return tuple(self._model.thermal)
+
+    @property
+    def elements(self) -> tuple[Component, ...]:
+        """Elements in the order in which they were added."""
+        return tuple(self._model.elements)
+
+    @property
+    def housing(self) -> Node:
+        """What does not move: the base of brakes and the support of gears."""
+        return HOUSING
+
+    @explained("d.shaft")
+    def shaft(self, name: str, *, inertia: float = 0.0, speed: float | None = None, angle: float = 0.0) -> Node:
+        """Add a shaft.
+
+        Parameters: inertia [kg m2], 0 only where gears or damped springs determine the motion; speed [rad/s] and
+        angle [rad] at the start. A shaft without a given speed takes the one that gears give it, else starts at rest.
+        """
+        return self.add_node(Node(name, Domain.ROTATION, inertia, speed, angle))
+
+    @explained("d.mass")
+    def mass(self, name: str, *, mass: float = 0.0, speed: float | None = None, position: float = 0.0) -> Node:
+        """Add a mass that moves along a line.
+
+        Parameters: mass [kg]; speed [m/s] and position [m] at the start. All else is as for a shaft.
+        """
+        return self.add_node(Node(name, Domain.TRANSLATION, mass, speed, position))
+
+    @explained("d.add_node")
+    def add_node(self, node: Node) -> Node:
+        """Add a shaft or a mass that was made elsewhere."""
+        if not isinstance(node, Node):
+            raise UseError("d.add_node", [f"{shown(node)} is not a shaft or mass; add a cw.Node, or call d.shaft(...)"])
+        self._model.nodes.append(node)
+        return node
+
+    @explained("d.thermal")
+    def thermal(self, name: str, *, capacity: float, temperature: float = 300.0) -> ThermalNode:
+        """Add a mass that holds heat and has one temperature.
+
+        Parameters: capacity [J/K], mass times specific heat; temperature [K] at the start.
+        """
+        return self.add_thermal(ThermalNode(name, capacity, temperature))
+
+    @explained("d.ambient")
+    def ambient(self, name: str, *, temperature: float | Signal = 300.0) -> ThermalNode:
+        """Add surroundings whose temperature [K], a number or a signal, does not depend on the heat they take."""
+        return self.add_thermal(ThermalNode(name, None, temperature))
+
+    @explained("d.add_thermal")
+    def add_thermal(self, node: ThermalNode) -> ThermalNode:
+        """Add a thermal mass or an ambient that was made elsewhere."""
+        if not isinstance(node, ThermalNode):
+            raise UseError("d.add_thermal", [f"{shown(node)} is not a thermal node; add a cw.ThermalNode"])
+        self._model.thermal.append(node)
+        return node
+
+    def add(self, element: E) -> E:
+        """Add an element and hand it back; UseError, a TypeError, for what is none."""
+        if not isinstance(element, Component):
+            raise UseError("d.add", [f"{shown(element)} is not an element; add one such as cw.Clutch(...)"])
+        self._model.elements.append(element)
+        return element
+
+    def check(self) -> list[Problem]:
+        """All mistakes of the model, an empty list when there is none.
+
+        What is allowed and rarely wanted, such as a friction law that can give energy away, is a `ModelWarning`.
+        """
+        from clutchwork.model.problems import model_advice, model_problems
+
+        with words_of_files(self._model.from_file):
+            problems, advice = model_problems(self._model), model_advice(self._model)
+        for one in advice:
+            warn(one)
+        return problems
+
+    @explained("d.assemble")
+    def assemble(self, independent: Sequence[str] = ()) -> System:
+        """Reduce the driveline to its independent speeds.
+
+        Parameters: independent, names of the shafts whose speeds shall be the independent ones; by default those
+        with the most inertia. ModelError lists all mistakes, warnings are those of `check`.
+        """
+        from clutchwork.assembly.system import System
+        from clutchwork.model.problems import TOO_FAR_APART
+
+        problems = self.check()
+        if problems:
+            raise ModelError(problems, self.name)
+        with words_of_files(self._model.from_file):
+            try:
+                return System.of(self._model, independent)
+            except ArithmeticError:
+                raise ModelError([TOO_FAR_APART], self.name) from None
+
+    @explained("d.simulate")
+    def simulate(self, t_end: float, **options: Any) -> Trajectory:
+        """Assemble and run up to t_end [s]; options as for `clutchwork.simulate`."""
+        from clutchwork.run.simulation import simulate
+
+        return simulate(self.assemble(), t_end, **options)
+
+    @classmethod
+    @explained("cw.Driveline.load")
+    def load(cls, path: str | Path) -> Driveline:
+        """Read a model file, TOML or JSON; ModelError lists all its mistakes."""
+        if not isinstance(path, str | Path):
+            raise UseError("cw.Driveline.load", [f"{shown(path)} is not a path; give the name of a TOML or JSON file"])
+        from clutchwork.files.model_file import load
+
+        return cls._of(load(path))
+
+    @explained("d.save")
+    def save(self, path: str | Path) -> None:
+        """Write a model file, TOML or JSON by its ending."""
+        from clutchwork.files.model_file import save
+
+        save(self._model, path)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], folder: str | Path = "") -> Driveline:
+        """A driveline from the content of a model file; CSV paths are relative to the folder."""
+        from clutchwork.files.model_file import from_dict
+
+        return cls._of(from_dict(data, folder))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of a model file."""
+        from clutchwork.files.model_file import to_dict
+
+        return to_dict(self._model)
+
+    @classmethod
+    def _of(cls, model: Model) -> Driveline:
+        made = cls(model.name)
+        made._model = model
+        return made

@@ -1,0 +1,1 @@
+"""Model files: read, written, with the line of every mistake."""

@@ -1,0 +1,158 @@
+"""Model files, TOML or JSON of the same shape: read with all mistakes at once, and written so that they read back.
+
+    name = "two discs"
+    [[shaft]]
+    name = "engine"
+    inertia = 0.2                       # SI, or a text with a unit: "2000 kg cm2"
+    [[element]]
+    name = "c1"
+    type = "clutch"                     # kind of element, then its ports and parameters
+    base = "engine"
+    follower = "load"
+    gain = 0.1
+    pressure = {type = "column", path = "pressures.csv", column = "c1", unit = "bar"}
+    friction = {type = "coulomb", static = 0.12, kinetic = 0.1}
+    heat = "lining"
+    [[thermal]]
+    name = "lining"
+    capacity = "2 kJ/K"
+    [[ambient]]
+    name = "air"
+    temperature = 293.0
+    [simulation]
+    t_end = 2.0
+
+Nothing in a model file is evaluated.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from clutchwork.base.errors import ModelError, ModelFileError, Problem
+from clutchwork.base.regular import read_regular, reason
+from clutchwork.base.shown import shortened, shown
+from clutchwork.declare.node import Domain
+from clutchwork.declare.speech import words_of_files
+from clutchwork.files.lines import Lines
+from clutchwork.files.reader import FORMAT, Reader
+from clutchwork.files.writer import Writer, toml
+from clutchwork.model.model import Model
+from clutchwork.model.problems import model_problems
+from clutchwork.model.thermal import node_kind
+
+# more belongs into CSV files
+MOST_BYTES = 10_000_000
+
+
+def load(path: str | Path) -> Model:
+    """Read a model file; ModelError lists all its mistakes."""
+    path = Path(path)
+    try:
+        text = read_regular(path, MOST_BYTES).decode("utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        why = reason(error) if isinstance(error, OSError) else "it is not text in UTF-8"
+        problem = Problem("file", "", f"cannot be read: {why}", remedy="give a TOML or JSON file in UTF-8")
+        raise ModelFileError([problem], str(path)) from None
+    return _from_text(path, text.replace("\r\n", "\n"))
+
+
+def _from_text(path: Path, text: str) -> Model:
+    if path.suffix.lower() not in (".toml", ".json"):
+        problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename it")
+        raise ModelError([problem], str(path))
+    with tolerable(str(path)):
+        data = _parsed(path, text)
+    return from_dict(data, path.parent, str(path), Lines(text, path.suffix.lower()))
+
+
+def _parsed(path: Path, text: str) -> Any:
+    try:
+        if path.suffix.lower() == ".json":
+            return json.loads(text, object_pairs_hook=_once, parse_constant=_no_constant)
+        import tomllib
+
+        return tomllib.loads(text)
+    except ValueError as error:
+        fault = f"is not valid {path.suffix[1:].upper()}: {shortened(str(error))}"
+        raise ModelError([Problem("file", "", fault, remedy=_fix(str(error)))], str(path)) from None
+
+
+@contextmanager
+def tolerable(source: str) -> Iterator[None]:
+    """Refuse data so deep that Python cannot follow it."""
+    try:
+        yield
+    except RecursionError:
+        remedy = "a model file needs four levels, and elements that follow each other's states no more than a few dozen"
+        raise ModelError([Problem("file", "", "is nested too deeply", remedy=remedy)], source) from None
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    made: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in made:
+            raise ValueError(f"key {shown(key)} stands twice in one object")
+        made[key] = value
+    return made
+
+
+def _no_constant(name: str) -> float:
+    raise ValueError(f"{name} is not a number of a model file")
+
+
+def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines | None = None) -> Model:
+    """A model from the content of a model file; CSV paths are relative to the folder."""
+    reader = Reader(str(folder))
+    with tolerable(source), words_of_files():
+        model = reader.model(data)
+        problems = reader.problems + model_problems(model, reader.incomplete)
+    if problems:
+        placed = [lines.placed(problem, data) for problem in problems] if lines else problems
+        raise ModelError(placed, source or model.name)
+    model.from_file = True
+    return model
+
+
+def save(model: Model, path: str | Path) -> None:
+    """Write a model file, TOML or JSON by its ending; CSV files stay where they are."""
+    path = Path(path)
+    data = to_dict(model, folder=path.parent)
+    if path.suffix.lower() == ".json":
+        text = json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+    elif path.suffix.lower() == ".toml":
+        text = toml(data)
+    else:
+        problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename it")
+        raise ModelError([problem], str(path))
+    path.write_text(text, encoding="utf-8")
+
+
+def to_dict(model: Model, *, folder: str | Path | None = None, embed: bool = False) -> dict[str, Any]:
+    """The content of a model file.
+
+    Paths of CSV files become relative to the folder; with `embed` their values are written in their place.
+    ModelError names what a model file cannot hold.
+    """
+    writer = Writer(None if folder is None else str(folder), embed)
+    data: dict[str, Any] = {"format": FORMAT, "name": model.name}
+    for key, domain in (("shaft", Domain.ROTATION), ("mass", Domain.TRANSLATION)):
+        data[key] = [writer.node(node) for node in model.nodes if node.domain is domain]
+    for key in ("thermal", "ambient"):
+        data[key] = [writer.thermal(node) for node in model.thermal if node_kind(node) == key]
+    data["element"] = [writer.element(element) for element in model.elements]
+    data["simulation"] = dict(model.settings)
+    if writer.problems:
+        raise ModelError(writer.problems, model.name)
+    return {key: value for key, value in data.items() if value not in ([], {})}
+
+
+def _fix(words: str) -> str:
+    """The place in a file that a parser complains of, to be fixed."""
+    found = re.search(r"line (\d+),? column (\d+)", words)
+    return f"fix line {found[1]}, column {found[2]}" if found else "fix the text there"

@@ -1,0 +1,151 @@
+"""From the plain data of a model file to a model: names, units, types; every mistake is collected."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import MISSING
+from typing import Any
+
+from clutchwork.base.errors import Problem, near
+from clutchwork.base.shown import listed, shown
+from clutchwork.declare.node import Component, Domain, Node, ThermalNode
+from clutchwork.declare.schema import REGISTRY, Role, Spec
+from clutchwork.declare.speech import element_path
+from clutchwork.files.references import References
+from clutchwork.files.values import Values
+from clutchwork.model.fields import BROKEN, CHECKS
+from clutchwork.model.model import Model
+from clutchwork.model.numbers import At
+from clutchwork.model.problems import NODE_FIELDS, node_path
+from clutchwork.model.thermal import NODE_FIELDS as THERMAL_FIELDS
+
+FORMAT = 1
+TOP = ("format", "name", "description", "shaft", "mass", "thermal", "ambient", "element", "simulation")
+ELEMENTS = tuple(role for role in Role if role not in (Role.LAW, Role.SIGNAL))
+SIMULATION = {
+    "t_end": Spec("param", "s", "end time", above=0.0),
+    "dt": Spec("param", "s", "spacing of the output", above=0.0),
+    "rtol": Spec("param", "1", "relative tolerance", above=0.0),
+    "atol": Spec("param", "1", "absolute tolerance", above=0.0),
+    "max_step": Spec("param", "s", "largest step", above=0.0),
+    "method": Spec("text", "", "auto, rodas5p or dopri5"),
+}
+
+
+def element_kinds() -> dict[str, Any]:
+    """All kinds of elements that a model file may name."""
+    return {kind: cls for role in ELEMENTS for kind, cls in REGISTRY[role].items()}
+
+
+class Reader(Values):
+    """Turns plain data into a model and collects what is wrong with it."""
+
+    def __init__(self, folder: str) -> None:
+        super().__init__(folder, References(self._element))
+        self.incomplete: list[str] = []  # nodes at elements that could not be made
+
+    def model(self, data: Any) -> Model:
+        """Everything that can be made of the data."""
+        if not isinstance(data, Mapping):
+            self._report(At("file", ""), "must be a table", remedy="see the guide on model files")
+            return Model()
+        self._unknown(data, TOP, At("file", ""))
+        if data.get("format", FORMAT) != FORMAT:
+            remedy = f"this version reads format {FORMAT}"
+            self._report(At("file", "format"), "is not known", shown(data["format"]), remedy)
+        model = Model(self._text(data, "name", At("file", ""), "driveline"))
+        for kind, domain in (("shaft", Domain.ROTATION), ("mass", Domain.TRANSLATION)):
+            for place, entry in self._entries(data, kind):
+                self._node(model, entry, domain, kind, place)
+        for kind in THERMAL_FIELDS:
+            for place, entry in self._entries(data, kind):
+                self._thermal_node(model, entry, kind, place)
+        model.elements += self.elements.all(self._entries(data, "element"))
+        model.settings.update(self._simulation(data.get("simulation", {})))
+        return model
+
+    def _entries(self, data: Mapping[str, Any], kind: str) -> list[tuple[int, Mapping[str, Any]]]:
+        entries = data.get(kind, [])
+        if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
+            self._report(At("file", kind), "must be a list of tables", remedy=f"write [[{kind}]] above each")
+            return []
+        return list(enumerate(entries, 1))
+
+    def _text(self, data: Mapping[str, Any], key: str, at: At, default: str = "") -> str:
+        value = data.get(key, default)
+        if isinstance(value, str) and value:
+            return value
+        message = "must be a text" if key in data else "is missing"
+        self._report(at.inner(key), message, shown(value) if key in data else "", f"give a {key}")
+        return default
+
+    def _node(self, model: Model, entry: Mapping[str, Any], domain: Domain, kind: str, place: int) -> None:
+        name = self._text(entry, "name", At(f"{kind} number {place}", ""))
+        known, at = NODE_FIELDS[domain], At(node_path(kind, name or f"number {place}"), "")
+        self._unknown(entry, ("name", *known), at)
+        values: list[Any] = [
+            self._number(entry[key], spec, at.inner(key, spec.unit)) if key in entry else None
+            for key, spec in known.items()
+        ]
+        # a mistake is reported already: stand-ins let the rest be checked
+        inertia, speed, angle = (
+            stand_in if v is BROKEN else v for v, stand_in in zip(values, (1.0, None, 0.0), strict=True)
+        )
+        node = Node(name, domain, 0.0 if inertia is None else inertia, speed, angle or 0.0)
+        model.nodes.append(node)
+        self.nodes.setdefault(name, node)
+
+    def _thermal_node(self, model: Model, entry: Mapping[str, Any], kind: str, place: int) -> None:
+        name = self._text(entry, "name", At(f"{kind} number {place}", ""))
+        known, at = THERMAL_FIELDS[kind], At(node_path(kind, name or f"number {place}"), "")
+        self._unknown(entry, ("name", *known), at)
+        # a mistake is reported already: stand-ins let the rest be checked
+        values: dict[str, Any] = {"capacity": 1.0} if kind == "thermal" else {}
+        for key, spec in known.items():
+            value = self._value(entry[key], spec, at.inner(key, spec.unit)) if key in entry else MISSING
+            if value is MISSING and key == "capacity":
+                self._report(at.inner(key), "is missing", remedy=f"give a value in [{spec.unit}]: {spec.doc}")
+            elif value not in (MISSING, BROKEN):
+                values[key] = value
+        node = ThermalNode(name, **values)
+        model.thermal.append(node)
+        self.thermal.setdefault(name, node)
+
+    def _element(self, entry: Mapping[str, Any], place: int) -> Component | None:
+        name = self._text(entry, "name", At(f"element number {place}", ""))
+        path, known = f'element "{name}"' if name else f"element number {place}", element_kinds()
+        kind = self._text(entry, "type", At(path, ""))
+        before = len(self.problems)
+        if kind and kind not in known:
+            remedy = f"known are {listed(known)}"
+            self._report(At(path, "type"), "is not known" + near(kind, known), shown(kind), remedy)
+        elif kind:
+            values = self._values(known[kind], entry, At(element_path(name, known[kind]), ""), ("name", "type"))
+            if name and len(self.problems) == before:
+                made: Component = known[kind](name, **values)
+                return made
+        self.incomplete += [value for value in entry.values() if isinstance(value, str)]
+        return None
+
+    def _simulation(self, data: Any) -> dict[str, Any]:
+        at = At("simulation", "")
+        if not isinstance(data, Mapping):
+            return self._report(at, "must be a table", shown(data), "write [simulation] above its lines") and {}
+        self._unknown(data, SIMULATION, at)
+        made = {}
+        for key, spec in SIMULATION.items():
+            if key in data:
+                place = at.inner(key, spec.unit)
+                made[key] = data[key] if spec.what == "text" else self._number(data[key], spec, place)
+                if made[key] is not BROKEN:
+                    self.problems += _simulation_problems(made[key], spec, place)
+        return made
+
+
+def _simulation_problems(value: Any, spec: Spec, at: At) -> list[Problem]:
+    from clutchwork.declare.options import METHODS
+
+    found = list(CHECKS[spec.what](value, spec, at))
+    if spec.what == "text" and not found and value not in METHODS:
+        found.append(at.problem("is not known" + near(value, METHODS), shown(value), f"known are {', '.join(METHODS)}"))
+    return found

@@ -1,0 +1,140 @@
+"""Values of a model file: numbers with units, signals, laws, ports and references, checked against the declarations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from clutchwork.base.errors import Problem, near
+from clutchwork.base.shown import listed, shown
+from clutchwork.declare.node import HOUSING, Node, ThermalNode
+from clutchwork.declare.quantity import QuantityError, curve_in_si, factor_to_si, in_si, numbers_in_si
+from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
+from clutchwork.files.references import References, is_named, referred
+from clutchwork.model.fields import BROKEN, value_problems
+from clutchwork.model.numbers import At
+from clutchwork.signals.column import Column
+
+
+class Values:
+    """Turns the values of one file into those of fields; every mistake is collected."""
+
+    def __init__(self, folder: str, elements: References) -> None:
+        self.folder = folder
+        self.elements = elements
+        self.problems: list[Problem] = []
+        self.nodes: dict[str, Node] = {HOUSING.name: HOUSING}
+        self.thermal: dict[str, ThermalNode] = {}
+
+    def _report(self, at: At, message: str, value: str = "", remedy: str = "") -> Any:
+        self.problems.append(at.problem(message, value, remedy))
+        return BROKEN
+
+    def _unknown(self, data: Mapping[str, Any], known: Any, at: At) -> None:
+        for key in data:
+            if key not in known:
+                remedy = f"known are {listed(known)}"
+                self._report(at.inner(str(key)), "is not known here" + near(key, known), remedy=remedy)
+
+    def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
+        """Values of the fields of a declaration, in SI; mistakes are reported."""
+        known = {item.name: _with_gain(item.name, spec, cls, entry) for item, spec in specs(cls)}
+        self._unknown({key: entry[key] for key in entry if key not in taken}, known, at)
+        values = {
+            key: self._value(entry[key], spec, _place(at, key, spec)) for key, spec in known.items() if key in entry
+        }
+        self.problems += value_problems(cls, values, at)
+        return values
+
+    def _value(self, value: Any, spec: Spec, at: At) -> Any:
+        if spec.what in ("port", "thermal"):
+            return self._port(value, spec, at)
+        if spec.what == "law":
+            return self._typed(value, Role.LAW, at)
+        if spec.what in ("signal", "alternative"):
+            if is_named(value, self.thermal, self.elements, self.nodes) or self.elements.thermal_part(value):
+                return self._other(value, at)
+            is_signal = isinstance(value, Mapping) and "type" in value
+            return self._signal(value, spec, at) if is_signal else self._number(value, spec, at)
+        if spec.what == "curve":
+            return self._converted(lambda: curve_in_si(value, spec, at.unit, at.factor), at)
+        if spec.what == "numbers":
+            return self._converted(lambda: numbers_in_si(value, spec, at.unit), at)
+        if spec.what == "function":
+            return self._report(at, "cannot stand in a model file", remedy="give it in Python")
+        if spec.what == "text" or spec.flag or spec.choices:
+            return value
+        return self._number(value, spec, at)
+
+    def _number(self, value: Any, spec: Spec, at: At) -> Any:
+        return self._converted(lambda: in_si(value, at.unit, spec.units, at.factor, whole=spec.whole), at)
+
+    def _converted(self, convert: Any, at: At) -> Any:
+        try:
+            return convert()
+        except QuantityError as bad:
+            return self._report(at, bad.message, bad.value, bad.remedy)
+
+    def _port(self, value: Any, spec: Spec, at: At) -> Any:
+        known: Mapping[str, Any] = self.nodes if spec.what == "port" else self.thermal
+        if isinstance(value, str) and value in known:
+            return known[value]
+        part = self.elements.thermal_part(value) if spec.what == "thermal" else None
+        if part is not None:
+            return part
+        what = "shaft" if spec.what == "port" else "thermal node"
+        remedy = f"known are {listed(known)}" if known else "add one: [[thermal]] or [[ambient]]"
+        return self._report(at, f"is not a {what} of this model" + near(value, known), shown(value), remedy)
+
+    def _other(self, value: Any, at: At) -> Any:
+        """An input that a thermal node, an element or a shaft gives."""
+        name = value["of"] if isinstance(value, Mapping) else value
+        found: Any = self.thermal.get(name) or self.elements.thermal_part(name)
+        found = found or self.elements.get(name) or self.nodes.get(name)
+        if name in self.elements and found is None:
+            # its own mistakes are reported where it stands
+            return BROKEN if self.elements.broken(name) else self._report(at, "leads back to itself", shown(name))
+        if found is None:
+            known = [*self.thermal, *self.elements, *self.nodes]
+            return self._report(at, "is not known" + near(name, known), shown(name), f"known are {listed(known)}")
+        return found if isinstance(value, str) else referred(value, found)
+
+    def _typed(self, value: Any, role: Role, at: At, taken: tuple[str, ...] = ("type",)) -> Any:
+        """A law or a signal from a table with its type."""
+        known = REGISTRY[role]
+        if not isinstance(value, Mapping) or "type" not in value:
+            remedy = f'write {{type = "...", ...}} with one of {", ".join(known)}'
+            return self._report(at, f"must be a table with the type of a {role.value}", shown(value), remedy)
+        kind = value["type"]
+        if not isinstance(kind, str) or kind not in known:
+            remedy = f"known are {listed(known)}"
+            return self._report(at.inner("type"), "is not known" + near(kind, known), shown(kind), remedy)
+        before = len(self.problems)
+        values = self._values(known[kind], value, at, taken)
+        return known[kind](**values) if len(self.problems) == before else BROKEN
+
+    def _signal(self, value: Mapping[str, Any], spec: Spec, at: At) -> Any:
+        """A signal; with `unit` its plain numbers are in that unit."""
+        factor: Any = 1.0
+        if "unit" in value:
+            factor = self._converted(lambda: factor_to_si(value["unit"], at.unit, spec.units), at.inner("unit"))
+        place = At(at.path, at.quantity, at.unit, 1.0 if factor is BROKEN else factor)
+        signal = self._typed(value, Role.SIGNAL, place, ("type", "unit"))
+        if isinstance(signal, Column):
+            signal = replace(signal, scale=signal.scale * place.factor, folder=self.folder)
+            if "unit" in value and place.factor != 1.0 and (unit := replace(signal, scale=1.0).unit()):
+                fault = f"is given beside the unit [{unit}] of the column"
+                return self._report(at.inner("unit"), fault, shown(value["unit"]), "leave out unit")
+        return BROKEN if factor is BROKEN else signal
+
+
+def _place(at: At, key: str, spec: Spec) -> At:
+    """Place of a field; one in the unit of what a signal drives takes over that unit and its factor."""
+    return At(at.path, at.inner(key).quantity, at.unit, at.factor) if spec.unit == "*" else at.inner(key, spec.unit)
+
+
+def _with_gain(name: str, spec: Spec, cls: type, entry: Mapping[str, Any]) -> Spec:
+    """The spec of a gain with only the units that fit what it multiplies: a pressure or a force."""
+    gains = [other.gain for item, other in specs(cls) if other.gain and item.name in entry]
+    return replace(spec, unit=gains[0][0], units=gains[0][1:]) if name == "gain" and len(gains) == 1 else spec

@@ -1,0 +1,119 @@
+"""From a driveline to the plain data of a model file, and to TOML text."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import MISSING
+from numbers import Real
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.base.errors import Problem
+from clutchwork.declare.node import HeatFlow, Rate, is_reference
+from clutchwork.declare.schema import Spec, specs
+from clutchwork.declare.speech import path_of
+from clutchwork.model.numbers import At
+from clutchwork.model.problems import NODE_FIELDS
+from clutchwork.model.thermal import NODE_FIELDS as NODE_KINDS
+from clutchwork.model.thermal import node_kind
+from clutchwork.signals.column import Column
+
+if TYPE_CHECKING:
+    from clutchwork.declare.node import Component, Node, ThermalNode
+
+
+class Writer:
+    """Turns elements into plain data."""
+
+    def __init__(self, folder: str | None, embed: bool) -> None:
+        self.folder, self.embed = folder, embed
+        self.problems: list[Problem] = []
+
+    def node(self, node: Node) -> dict[str, Any]:
+        """A shaft or a mass; what has its default value is left out."""
+        names = NODE_FIELDS[node.domain]
+        values = dict(zip(names, (node.inertia, node.speed, node.angle), strict=True))
+        given = {key: float(value) for key, value in values.items() if value is not None and (value or key == "speed")}
+        return {"name": node.name, **given}
+
+    def thermal(self, node: ThermalNode) -> dict[str, Any]:
+        """A thermal mass or an ambient."""
+        fields_ = NODE_KINDS[node_kind(node)]
+        at = At(f'{node_kind(node)} "{node.name}"', "")
+        given = {key: self._value(getattr(node, key), spec, at.inner(key)) for key, spec in fields_.items()}
+        return {"name": node.name, **given}
+
+    def element(self, element: Component) -> dict[str, Any]:
+        """An element with its type, ports and parameters."""
+        kind = type(element).kind  # type: ignore[attr-defined]
+        return {"name": element.name, "type": kind, **self._fields(element, path_of(element))}
+
+    def _fields(self, thing: Any, path: str) -> dict[str, Any]:
+        made = {}
+        for item, spec in specs(type(thing)):
+            value = getattr(thing, item.name)
+            if value is not None and (item.default is MISSING or value != item.default):
+                made[item.name] = self._value(value, spec, At(path, item.name))
+        return made
+
+    def _value(self, value: Any, spec: Spec, at: At) -> Any:
+        if spec.what in ("port", "thermal"):
+            return value.name
+        if is_reference(value):
+            return _reference(value)
+        if spec.what == "function":
+            message = "is a Python function, which a model file cannot hold"
+            self.problems.append(at.problem(message, remedy="give a table, or keep the model in Python"))
+            return None
+        if spec.what == "curve" and not isinstance(value, Real):
+            return [[float(x), float(y)] for x, y in value]
+        if spec.what == "numbers":
+            return [list(map(float, row)) if hasattr(row, "__len__") else float(row) for row in value]
+        if isinstance(value, Column) and self.embed:
+            return {"type": "table", "points": [list(pair) for pair in value.points]}
+        if hasattr(value, "__dataclass_fields__"):
+            fields_ = self._fields(value, at.path)
+            if isinstance(value, Column):
+                fields_["path"] = self._path(value)
+            return {"type": value.kind, **fields_}
+        return value if isinstance(value, str | bool | int) else float(value)
+
+    def _path(self, column: Column) -> str:
+        full = Path(column.folder, column.path)
+        if self.folder is None or full.is_absolute():
+            return str(full)
+        return Path(os.path.relpath(full, self.folder)).as_posix()
+
+
+def _reference(value: Any) -> Any:
+    """An input that another component gives: its name, or a table."""
+    if isinstance(value, tuple):
+        return {"of": value[0].name, "state": value[1]}
+    if isinstance(value, Rate | HeatFlow):
+        return {"type": "rate" if isinstance(value, Rate) else "heat_flow", "of": value.of.name}
+    return value.name
+
+
+def toml(data: Mapping[str, Any]) -> str:
+    """A model as TOML text."""
+    lines = [f"{key} = {_toml(value)}" for key, value in data.items() if not isinstance(value, list | Mapping)]
+    for key, value in data.items():
+        for table in value if isinstance(value, list) else [value] if isinstance(value, Mapping) else []:
+            head = f"[[{key}]]" if isinstance(value, list) else f"[{key}]"
+            lines += ["", head, *(f"{name} = {_toml(entry)}" for name, entry in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key} = {_toml(entry)}" for key, entry in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return re.sub("\x7f", r"\\u007f", json.dumps(value, ensure_ascii=False))
+    return repr(value)

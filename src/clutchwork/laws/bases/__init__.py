@@ -1,0 +1,1 @@
+"""What several friction laws have in common."""

@@ -1,0 +1,99 @@
+"""Checks of single elements: their values, what they ask of their law, and what they join."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import inf, isfinite
+from numbers import Real
+from typing import Any
+
+from clutchwork.base.errors import Problem, near
+from clutchwork.base.shown import shown
+from clutchwork.declare.node import Component, Law, Node
+from clutchwork.declare.ports import ports
+from clutchwork.declare.schema import REGISTRY, Role, specs
+from clutchwork.declare.speech import path_of
+from clutchwork.model.fields import object_problems
+from clutchwork.model.numbers import At
+
+
+def component_problems(component: Component) -> Iterator[Problem]:
+    """All mistakes of one element, its friction law and its signals."""
+    at = At(path_of(component), "")
+    found = list(object_problems(component, at))
+    found = found or list(_beyond_numbers(component, at))
+    yield from found
+    if hasattr(component, "friction"):
+        yield from locked_problems(component, at)
+    # what an element asks of its law is only asked once both make sense
+    if hasattr(component, "law_problems") and not found:
+        for name, message, remedy in component.law_problems():
+            yield at.inner(name).problem(message, remedy=remedy)
+
+
+def _beyond_numbers(component: Any, at: At) -> Iterator[Problem]:
+    """Values that are allowed one by one, and from which nothing can be computed."""
+    try:
+        for part in component.parts():
+            yield from _beyond_numbers(part, at) if isinstance(part, Component) and part.name != component.name else ()
+            capacity = getattr(part, "capacity", None)
+            if capacity is not None and not 0.0 < capacity < inf:
+                raise OverflowError
+        if hasattr(component, "initial_states"):
+            starts, scales = component.initial_states(), component.state_scales()
+            if not all(map(isfinite, (*starts, *scales))) or 0.0 in scales:
+                raise OverflowError
+    except ArithmeticError:
+        yield at.problem("has values from which no number can be computed", remedy="correct those of unusual size")
+
+
+def locked_problems(contact: Any, at: At) -> Iterator[Problem]:
+    """A contact that starts locked with a law that never locks; a freewheel locks by itself."""
+    law = contact.friction
+    if isinstance(law, Law) and not law.sticks and not contact.one_way and contact.locked:
+        known: Any = REGISTRY[Role.LAW]
+        sticking = ", ".join(kind for kind in known if known[kind].sticks)
+        remedy = f"leave it out, or take a law that sticks: {sticking}"
+        yield at.inner("locked").problem("cannot hold with a law that never locks", value="True", remedy=remedy)
+
+
+def component_advice(component: Component) -> Iterator[Problem]:
+    """What the friction law of an element allows and is rarely wanted; nothing where the law has mistakes."""
+    law, place = getattr(component, "friction", None), At(path_of(component), "friction")
+    if not isinstance(law, Law) or any(object_problems(law, place)):
+        return
+    units = {item.name: spec.unit for item, spec in specs(type(law))}
+    try:
+        found = law.advice()
+    except ArithmeticError:
+        yield place.problem("has values from which no number can be computed", remedy="correct those of unusual size")
+        return
+    for name, message, remedy in found:
+        given = getattr(law, name)
+        # a table is shown by what is said of it
+        value = f"{given:g} {units[name]}".removesuffix(" 1") if isinstance(given, Real) else ""
+        yield place.inner(name).problem(message, value=value, remedy=remedy)
+
+
+def connection_problems(component: Component, nodes: Sequence[Node]) -> Iterator[Problem]:
+    """Ports that are on foreign nodes, on one and the same node, or of two kinds of motion."""
+    at, joined = At(path_of(component), ""), ports(component)
+    if not joined or not all(isinstance(node, Node) for node in joined.values()):
+        return
+    known = {id(node) for node in nodes}
+    for name, node in joined.items():
+        if not node.fixed and id(node) not in known:
+            found = near(node.name, [n.name for n in nodes if n.name != node.name])
+            yield at.inner(name).problem("is of another driveline", shown(node.name), f"create it in this one{found}")
+    moving = {name: node for name, node in joined.items() if not node.fixed}
+    if not moving:
+        yield at.problem("joins nothing but the housing", remedy="attach a port to a shaft")
+    elif len(joined) == 2 and len({id(node) for node in joined.values()}) == 1:
+        names = " and ".join(joined)
+        yield at.problem(
+            f"{names} are both on {shown(next(iter(joined.values())).name)}", remedy="attach them to two shafts"
+        )
+    free = [name for _item, spec in specs(type(component), "port") if not spec.domain for name in [_item.name]]
+    if len({moving[name].domain for name in free if name in moving}) > 1:
+        kinds = ", ".join(f"{name} is in {moving[name].domain.value}" for name in free if name in moving)
+        yield at.problem(f"joins a shaft and a mass: {kinds}", remedy="put a `RollingWheel` between them")

@@ -1,0 +1,169 @@
+"""Checks of declared values, field by field: types, bounds, curves, signals, friction laws."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import MISSING
+from numbers import Real
+from typing import Any
+
+from clutchwork.base.errors import Problem, near
+from clutchwork.base.shown import shown
+from clutchwork.declare.node import Component, Domain, Law, Node, Signal, ThermalNode, is_reference
+from clutchwork.declare.schema import Role, Spec, inputs, specs
+from clutchwork.declare.speech import kinds_of, say
+from clutchwork.declare.wanted import wanted
+from clutchwork.model.numbers import At as At
+from clutchwork.model.numbers import curve_problems, list_problems
+from clutchwork.model.numbers import number_problems as number_problems
+from clutchwork.model.pools import coefficients
+
+
+class Broken:
+    """Stands for a value whose mistake has been reported already."""
+
+
+BROKEN = Broken()
+
+
+def object_problems(thing: Any, at: At) -> Iterator[Problem]:
+    """All mistakes of a declared object: an element, a law or a signal."""
+    found = list(value_problems(type(thing), vars(thing), at))
+    yield from found
+    # rules between fields only make sense once each field does; what is wrong inside a law is its own affair
+    inside = tuple(f"{at.inner(item.name).quantity}." for item, _ in specs(type(thing), "law"))
+    rules = getattr(thing, "problems", None)
+    if rules is not None and all(problem.quantity.startswith(inside) for problem in found):
+        try:
+            for name, message, remedy in rules():
+                yield at.inner(name).problem(message, remedy=remedy)
+        except ArithmeticError:
+            yield at.problem("has values from which no number can be computed", remedy="correct those of unusual size")
+
+
+def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
+    """Mistakes of the values for the fields of a declaration, some of which may be missing."""
+    for item, spec in specs(cls):
+        place = at.inner(item.name, at.unit if spec.unit == "*" else spec.unit)
+        value = values.get(item.name, item.default)
+        if value is MISSING:
+            yield place.problem("is missing", remedy=f"give {wanted(spec, place.unit)}: {spec.doc}")
+        elif value is not BROKEN and not (value is None and spec.optional):
+            yield from CHECKS[spec.what](value, spec, place)
+    yield from _choice_problems(cls, values, at)
+
+
+def _choice_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
+    """Signals that can be given in one of several ways: exactly one, or none where there is a default."""
+    for names, spec in inputs(cls):
+        given = [name for name in names if values.get(name) is not None]
+        if len(names) > 1 and len(given) > 1:
+            yield at.inner(given[1]).problem(f"is given beside {given[0]!r}", remedy="give only one of them")
+        if len(names) > 1 and not given and spec.otherwise is None:
+            choice = " or ".join(names)
+            yield at.inner(names[0]).problem("is missing", remedy=f"give {choice}: {spec.doc} [{spec.unit}]")
+
+
+def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if spec.choices:
+        if value not in spec.choices:
+            message = "is not known" + near(value, spec.choices)
+            yield at.problem(message, value=shown(value), remedy=f"known are {', '.join(spec.choices)}")
+    elif not spec.flag:
+        yield from number_problems(value, spec, at)
+    elif not isinstance(value, bool) and value not in (0, 1):
+        yield at.problem("must be true or false", value=shown(value), remedy=spec.doc)
+
+
+def _port(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if not isinstance(value, Node):
+        in_python = "pass the object returned by d.shaft(...), d.mass(...) or d.housing"
+        remedy = say("give the name of one", in_python)
+        yield at.problem("must be a shaft, a mass or the housing", value=shown(value), remedy=remedy)
+    elif spec.domain and not value.fixed and value.domain is not Domain(spec.domain):
+        wanted = "a shaft" if spec.domain == "rotation" else "a mass"
+        yield at.problem(f"must be {wanted}", value=shown(value.name), remedy=f"{spec.doc} is in {spec.domain}")
+
+
+def _thermal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if not isinstance(value, ThermalNode):
+        in_python = f"pass the object returned by d.thermal(...) or d.ambient(...): {spec.doc}"
+        remedy = say(f"give the name of one: {spec.doc}", in_python)
+        yield at.problem("must be a thermal node or an ambient", value=_shown(value), remedy=remedy)
+
+
+def _shown(value: Any) -> str:
+    return shown(value.name if isinstance(value, Node | Component) else value)
+
+
+def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if isinstance(value, Signal):
+        found = list(object_problems(value, at))
+        yield from found
+        for name, message, remedy in () if found else value.unit_problems((at.unit, *spec.units)):
+            yield at.inner(name).problem(message, remedy=remedy)
+    elif isinstance(value, Real) and not isinstance(value, bool):
+        yield from number_problems(value, spec, at)
+    # whether a reference leads to something of that unit is checked where the driveline is known
+    elif not is_reference(value):
+        remedy = f"give one of {kinds_of(Role.SIGNAL)}"
+        if isinstance(value, list | tuple) and value and all(isinstance(pair, list | tuple) for pair in value):
+            remedy = say('write {type = "table", points = [[time, value], ...]}', "wrap it: cw.Table([...])")
+        if callable(value):
+            remedy = "a function is a controller: give cw.Sampled(function, period), with the period in s"
+        yield at.problem(f"must be a number in [{at.unit}] or a signal", value=shown(value), remedy=remedy)
+
+
+def _law(value: Any, _: Spec, at: At) -> Iterator[Problem]:
+    if not isinstance(value, Law):
+        remedy = f"give one of {kinds_of(Role.LAW)}"
+        yield at.problem("must be a friction law", value=shown(value), remedy=remedy)
+        return
+    yield from law_problems(value, at)
+
+
+def law_problems(law: Law, at: At) -> Iterator[Problem]:
+    """All mistakes of a friction law."""
+    found = list(object_problems(law, at))
+    yield from found or (_peak(law, at) if law.sticks else ())
+
+
+def _peak(law: Any, at: At) -> Iterator[Problem]:
+    """A kinetic coefficient above the static one has no motion that follows from it."""
+    # a law over the temperature compares its tables itself
+    if not isinstance(getattr(law, "static", 0.0), Real):
+        return
+    kinetic = law.sliding()
+    if kinetic is None:
+        kinetic, static = coefficients(law, 0.0)
+    else:
+        static = law.static
+    # equal values may differ by round-off
+    if kinetic > static * (1 + 1e-12):
+        message = f"is below the kinetic coefficient at vanishing slip, {kinetic:g}"
+        yield at.inner("static").problem(message, value=f"{static:g}", remedy=f"raise it to at least {kinetic:g}")
+
+
+def _text(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if not isinstance(value, str) or not value:
+        yield at.problem("must be a text", value=shown(value), remedy=spec.doc)
+
+
+def _function(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if not callable(value):
+        yield at.problem("must be a Python function", value=shown(value), remedy=spec.doc)
+
+
+CHECKS: dict[str, Callable[[Any, Spec, At], Iterator[Problem]]] = {
+    "param": _param,
+    "option": _param,
+    "port": _port,
+    "thermal": _thermal,
+    "curve": curve_problems,
+    "numbers": list_problems,
+    "signal": _signal,
+    "alternative": _signal,
+    "law": _law,
+    "text": _text,
+    "function": _function,
+}

@@ -1,0 +1,126 @@
+"""Checks of numbers, lists of numbers and curves, and the place of a value in messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import inf, isfinite
+from numbers import Real
+from typing import Any
+
+from clutchwork.base.errors import Problem
+from clutchwork.base.shown import listed, shown
+from clutchwork.declare.schema import Spec
+
+
+@dataclass(frozen=True)
+class At:
+    """Place of a value: path of the element, name of the quantity, its SI unit, factor to SI from plain numbers."""
+
+    path: str
+    quantity: str
+    unit: str = ""
+    factor: float = 1.0
+
+    def problem(self, message: str, value: str = "", remedy: str = "") -> Problem:
+        """A problem at this place."""
+        return Problem(self.path, self.quantity, message, value, remedy)
+
+    def inner(self, name: str, unit: str = "") -> At:
+        """The place of a field of the value here."""
+        return At(self.path, f"{self.quantity}.{name}" if self.quantity else name, unit)
+
+
+def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """A finite number within its bounds."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        remedy = f"write the number alone, in {at.unit}" if at.unit not in ("", "1") else "write the number alone"
+        yield at.problem(f"must be a number in [{at.unit}]", value=shown(value), remedy=remedy)
+        return
+    # the unit of a bare number says nothing beside it
+    unit = "" if at.unit == "1" else at.unit
+    number, given = as_float(value), f"{shown(value) if isinstance(value, int) else as_float(value)} {unit}".strip()
+    if not isfinite(number):
+        yield at.problem("must be finite", value=given, remedy="give a number")
+    elif not spec.allows(number):
+        yield at.problem(f"must be {spec.bound} {unit}".rstrip(), value=given, remedy=_meaning(spec))
+    elif spec.whole and number != int(number):
+        yield at.problem("must be a whole number", value=given, remedy=_meaning(spec))
+
+
+def as_float(value: Real) -> float:
+    """A number as a float, infinite where it is beyond all of them."""
+    try:
+        return float(value)
+    except OverflowError:
+        return inf
+
+
+def _meaning(spec: Spec) -> str:
+    return f"it is the {spec.doc}" if spec.doc else "correct it"
+
+
+def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """A list of numbers, or of equally long lists of them."""
+    if isinstance(value, str) or not hasattr(value, "__len__") or len(value) == 0:
+        yield at.problem("must be a list of numbers", value=shown(value), remedy=f"write [x, y, ...]: {spec.doc}")
+        return
+    rows = [row if hasattr(row, "__len__") and not isinstance(row, str) else [row] for row in value]
+    if len({len(row) for row in rows}) > 1:
+        lengths = listed(len(row) for row in rows)
+        yield at.problem("has rows of different lengths", value=lengths, remedy="give every row as many numbers")
+        return
+    before = None
+    for number, item in enumerate((item for row in rows for item in row), 1):
+        place = At(at.path, f"{at.quantity}, number {number}", at.unit)
+        found = list(number_problems(item, spec, place))
+        if not found and spec.rising == "strictly" and before is not None and float(item) <= before:
+            fault = "comes after" if float(item) < before else "stands twice, after"
+            message, given = f"{fault} {before:g} {at.unit}", f"{float(item):g} {at.unit}"
+            found = [place.problem(message, value=given, remedy="sort the numbers; each must be above the one before")]
+        if found:
+            yield from found
+            return
+        before = float(item)
+
+
+def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """Points with increasing abscissae, or a number where that is allowed."""
+    if spec.constant and isinstance(value, Real):
+        yield from number_problems(value, spec, at)
+        return
+    if isinstance(value, str) or not hasattr(value, "__len__") or len(value) == 0:
+        yield at.problem("must be a list of points", value=shown(value), remedy=f"write [[x, y], ...]: {spec.doc}")
+        return
+    before = None
+    for number, point in enumerate(value, 1):
+        place = At(at.path, f"{at.quantity}, point {number}", at.unit)
+        # one mistake is enough: those behind it often follow from it
+        found = list(_point(point, spec, place)) or list(_order(before, point, spec, place))
+        if found:
+            yield from found
+            return
+        before = point
+
+
+def _point(point: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """A pair of finite numbers."""
+    if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
+        yield at.problem("must be a pair of numbers", value=shown(point), remedy="write [x, y]")
+        return
+    plain, bounded = Spec("param", spec.unit_x, ""), Spec("param", at.unit, "", at_least=spec.at_least)
+    for number, part in zip(point, (plain, bounded), strict=True):
+        yield from number_problems(number, part, At(at.path, at.quantity, part.unit))
+
+
+def _order(before: Any, point: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """Abscissae that increase, by more than round-off."""
+    if before is None:
+        return
+    (x, y), (x_next, y_next) = ((float(a), float(b)) for a, b in (before, point))
+    given = f"{x_next:g} {spec.unit_x}"
+    if x_next < x or (x_next == x and spec.rising == "strictly"):
+        fault = "comes after" if x_next < x else "stands twice, after"
+        yield at.problem(f"{fault} {x:g} {spec.unit_x}", value=given, remedy="sort the points; x must increase")
+    elif x_next > x and not isfinite((y_next - y) / (x_next - x)):
+        yield at.problem(f"is too close to {x:g} {spec.unit_x}", value=given, remedy="leave one of the points out")

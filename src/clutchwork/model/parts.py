@@ -1,0 +1,83 @@
+"""Composites taken apart into the elements and thermal nodes that the assembly works on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from clutchwork.declare.node import HOUSING, Component, Node, Rate, ThermalNode
+from clutchwork.declare.schema import Role, inputs
+from clutchwork.elements.damper import Damper
+
+
+class Sensor(Damper):
+    """Gives the speed of a shaft to flows and processes; it has no torque and no signals of its own."""
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What a driveline is made of in the end."""
+
+    components: tuple[Component, ...]
+    thermal: tuple[ThermalNode, ...]
+    sums: Mapping[str, tuple[str, ...]]  # "c1" -> parts whose torque, power, work and heat count as those of "c1"
+
+
+def take_apart(components: Sequence[Component], thermal: Sequence[ThermalNode] = ()) -> Parts:
+    """All elements and thermal nodes, those of composites in their place, and a sensor per shaft that is asked."""
+    pieces = [piece for component in components for piece in _pieces(component)]
+    elements = [piece for piece in pieces if isinstance(piece, Component)]
+    nodes = [*thermal, *(piece for piece in pieces if isinstance(piece, ThermalNode))]
+    # masses, then ambients, as in model files
+    nodes.sort(key=lambda node: node.capacity is None)
+    asked = {node.name: node for element in elements for node in _asked(element)}
+    sensors = [Sensor(sensor_name(node), base=HOUSING, follower=node, damping=0.0) for node in asked.values()]
+    there = {element.name for element in elements}
+    sums = {whole.name: tuple(there.intersection(_full(whole))) for whole in components if whole.name in there}
+    return Parts((*elements, *sensors), tuple(nodes), {name: names for name, names in sums.items() if names})
+
+
+def _full(whole: Component) -> list[str]:
+    return [f"{whole.name}.{name}" for name in whole.sums()]
+
+
+def sensor_name(node: Node) -> str:
+    """Name of the sensor on a shaft."""
+    return f"{node.name}.speed_sensor"
+
+
+def _pieces(component: Component) -> Iterator[Component | ThermalNode]:
+    parts = list(component.parts())
+    if not parts and role(component) is not Role.COMPOSITE:
+        yield component
+    for part in parts:
+        # the part with the name of the whole is one piece
+        if isinstance(part, ThermalNode) or part.name == component.name:
+            yield part
+        else:
+            yield from _pieces(part)
+
+
+def _asked(element: Component) -> Iterator[Node]:
+    """Shafts whose speed is an input of a flow or a process."""
+    if role(element) in (Role.FLOW, Role.PROCESS):
+        for names, _ in inputs(type(element)):
+            for value in (getattr(element, name) for name in names):
+                node = value.of if isinstance(value, Rate) else value
+                if isinstance(node, Node):
+                    yield node
+
+
+def role(component: Any) -> Role:
+    """What a component is to the engine."""
+    found: Role = type(component).role
+    return found
+
+
+def state_name(value: Any) -> str:
+    """Name of the shared state that a reference leads to."""
+    if isinstance(value, ThermalNode):
+        return value.name
+    process, state = value if isinstance(value, tuple) else (value, type(value).states[0].name)
+    return f"{process.name}.{state}"

@@ -1,0 +1,149 @@
+"""All mistakes of a model: of its nodes, its elements, their names, and its structure."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from clutchwork.base.errors import Problem
+from clutchwork.base.shown import shown
+from clutchwork.declare.node import HOUSING, Component, Domain, Node, ThermalNode
+from clutchwork.declare.schema import Spec
+from clutchwork.declare.speech import path_of, say
+from clutchwork.model.components import component_advice, component_problems, connection_problems
+from clutchwork.model.kinematics import kinematics
+from clutchwork.model.model import Model
+from clutchwork.model.numbers import At, number_problems
+from clutchwork.model.parts import Parts, Sensor, take_apart
+from clutchwork.model.start import start
+from clutchwork.model.structure import Mechanism
+from clutchwork.model.temperatures import temperature_advice
+from clutchwork.model.thermal import Known, Within, node_kind, port_problems, reference_problems, thermal_problems
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+
+def model_problems(model: Model, incomplete: Sequence[str] = ()) -> list[Problem]:
+    """All mistakes of a model: of single nodes and elements, then of the structure as far as that can be seen.
+
+    Nothing is said about the inertia of nodes in `incomplete`, which belong to elements that are not there.
+    """
+    nodes, elements, thermal = model.nodes, model.elements, model.thermal
+    problems = [] if is_name(model.name) else [Problem("driveline", "name", NO_NAME, shown(model.name), GIVE_NAME)]
+    problems += [problem for node in nodes for problem in node_problems(node)]
+    problems += [problem for node in thermal for problem in thermal_problems(node)]
+    parts, found = _parts(elements, thermal)
+    within = Within({node.name for node in parts.thermal}, {e.name for e in elements if found[id(e)]})
+    for element in elements:
+        found[id(element)] += [*connection_problems(element, nodes), *port_problems(element, thermal, within)]
+        problems += found[id(element)]
+    broken = [element for element in elements if found[id(element)]]
+    sound = take_apart([element for element in elements if not found[id(element)]], thermal)
+    problems += name_problems(nodes, elements, sound)
+    # what refers to an element with mistakes is looked at once those are mended
+    if not broken and not incomplete:
+        known = Known.of(nodes, thermal, elements, sound)
+        problems += [problem for part in sound.components for problem in reference_problems(part, known)]
+    moving = [part for part in sound.components if not isinstance(part, Sensor)]
+    try:
+        return problems + structure_problems(nodes, moving, [*incomplete, *_touched(broken)])
+    except ArithmeticError:
+        return [*problems, TOO_FAR_APART]
+
+
+def _parts(elements: Sequence[Component], thermal: Sequence[ThermalNode]) -> tuple[Parts, dict[int, list[Problem]]]:
+    """The parts of all elements whose values make sense, and the mistakes of the others."""
+    found = {id(element): list(component_problems(element)) for element in elements}
+    return take_apart([element for element in elements if not found[id(element)]], thermal), found
+
+
+def model_advice(model: Model) -> list[Problem]:
+    """What a model allows and is rarely wanted: the warnings about it."""
+    found = [advice for element in model.elements for advice in component_advice(element)]
+    return [*found, *temperature_advice(model.elements, model.thermal)]
+
+
+def _touched(elements: Sequence[Component]) -> list[str]:
+    """Names of all nodes at the given elements."""
+    return [value.name for element in elements for value in vars(element).values() if isinstance(value, Node)]
+
+
+NODE_FIELDS = {
+    Domain.ROTATION: {
+        "inertia": Spec("param", "kg m2", "moment of inertia", at_least=0.0),
+        "speed": Spec("param", "rad/s", "speed at the start", optional=True),
+        "angle": Spec("param", "rad", "angle at the start"),
+    },
+    Domain.TRANSLATION: {
+        "mass": Spec("param", "kg", "mass", at_least=0.0),
+        "speed": Spec("param", "m/s", "speed at the start", optional=True),
+        "position": Spec("param", "m", "position at the start"),
+    },
+}
+
+
+def node_path(kind: str, name: object) -> str:
+    """Path of a node in messages."""
+    return f'{kind} "{name}"'
+
+
+def node_problems(node: Node) -> list[Problem]:
+    """Mistakes of one shaft or mass."""
+    path = node_path("shaft" if node.domain is Domain.ROTATION else "mass", node.name)
+    values = (node.inertia, node.speed, node.angle)
+    problems: list[Problem] = []
+    for (name, spec), value in zip(NODE_FIELDS[node.domain].items(), values, strict=True):
+        if not (value is None and spec.optional):
+            problems += number_problems(value, spec, At(path, name, spec.unit))
+    return problems
+
+
+TOO_FAR_APART = Problem(
+    "driveline",
+    "",
+    "has numbers too far apart to compute with",
+    remedy="correct inertias, ratios, speeds and signals of unusual size",
+)
+NO_NAME, GIVE_NAME = "must be a text", "give a text that can be printed, on one line and without blanks at its ends"
+LONGEST_NAME = 200
+
+
+def is_name(name: object) -> bool:
+    """Whether a name can stand in tables, pictures and on a terminal."""
+    return isinstance(name, str) and 0 < len(name) <= LONGEST_NAME and name == name.strip() and name.isprintable()
+
+
+def name_problems(nodes: Sequence[Node], elements: Sequence[Component], parts: Parts) -> list[Problem]:
+    """Names that are no text, reserved or given twice, those of parts included."""
+    problems, seen = [], {HOUSING.name: "the housing"}
+    things = [(f'shaft "{node.name}"', node.name) for node in nodes]
+    things += [(f'{node_kind(node)} "{node.name}"', node.name) for node in parts.thermal]
+    things += [(path_of(element), element.name) for element in elements]
+    added = {id(element) for element in elements}
+    # one part of a composite may have its name
+    wholes = {element.name for element in elements} - {part.name for part in parts.components if id(part) in added}
+    inner = [part for part in parts.components if id(part) not in added and part.name not in wholes]
+    things += [(path_of(part), part.name) for part in inner]
+    for path, name in things:
+        if not is_name(name):
+            problems.append(Problem(path, "name", NO_NAME, shown(name), GIVE_NAME))
+        elif name in seen:
+            remedy = "choose another name: results are found by it"
+            problems.append(Problem(path, "name", f"is taken by {seen[name]}", shown(name), remedy))
+        else:
+            seen[name] = path
+    return problems
+
+
+def structure_problems(
+    nodes: Sequence[Node], components: Sequence[Component], incomplete: Iterable[str] = ()
+) -> list[Problem]:
+    """What is wrong with the structure of a driveline whose single elements are right."""
+    model = Mechanism(tuple(nodes), tuple(components))
+    if not nodes:
+        remedy = say("add one: [[shaft]]", 'add one: d.shaft("engine", inertia=0.2)')
+        return [Problem("driveline", "", "has no shaft", remedy=remedy)]
+    made, problems = kinematics(model, incomplete=frozenset(incomplete))
+    if made is not None:
+        *_, problems = start(model, made)
+    return problems

@@ -1,0 +1,115 @@
+"""What the reduction works on: nodes, elements by role, rigid rows, and node speeds over the independent ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import inf, isfinite
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.declare.node import Component, Domain, Node
+from clutchwork.declare.ports import ports
+from clutchwork.declare.rational import ONE, Row, exact, plus
+from clutchwork.declare.schema import Role
+from clutchwork.declare.speech import path_of
+from clutchwork.model.numbers import as_float
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from fractions import Fraction
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Nodes and elements of a driveline.
+
+    Columns of all rows are the nodes in order, then the prescribed inputs in order.
+    """
+
+    nodes: tuple[Node, ...]
+    components: tuple[Component, ...]
+
+    def role(self, role: Role) -> list[Any]:
+        """The elements of one role, in order."""
+        return [component for component in self.components if component.role is role]  # type: ignore[attr-defined]
+
+    @cached_property
+    def acting(self) -> list[tuple[Any, Row]]:
+        """Torque elements and contacts with their rate over the nodes."""
+        return [(c, self.direction(c)) for role in (Role.TORQUE, Role.CONTACT) for c in self.role(role)]
+
+    @cached_property
+    def index(self) -> dict[int, int]:
+        """Place of each node by identity; the housing has none."""
+        return {id(node): place for place, node in enumerate(self.nodes)}
+
+    @cached_property
+    def inertia(self) -> list[Fraction]:
+        """Inertia of each node; 1 where what is given makes no sense, which is reported elsewhere."""
+        return [exact(node.inertia) if _sensible(node.inertia, 0.0) else ONE for node in self.nodes]
+
+    @cached_property
+    def speed(self) -> list[Fraction | None]:
+        """Given speed of each node at the start."""
+        return [exact(node.speed or 0.0) if _sensible(node.speed) else None for node in self.nodes]
+
+    def direction(self, component: Component) -> Row:
+        """Rate of an element over the nodes: follower - base, or shaft - base."""
+        joined = ports(component)
+        made = self._at(joined.get("follower") or joined["shaft"], ONE)
+        return plus(made, ONE, self._at(joined["base"], -ONE)) if "base" in joined else made
+
+    def _at(self, node: Node, factor: Fraction) -> Row:
+        return {} if node.fixed else {self.index[id(node)]: factor}
+
+    def rigid_rows(self) -> Iterator[RigidRow]:
+        """Rows of all gears, then of all prescribed speeds."""
+        for gear in self.role(Role.GEAR):
+            joined = ports(gear)
+            for coefficients in gear.rows():
+                row: Row = {}
+                for port, coefficient in coefficients.items():
+                    row = plus(row, coefficient, self._at(joined[port], ONE))
+                yield RigidRow(path_of(gear), row)
+        for number, motion in enumerate(self.role(Role.MOTION), len(self.nodes)):
+            yield RigidRow(path_of(motion), {**self.direction(motion), number: -ONE})
+
+    def node_label(self, place: int) -> str:
+        """Path of a node in messages."""
+        node = self.nodes[place]
+        return f'{"mass" if node.domain is Domain.TRANSLATION else "shaft"} "{node.name}"'
+
+
+def _sensible(value: Any, least: float = -inf) -> bool:
+    return isinstance(value, Real) and isfinite(as_float(value)) and float(value) >= least
+
+
+@dataclass(frozen=True)
+class RigidRow:
+    """One rigid row: sum of coefficient times speed = 0, over nodes and prescribed inputs."""
+
+    owner: str  # 'element "g1" (gear)'
+    coefficients: Row
+
+
+@dataclass
+class Kinematics:
+    """The speed of every node over the independent nodes and the prescribed inputs."""
+
+    speeds: list[Row]
+    independent: list[int]  # nodes, in the order of the reduced coordinates
+    massless: set[int]  # of these
+    loose: frozenset[int] = frozenset()  # nodes whose initial speed follows from springs in series
+    notes: list[str] = field(default_factory=list)
+
+    def over(self, direction: Row) -> Row:
+        """A rate, given over the nodes, over the independent nodes and the prescribed inputs."""
+        made: Row = {}
+        for node, factor in direction.items():
+            made = plus(made, factor, self.speeds[node])
+        return made
+
+    def moved_by(self, node: int) -> list[int]:
+        """Nodes that move when an independent one does."""
+        return [place for place, row in enumerate(self.speeds) if node in row]

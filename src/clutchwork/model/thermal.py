@@ -1,0 +1,192 @@
+"""Checks of thermal nodes, of the ports on them, and of inputs that other components give."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from clutchwork.base.errors import Problem, near
+from clutchwork.base.shown import listed, shown
+from clutchwork.declare import units
+from clutchwork.declare.node import Component, Domain, HeatFlow, Law, Node, Rate, ThermalNode, is_reference
+from clutchwork.declare.ports import thermal_ports
+from clutchwork.declare.schema import Role, Spec, specs
+from clutchwork.declare.speech import path_of
+from clutchwork.model.fields import CHECKS
+from clutchwork.model.numbers import At, number_problems
+from clutchwork.model.parts import Parts, role, state_name
+
+CAPACITY = Spec("param", "J/K", "heat capacity", above=0.0)
+TEMPERATURE = Spec("param", "K", "temperature at the start", above=0.0)
+AROUND = Spec("signal", "K", "temperature over time")
+NODE_FIELDS: Mapping[str, Mapping[str, Spec]] = {
+    "thermal": {"capacity": CAPACITY, "temperature": TEMPERATURE},
+    "ambient": {"temperature": AROUND},
+}
+
+
+def node_kind(node: ThermalNode) -> str:
+    """Key of a thermal node in model files: thermal or ambient."""
+    return "ambient" if node.capacity is None else "thermal"
+
+
+def thermal_problems(node: ThermalNode) -> Iterator[Problem]:
+    """Mistakes of one thermal mass or ambient."""
+    path = f'{node_kind(node)} "{node.name}"'
+    if node.capacity is not None:
+        yield from number_problems(node.capacity, CAPACITY, At(path, "capacity", "J/K"))
+        yield from number_problems(node.temperature, TEMPERATURE, At(path, "temperature", "K"))
+    elif is_reference(node.temperature):
+        message, remedy = "must be a number in [K] or a signal", "join the nodes by a Conduction instead"
+        yield At(path, "temperature").problem(message, shown(node.temperature), remedy)
+    else:
+        yield from CHECKS["signal"](node.temperature, AROUND, At(path, "temperature", "K"))
+
+
+@dataclass(frozen=True)
+class Within:
+    """Thermal nodes that are parts of elements, which are made anew each time they are asked for."""
+
+    names: Collection[str]
+    broken: Collection[str]  # elements with mistakes, whose parts are not known
+
+    def holds(self, node: ThermalNode) -> bool:
+        """Whether a node is such a part, or may be."""
+        return node.name in self.names or any(node.name.startswith(f"{name}.") for name in self.broken)
+
+
+def port_problems(component: Component, thermal: Sequence[ThermalNode], within: Within) -> Iterator[Problem]:
+    """Thermal ports on foreign nodes, or both on one and the same."""
+    at, joined = At(path_of(component), ""), thermal_ports(component)
+    if not all(isinstance(node, ThermalNode) for node in joined.values()):
+        return
+    own = {id(other) for other in thermal}
+    for name, node in joined.items():
+        foreign = node.name in {other.name for other in thermal} and id(node) not in own
+        if foreign or (id(node) not in own and not within.holds(node)):
+            found = near(node.name, [other.name for other in thermal])
+            yield at.inner(name).problem("is of another driveline", shown(node.name), f"create it in this one{found}")
+    if role(component) is Role.FLOW and len({node.name for node in joined.values()}) < len(joined):
+        message = f"{' and '.join(joined)} are both on {shown(next(iter(joined.values())).name)}"
+        yield at.problem(message, remedy="attach them to two thermal nodes")
+
+
+@dataclass(frozen=True)
+class Known:
+    """What inputs may refer to, by name."""
+
+    states: Mapping[str, tuple[str, ...]]  # thermal node or "process.state" -> unit
+    acting: frozenset[str]  # torque elements and contacts
+    added: Mapping[int, Any]  # shafts, thermal nodes and elements of the driveline by identity
+    parts: Mapping[str, Sequence[Any]]  # what elements are made of by name, made anew each time it is asked for
+
+    @classmethod
+    def of(
+        cls, nodes: Sequence[Node], thermal: Sequence[ThermalNode], elements: Sequence[Component], parts: Parts
+    ) -> Known:
+        """Everything in a driveline."""
+        states: dict[str, tuple[str, ...]] = {node.name: ("K",) for node in parts.thermal}
+        for process in parts.components:
+            if role(process) is Role.PROCESS:
+                states |= {f"{process.name}.{s.name}": (s.unit,) for s in type(process).states}  # type: ignore[attr-defined]
+        acting = frozenset(c.name for c in parts.components if role(c) in (Role.TORQUE, Role.CONTACT))
+        added = {id(thing): thing for thing in (*nodes, *thermal, *elements)}
+        inner = dict[str, list[Any]]()
+        for part in (part for element in elements for part in _inside(element)):
+            inner.setdefault(part.name, []).append(part)
+        return cls(states, acting, added, inner)
+
+    def holds(self, target: Any) -> bool:
+        """Whether a shaft, node or element was added itself, or is part of one that was."""
+        return id(target) in self.added or target in self.parts.get(target.name, ())
+
+
+def _inside(component: Component) -> Iterator[Component | ThermalNode]:
+    """Everything that an element is made of, parts of its parts included."""
+    for part in component.parts():
+        yield part
+        if isinstance(part, Component) and part.name != component.name:
+            yield from _inside(part)
+
+
+def reference_problems(component: Component, known: Known) -> Iterator[Problem]:
+    """Inputs that other components give: whether those are there, and give what is wanted."""
+    law = getattr(component, "friction", None)
+    for thing, at in ((component, At(path_of(component), "")), (law, At(path_of(component), "friction"))):
+        if thing is component or isinstance(thing, Law):
+            for item, spec in specs(type(thing), "signal", "alternative"):
+                value, place = getattr(thing, item.name), at.inner(item.name, spec.unit)
+                if is_reference(value):
+                    yield from _reference(value, spec, place, component, known)
+                elif value is None and spec.unit == "K" and isinstance(thing, Law):
+                    yield from _temperature(component, place)
+
+
+def _temperature(component: Any, at: At) -> Iterator[Problem]:
+    """A friction law without a temperature takes that of the thermal node of its contact."""
+    if getattr(component, "heat", None) is None and role(component) is Role.CONTACT:
+        yield at.problem("is missing", remedy="give a temperature [K], or join `heat` of the contact to a thermal node")
+
+
+def _reference(value: Any, spec: Spec, at: At, component: Component, known: Known) -> Iterator[Problem]:
+    direct = isinstance(value, Rate | HeatFlow | Node)
+    if role(component) is Role.MOTION or (direct and role(component) not in (Role.FLOW, Role.PROCESS, Role.COMPOSITE)):
+        yield at.problem(f"must be a number in [{at.unit}] or a signal", _words(value), "give one of these")
+        return
+    missing = _missing(value, known)
+    if missing:
+        yield at.problem(*missing)
+        return
+    given = _unit(value, known)
+    if all(units.parse(given).powers != units.parse(unit).powers for unit in (spec.unit, *spec.units)):
+        yield at.problem(f"is in [{at.unit}], and {_words(value)} gives [{given}]", remedy=spec.doc)
+
+
+def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:
+    """Message, value and remedy where a reference leads nowhere."""
+    direct = isinstance(value, Rate | HeatFlow)
+    target = value.of if direct else value[0] if isinstance(value, tuple) else value
+    if not known.holds(target):
+        return _foreign(target, value, known)
+    if isinstance(target, Node):
+        return None
+    if direct:
+        found = target.name in known.acting
+        return None if found else ("is no torque element or contact", _words(value), "give one of these")
+    if isinstance(target, Component) and role(target) is not Role.PROCESS:
+        names = "a signal, a thermal node or a process"
+        return "is an element without output", _words(value), f"give {names}, or its Rate or HeatFlow"
+    if state_name(value) in known.states:
+        return None
+    own = [name for name in known.states if name.startswith(f"{target.name}.")]
+    return f"is not known{near(state_name(value), own)}", shown(state_name(value)), f"known are {listed(own)}"
+
+
+def _foreign(target: Any, value: Any, known: Known) -> tuple[str, str, str]:
+    """A shaft, node or element that is referred to and was not added."""
+    if target.name in known.parts or any(thing.name == target.name for thing in known.added.values()):
+        remedy = "give the one that was added, or add this one under a name of its own"
+        return "is not the one that was added to this driveline under this name", _words(value), remedy
+    remedy = (
+        "add it: d.add(...), and keep what that hands back"
+        if isinstance(target, Component)
+        else "create it in this one"
+    )
+    return "was not added to this driveline", _words(value), remedy
+
+
+def _unit(value: Any, known: Known) -> str:
+    if isinstance(value, HeatFlow):
+        return "W"
+    target = value.of if isinstance(value, Rate) else value
+    if isinstance(target, Node):
+        return "rad/s" if target.domain is Domain.ROTATION else "m/s"
+    return "rad/s" if isinstance(value, Rate) else known.states[state_name(value)][0]
+
+
+def _words(value: Any) -> str:
+    """A reference in words."""
+    if isinstance(value, Rate | HeatFlow):
+        return f"{type(value).__name__} of {shown(value.of.name)}"
+    return shown(value[0].name if isinstance(value, tuple) else value.name)

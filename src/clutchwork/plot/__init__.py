@@ -1,5 +1,0 @@
-"""Pictures of a run; matplotlib is imported when the first one is drawn."""
-
-from clutchwork.plot.picture import picture
-
-__all__ = ["picture"]

@@ -1,0 +1,189 @@
+"""Every signal of a System by name: its unit and how it follows from the output rows of the core.
+
+Nothing is computed before it is asked for. A torque is what its element puts on its follower (or shaft); power is
+torque times rate, the work done on the driveline; heat of a contact is minus its work, and holds what the bristles of
+its friction law store. States of a friction law stand under the name of the contact: "c1.elastic". Where a part of an
+element counts as the element, such as the drag of a clutch, its torque, power, work and heat are added.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.wiring import HOUSING, Branch, Wiring
+from clutchwork.base.errors import UnknownName, near
+from clutchwork.base.shown import shown
+from clutchwork.declare.node import Domain
+from clutchwork.results import heat_channels, reactions
+from clutchwork.results.forms import LOCKED as LOCKED
+from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Slip, Total
+
+Array = NDArray[Any]
+
+SPEED = {Domain.ROTATION: "rad/s", Domain.TRANSLATION: "m/s"}
+ANGLE = {Domain.ROTATION: "rad", Domain.TRANSLATION: "m"}
+ACCELERATION = {Domain.ROTATION: "rad/s2", Domain.TRANSLATION: "m/s2"}
+TORQUE = {Domain.ROTATION: "N m", Domain.TRANSLATION: "N"}
+PLACE = {Domain.ROTATION: "angle", Domain.TRANSLATION: "position"}
+REACTION = {Domain.ROTATION: "housing.torque", Domain.TRANSLATION: "housing.force"}
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One signal: its unit and its evaluation on a matrix of output rows."""
+
+    unit: str
+    evaluate: Form
+
+
+class Channels(Mapping[str, Channel]):
+    """All signals of a System by name; a misspelt name is answered with near ones."""
+
+    def __init__(self, wiring: Wiring, *, angles: bool = True, work: bool = True) -> None:
+        self._wiring = wiring
+        self._left_out = _left_out(angles, work)
+        self._channels: dict[str, Channel] = {}
+        # heat of a thermal node is a state, no work integral
+        known = {f"{node.name}.heat" for node in wiring.thermal}
+        for name, channel in self._all():
+            if name in known or not name.endswith(tuple(self._left_out)):
+                # the torque of a load and the signal that sets its size would have the same name
+                self._channels[f"{name}_signal" if name in self._channels else name] = channel
+
+    def __getitem__(self, name: str) -> Channel:
+        try:
+            return self._channels[name]
+        except KeyError:
+            raise UnknownName(self._unknown(name)) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._channels)
+
+    def __len__(self) -> int:
+        return len(self._channels)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._channels
+
+    def _unknown(self, name: str) -> str:
+        for ending, option in self._left_out.items():
+            if isinstance(name, str) and name.endswith(ending):
+                return f"{name} was not computed: run with {option}=True"
+        return f"no signal {shown(name)}{near(name, self._channels)}; `names` lists all of them"
+
+    def _all(self) -> Iterator[tuple[str, Channel]]:
+        yield from self._nodes()
+        for branch in self._wiring.elements:
+            if not branch.hidden:
+                yield from self._element(branch)
+        for index, branch in enumerate(self._wiring.contacts):
+            yield from self._contact(branch, index)
+        yield from self._rigid()
+        yield from self._thermal()
+        start = self._start("input")
+        for index, (name, unit) in enumerate(self._wiring.inputs):
+            yield name, _column(start + index, unit)
+
+    def _start(self, part: str) -> int:
+        return int(self._wiring.columns[part].start)
+
+    def _nodes(self) -> Iterator[tuple[str, Channel]]:
+        for index, node in enumerate(self._wiring.nodes):
+            domain = node.domain
+            yield f"{node.name}.speed", _column(self._start("speed") + index, SPEED[domain])
+            yield f"{node.name}.{PLACE[domain]}", _column(self._start("angle") + index, ANGLE[domain])
+            yield f"{node.name}.acceleration", _column(self._start("acceleration") + index, ACCELERATION[domain])
+
+    def _element(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
+        torque, rate = self._total("torque", branch), self._rate(branch)
+        yield f"{branch.name}.torque", Channel(TORQUE[branch.domain], torque)
+        yield f"{branch.name}.rate", Channel(SPEED[branch.domain], rate)
+        yield f"{branch.name}.power", Channel("W", Power(torque, rate))
+        yield f"{branch.name}.work", Channel("J", self._total("work", branch))
+        yield from self._states(branch)
+
+    def _states(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
+        for name, unit, index in branch.states:
+            column = self._start("state") + index
+            yield f"{branch.name}.{name}", _column(column, unit)
+            if name == "spring_torque":
+                twist = Affine(column, 1.0 / branch.component.stiffness)
+                yield f"{branch.name}.twist", Channel(ANGLE[branch.domain], twist)
+
+    def _contact(self, branch: Branch, index: int) -> Iterator[tuple[str, Channel]]:
+        mode = self._start("contact_mode") + index
+        torque, work = self._total("torque", branch), self._total("work", branch)
+        slip = Slip(self._rate(branch), mode)
+        yield f"{branch.name}.torque", Channel(TORQUE[branch.domain], torque)
+        yield f"{branch.name}.slip", Channel(SPEED[branch.domain], slip)
+        yield f"{branch.name}.power", Channel("W", Power(torque, slip))
+        yield f"{branch.name}.work", Channel("J", work)
+        yield f"{branch.name}.heat", Channel("J", Total(work.indices, negative=True))
+        yield f"{branch.name}.mode", Channel("1", Mode(mode))
+        yield f"{branch.name}.state", Channel("", Mode(mode, named=True))
+        yield f"{branch.name}.capacity", _column(self._start("contact_capacity") + index, TORQUE[branch.domain])
+        yield from self._states(branch)
+
+    def _thermal(self) -> Iterator[tuple[str, Channel]]:
+        for name, unit, columns in heat_channels.affine(self._wiring):
+            yield name, Channel(unit, Affine(*columns))
+
+    def _total(self, what: str, branch: Branch) -> Total:
+        """Torque or work of a branch and of the parts that count as it."""
+        names = (branch.name, *self._wiring.sums.get(branch.name, ()))
+        acting = map(self._acting.__getitem__, names)
+        return Total(tuple(self._start(f"{sort}_{what}") + index for sort, index in acting))
+
+    @cached_property
+    def _acting(self) -> dict[str, tuple[str, int]]:
+        """Sort and place of each element and contact by name."""
+        sorts = (("element", self._wiring.elements), ("contact", self._wiring.contacts))
+        return {part.name: (sort, index) for sort, branches in sorts for index, part in enumerate(branches)}
+
+    def _rigid(self) -> Iterator[tuple[str, Channel]]:
+        wiring, made = self._wiring, reactions.multipliers(self._wiring)
+        yield from _gear_torques(wiring, made)
+        for index, branch in enumerate(wiring.motions):
+            torque, rate = Linear.of(made[len(wiring.gears) + index]), self._rate(branch)
+            yield f"{branch.name}.torque", Channel(TORQUE[branch.domain], torque)
+            yield f"{branch.name}.power", Channel("W", Power(torque, rate))
+            yield f"{branch.name}.work", _column(self._start("prescribed_work") + index, "J")
+        for domain in Domain:
+            if domain is Domain.ROTATION or any(node.domain is domain for node in wiring.nodes):
+                yield REACTION[domain], Channel(TORQUE[domain], Linear.of(reactions.on_housing(wiring, made, domain)))
+
+    def _rate(self, branch: Branch) -> Linear:
+        """Rate of a branch."""
+        vector = np.zeros(self._wiring.row_size)
+        for node, coefficient in branch.direction.items():
+            if node != HOUSING:
+                vector[self._start("speed") + node] += coefficient
+        return Linear.of(vector)
+
+
+def _left_out(angles: bool, work: bool) -> dict[str, str]:
+    """Endings of the signals that a run did not integrate, with the option that turns them on."""
+    endings = {} if angles else {".angle": "angles", ".position": "angles"}
+    return endings if work else endings | {".work": "work", ".heat": "work"}
+
+
+def _gear_torques(wiring: Wiring, made: Array) -> Iterator[tuple[str, Channel]]:
+    """Torque that a gear puts on the member at each port; several rows of one gear add up."""
+    totals: dict[str, tuple[Array, Domain]] = {}
+    for index, row in enumerate(wiring.gears):
+        for port, (_, coefficient) in row.ports.items():
+            name = f"{row.name}.torque_{port}"
+            before = totals[name][0] if name in totals else np.zeros(wiring.row_size)
+            totals[name] = (before + coefficient * made[index], row.domains[port])
+    for name, (vector, domain) in totals.items():
+        yield name, Channel(TORQUE[domain], Linear.of(vector))
+
+
+def _column(column: int, unit: str) -> Channel:
+    return Channel(unit, Column(column))

@@ -1,0 +1,180 @@
+"""Where the energy of a run went.
+
+    work of the sources = change of kinetic + change of elastic energy + heat + residual
+    heat = heat in thermal nodes + heat that nobody follows
+
+The work integrals come from the solver itself, so the residual measures what the integration lost or made.
+
+Heat of a contact is minus the work of its friction. Where the friction law has bristles, what they store at the end
+counts as heat too: it is small, at most coefficient times deflection times load, and it comes back on the way back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.wiring import Branch, Wiring
+from clutchwork.base.text import columns
+from clutchwork.results.events import Events
+
+SPRING_STATE = "spring_torque"
+
+
+@dataclass(frozen=True)
+class EnergyBalance:
+    """Energies between the first and the last instant of a trajectory, all in J.
+
+    Impulses at the very start belong to the trajectory: the kinetic energy is counted from before them. What they
+    take out is part of the heat of the contacts; `impulses` only names it.
+    """
+
+    sources: Mapping[str, float]  # work that each source put in; negative for a load
+    kinetic: float  # change
+    elastic: float  # change, all springs
+    heat: Mapping[str, float]  # per contact and damper
+    impulses: float  # part of the heat: lost where speeds jumped
+    thermal: Mapping[str, float] = field(default_factory=dict)  # change of the heat of each thermal node and ambient
+    shares: Mapping[str, float] = field(default_factory=dict)  # share of the heat of each that goes to a thermal node
+
+    @property
+    def input(self) -> float:
+        """Net work of all sources and prescribed speeds [J]."""
+        return sum(self.sources.values())
+
+    @property
+    def untracked(self) -> float:
+        """Heat that goes to no thermal node [J]."""
+        return sum(heat * (1.0 - self.shares.get(name, 0.0)) for name, heat in self.heat.items())
+
+    @property
+    def residual(self) -> float:
+        """What the balance misses [J]; where there are thermal nodes, it counts the heat that arrived there."""
+        return self.input - self.kinetic - self.elastic - self.untracked - sum(self.thermal.values())
+
+    @property
+    def turnover(self) -> float:
+        """Sum of all energies that moved, regardless of direction [J]: what a residual is small against."""
+        parts = [*self.sources.values(), *self.heat.values(), self.kinetic, self.elastic]
+        return 0.5 * sum(abs(part) for part in parts)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain numbers for JSON."""
+        return {
+            "input_J": self.input,
+            "sources_J": dict(self.sources),
+            "kinetic_J": self.kinetic,
+            "elastic_J": self.elastic,
+            "heat_J": dict(self.heat),
+            "thermal_J": dict(self.thermal),
+            "untracked_J": self.untracked,
+            "impulses_J": self.impulses,
+            "residual_J": self.residual,
+        }
+
+    def __str__(self) -> str:
+        """A table for reading."""
+        lines = [(f"  {name}", f"{work:.3f}") for name, work in self.sources.items() if work]
+        lines.insert(0, ("work of sources", f"{self.input:.3f}"))
+        lines += [("kinetic energy, change", f"{self.kinetic:.3f}"), ("elastic energy, change", f"{self.elastic:.3f}")]
+        lines += [("heat", f"{sum(self.heat.values()):.3f}")]
+        lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.heat.items() if heat]
+        lines += [("thereof in impulses", f"{self.impulses:.3f}")] if self.impulses else []
+        if self.thermal:
+            lines += [("in thermal nodes", f"{sum(self.thermal.values()):.3f}")]
+            lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.thermal.items() if heat]
+            lines += [("heat not assigned to a thermal node", f"{self.untracked:.3f}")]
+        share = self.residual / self.turnover if self.turnover else 0.0
+        lines += [("residual", f"{self.residual:.3e}"), ("residual / turnover", f"{share:.1e}")]
+        return columns([("energy", "J"), *lines], right={1})
+
+
+def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> EnergyBalance:
+    """Balance between the first and the last output row."""
+    ends = rows[[0, -1]]
+    sources, heat, elastic = {}, {}, 0.0
+    for branch, work in _works(wiring, ends, "element_work", wiring.elements):
+        if branch.hidden:
+            continue
+        stored = _elastic(wiring, ends, branch)
+        elastic += stored
+        if is_source(branch):
+            sources[branch.name] = work
+        elif is_lossy(branch):
+            heat[branch.name] = 0.0 - work - stored
+    sources |= {branch.name: work for branch, work in _works(wiring, ends, "prescribed_work", wiring.motions)}
+    heat |= {branch.name: 0.0 - work for branch, work in _works(wiring, ends, "contact_work", wiring.contacts)}
+    # a row at time zero lies behind the impulses of the start, whose work it holds already
+    lost = _impulses(events.at_start())
+    before = ends[0, wiring.columns["contact_work"]] if lost else np.zeros(len(wiring.contacts))
+    for branch, work in zip(wiring.contacts, before, strict=True):
+        heat[branch.name] -= float(work)
+    driven = ends[0, wiring.columns["prescribed_work"]] if lost else np.zeros(len(wiring.motions))
+    for branch, work in zip(wiring.motions, driven, strict=True):
+        sources[branch.name] += float(work)
+    # where sources prescribe speeds, the change of kinetic energy is not what the contacts lost
+    named = 0.0 if wiring.motions else _impulses(events)
+    shares = {b.name: _share(b.component) for b in (*wiring.elements, *wiring.contacts) if _share(b.component)}
+    thermal = _thermal(wiring, ends, lost)
+    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, named, thermal, shares)
+
+
+def _share(component: Any) -> float:
+    """Share of the heat of an element that goes to a thermal node."""
+    return 0.0 if getattr(component, "heat", None) is None else float(component.heat_share)
+
+
+def _thermal(wiring: Wiring, ends: NDArray[np.float64], lost: float) -> dict[str, float]:
+    """Change of the heat of each node; what impulses of the start brought is in the first row already."""
+    columns = {node.name: wiring.columns["state"].start + node.states[0][2] for node in wiring.thermal}
+    first = np.zeros_like(ends[0]) if lost else ends[0]
+    return {name: float(ends[1, column] - first[column]) for name, column in columns.items()}
+
+
+def is_spring(branch: Branch) -> bool:
+    """Whether an element stores elastic energy: its state is stiffness times twist."""
+    passive = branch.component.passive()
+    return passive is not None and bool(passive.stiffness)
+
+
+def is_lossy(branch: Branch) -> bool:
+    """Whether an element turns work into heat: it has a damping, or a thermal node takes what it makes."""
+    return branch.component.lossy or _share(branch.component) > 0.0
+
+
+def is_source(branch: Branch) -> bool:
+    """Whether the work of an element counts as work from outside: drives and loads."""
+    return not (is_spring(branch) or is_lossy(branch))
+
+
+def _impulses(events: Events) -> float:
+    """Energy lost where speeds jumped; contacts that change in one instant share one impulse."""
+    jumps = {(e.time, e.energy_before, e.energy_after) for e in events}
+    return sum(before - after for _, before, after in jumps)
+
+
+def _works(
+    wiring: Wiring, ends: NDArray[np.float64], part: str, branches: tuple[Branch, ...]
+) -> list[tuple[Branch, float]]:
+    gained = ends[1, wiring.columns[part]] - ends[0, wiring.columns[part]]
+    return [(branch, float(work)) for branch, work in zip(branches, gained, strict=True)]
+
+
+def _kinetic(wiring: Wiring, ends: NDArray[np.float64]) -> float:
+    speeds = ends[:, wiring.columns["speed"]]
+    inertia = np.array([node.inertia for node in wiring.nodes])
+    # as a product of sum and difference, which keeps digits when little changed
+    return float(0.5 * np.sum(inertia * (speeds[1] - speeds[0]) * (speeds[1] + speeds[0])))
+
+
+def _elastic(wiring: Wiring, ends: NDArray[np.float64], branch: Branch) -> float:
+    total = 0.0
+    for name, _, index in branch.states:
+        if name == SPRING_STATE:
+            torque = ends[:, wiring.columns["state"].start + index]
+            total += 0.5 * (torque[1] - torque[0]) * (torque[1] + torque[0]) / branch.component.stiffness
+    return float(total)

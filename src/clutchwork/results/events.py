@@ -1,0 +1,146 @@
+"""What happened to the contacts during a run, as a table."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Sequence
+from dataclasses import astuple, dataclass, fields
+from pathlib import Path
+from typing import overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.errors import UnknownName, near
+from clutchwork.base.shown import listed, shown
+from clutchwork.base.text import columns
+from clutchwork.declare.layout import EVENT, MODES
+
+CAUSES = ("start", "slip zero", "torque limit", "input", "other event", "impulse", "restart", "passing", "fault")
+
+
+@dataclass(frozen=True)
+class Event:
+    """One contact changing its state."""
+
+    time: float  # s
+    element: str  # name of the contact; "" when the event belongs to no contact
+    before: str  # forward, backward, locked or open
+    after: str
+    cause: str  # one of CAUSES
+    slip_acceleration: float  # rad/s2 after the event
+    torque_before: float  # N m on the follower
+    torque_after: float  # N m on the follower
+    energy_before: float  # J, kinetic
+    energy_after: float  # J, kinetic
+
+    @property
+    def energy_lost(self) -> float:
+        """Energy taken out by an impulse at this instant [J]."""
+        return self.energy_before - self.energy_after
+
+
+class Events(Sequence[Event]):
+    """The events of a run in order of time; print it to read it."""
+
+    def __init__(self, events: Sequence[Event] = (), contacts: Sequence[str] | None = None) -> None:
+        """Events in order of time; `contacts` are the names that `of` knows, by default those of the events."""
+        self._events = tuple(events)
+        self._contacts = None if contacts is None else tuple(contacts)
+
+    @overload
+    def __getitem__(self, index: int) -> Event: ...
+    @overload
+    def __getitem__(self, index: slice) -> Events: ...
+    def __getitem__(self, index: int | slice) -> Event | Events:
+        if isinstance(index, slice):
+            return Events(self._events[index], self._contacts)
+        return self._events[index]
+
+    def __len__(self) -> int:
+        return len(self._events)
+
+    def __iter__(self) -> Iterator[Event]:
+        return iter(self._events)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Events) and self._events == other._events
+
+    def __hash__(self) -> int:
+        return hash(self._events)
+
+    def of(self, element: str) -> Events:
+        """The events of one contact; UnknownName, a KeyError, with near names when there is none of that name."""
+        known = [event.element for event in self] if self._contacts is None else self._contacts
+        if element not in known and element != "":
+            remedy = f"contacts are {listed(dict.fromkeys(known))}" if known else "there is no contact"
+            raise UnknownName(f"no contact {shown(element)}{near(element, known)}; {remedy}")
+        return Events([event for event in self if event.element == element], self._contacts)
+
+    def changes(self) -> Events:
+        """Without entries that change no torque: the state at the start, an open contact whose slip passes zero."""
+        quiet = ("start", "passing")
+        chosen = [event for event in self if event.before != event.after and event.cause not in quiet]
+        return Events(chosen, self._contacts)
+
+    def at_start(self) -> Events:
+        """Impulses at time zero."""
+        chosen = [event for event in self if event.time == 0.0 and event.cause == "impulse"]
+        return Events(chosen, self._contacts)
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Instants [s]."""
+        return np.array([event.time for event in self], dtype=float)
+
+    def __str__(self) -> str:
+        """A table for reading."""
+        head = ("time s", "element", "from", "to", "cause", "slip acc rad/s2", "torque before", "torque after N m")
+        lines = [tuple(_cells(event)) for event in self]
+        return columns([head, *lines], right={0, 5, 6, 7}) if lines else "no events"
+
+    __repr__ = __str__
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write every field of every event; the unit stands in the head of each column."""
+        units = {"time": "s", "slip_acceleration": "rad/s2", "torque_before": "N m", "torque_after": "N m"}
+        units |= {"energy_before": "J", "energy_after": "J"}
+        names = [item.name for item in fields(Event)]
+        with Path(path).open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow([f"{name} [{units[name]}]" if name in units else name for name in names])
+            writer.writerows([_exact(value) for value in astuple(event)] for event in self)
+
+
+def from_rows(rows: NDArray[np.float64], contacts: Sequence[str]) -> Events:
+    """Name the numbers of the core."""
+    at = {name: column for column, (name, _) in enumerate(EVENT)}
+    # contacts that change in one instant stand in their own order
+    order = np.lexsort((rows[:, at["contact"]], rows[:, at["time"]]))
+    return Events([_event(rows[i], at, contacts) for i in order], contacts)
+
+
+def _event(row: NDArray[np.float64], at: dict[str, int], contacts: Sequence[str]) -> Event:
+    contact, cause = int(row[at["contact"]]), int(row[at["cause"]])
+    return Event(
+        time=float(row[at["time"]]),
+        element=contacts[contact] if 0 <= contact < len(contacts) else "",
+        before=MODES.get(int(row[at["from"]]), "open"),
+        after=MODES.get(int(row[at["to"]]), "open"),
+        cause=CAUSES[cause] if 0 <= cause < len(CAUSES) else str(cause),
+        slip_acceleration=float(row[at["slip_acceleration"]]),
+        torque_before=float(row[at["torque_before"]]),
+        torque_after=float(row[at["torque_after"]]),
+        energy_before=float(row[at["energy_before"]]),
+        energy_after=float(row[at["energy_after"]]),
+    )
+
+
+def _cells(event: Event) -> list[str]:
+    numbers = (event.slip_acceleration, event.torque_before, event.torque_after)
+    words = [f"{event.time:.9f}", event.element, event.before, event.after, event.cause]
+    return words + [f"{number:.4g}" if abs(number) < 1e5 else f"{number:.3e}" for number in numbers]
+
+
+def _exact(value: object) -> object:
+    return repr(value) if isinstance(value, float) else value

@@ -1,0 +1,46 @@
+"""Trajectories for other programs."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from clutchwork.results.recorded import Recorded
+
+
+def to_csv(run: Recorded, path: Path, names: tuple[str, ...]) -> None:
+    """Columns with a head `name [unit]`; numbers keep all their digits."""
+    table = [run.time, *(run[name] for name in names)]
+    heads = ["time [s]", *(f"{name} [{run.units[name]}]" if run.units[name] else name for name in names)]
+    cells = [column.tolist() for column in table]
+    with path.open("w", encoding="utf-8", newline="") as file:
+        # names may hold commas and quotes
+        csv.writer(file, lineterminator="\n").writerow(heads)
+        file.writelines(",".join(map(str, line)) + "\n" for line in zip(*cells, strict=True))
+
+
+def to_pandas(run: Recorded, names: tuple[str, ...]) -> Any:
+    """DataFrame with the time as index; `frame.attrs["units"]` holds the units."""
+    pandas = _need("pandas")
+    frame = pandas.DataFrame({name: run[name] for name in names}, index=pandas.Index(run.time, name="time"))
+    frame.attrs["units"] = {name: run.units[name] for name in names}
+    return frame
+
+
+def to_xarray(run: Recorded, names: tuple[str, ...]) -> Any:
+    """Dataset with the dimension time; every variable carries its unit."""
+    xarray = _need("xarray")
+    variables = {name: ("time", np.ascontiguousarray(run[name]), {"units": run.units[name]}) for name in names}
+    return xarray.Dataset(variables, coords={"time": ("time", run.time, {"units": "s"})})
+
+
+def _need(package: str) -> Any:
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise ImportError(f"this needs {package}: pip install {package}") from error

@@ -1,0 +1,119 @@
+"""Speed ratios that follow from gears and closed contacts alone; springs count as rigid."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+from math import comb
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clutchwork.assembly.wiring import HOUSING, Wiring, wiring
+from clutchwork.results.channels import LOCKED
+from clutchwork.results.energy import is_source, is_spring
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from clutchwork.assembly.system import System
+    from clutchwork.results.recorded import Recorded
+
+ROUND_OFF = 1e-9
+MOST_COMBINATIONS = 5_000
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A stretch of a run in which the same contacts are locked."""
+
+    begin: float  # s
+    end: float  # s
+    closed: tuple[str, ...]
+    kinematic: float | None  # ratio of the two shafts by gears and locked contacts; None: free
+    measured: float  # ratio of their speeds at the end of the phase
+
+
+def input_and_output(parts: Wiring) -> tuple[str, str] | None:
+    """The shafts of the first and of the last source in a model: drive and load, when they differ."""
+    sources = [branch for branch in (*parts.motions, *parts.elements) if is_source(branch)]
+    moving = [[node for node, factor in b.direction.items() if node != HOUSING and factor > 0.0] for b in sources]
+    shafts = [parts.nodes[nodes[0]].name for nodes in moving if nodes]
+    return (shafts[0], shafts[-1]) if shafts and shafts[0] != shafts[-1] else None
+
+
+def ratio(system: System, closed: Collection[str], shafts: tuple[str, str]) -> float | None:
+    """Speed of the first shaft over that of the second with the named contacts closed.
+
+    None when it is not determined; infinite when the second shaft is held.
+    """
+    free = _free_motions(system, closed)
+    names = [node.name for node in system.nodes]
+    upper, lower = (free[names.index(name)] for name in shafts)
+    size = float(np.max(np.abs(np.concatenate([upper, lower])), initial=0.0))
+    if size <= ROUND_OFF:
+        return None
+    if np.max(np.abs(lower)) <= ROUND_OFF * size:
+        return float("inf")
+    value = float(upper @ lower / (lower @ lower))
+    return value if np.allclose(upper, value * lower, rtol=0.0, atol=ROUND_OFF * size) else None
+
+
+@dataclass(frozen=True)
+class Gears:
+    """Smallest sets of closed contacts that fix a finite ratio other than zero, with that ratio."""
+
+    ratios: tuple[tuple[tuple[str, ...], float], ...]
+    untried: int | None  # sets of that many contacts or more were not tried; None: all were
+
+
+def gears(system: System, shafts: tuple[str, str]) -> Gears:
+    """Look for the gears of a model, up to sets of as many contacts as can be tried in a moment."""
+    names, tried = [contact.name for contact in system.contacts], 0
+    for size in range(len(names) + 1):
+        tried += comb(len(names), size)
+        if tried > MOST_COMBINATIONS:
+            return Gears(tuple(_gears(system, shafts, names, size)), size)
+    return Gears(tuple(_gears(system, shafts, names, len(names) + 1)), None)
+
+
+def _gears(
+    system: System, shafts: tuple[str, str], names: list[str], sizes: int
+) -> Iterator[tuple[tuple[str, ...], float]]:
+    found: list[tuple[str, ...]] = []
+    for size in range(sizes):
+        for closed in combinations(names, size):
+            value = None if any(set(less) <= set(closed) for less in found) else ratio(system, closed, shafts)
+            if value is not None:
+                found.append(closed)
+                if np.isfinite(value) and abs(value) > ROUND_OFF:
+                    yield closed, value
+
+
+def phases(run: Recorded, shafts: tuple[str, str]) -> list[Phase]:
+    """The run cut where a contact locks or breaks away."""
+    names = [branch.name for branch in run.wiring.contacts]
+    locked = run.rows[:, run.wiring.columns["contact_mode"]] == LOCKED
+    cuts = [0, *(np.flatnonzero(np.any(locked[1:] != locked[:-1], axis=1)) + 1), len(run)]
+    made = []
+    for first, stop in pairwise(cuts):
+        closed = tuple(name for name, is_locked in zip(names, locked[first], strict=True) if is_locked)
+        if run.time[stop - 1] > run.time[first]:
+            upper, lower = (float(run[f"{name}.speed"][stop - 1]) for name in shafts)
+            measured = upper / lower if lower else float("inf")
+            known = ratio(run.system, closed, shafts)
+            made.append(Phase(float(run.time[first]), float(run.time[stop - 1]), closed, known, measured))
+    return made
+
+
+def _free_motions(system: System, closed: Collection[str]) -> NDArray[np.float64]:
+    """Node speeds of all motions that closed contacts and rigid springs leave, one per column."""
+    rigid = [contact.name in closed for contact in system.contacts]
+    springs = [is_spring(branch) for branch in wiring(system).elements]
+    contacts = np.hstack([system.contact_rate, system.contact_rate_prescribed])[rigid]
+    shafts = np.hstack([system.element_rate, system.element_rate_prescribed])[springs]
+    basis = np.hstack([system.basis, system.basis_prescribed])
+    _, sizes, turned = np.linalg.svd(np.vstack([contacts, shafts]), full_matrices=True)
+    rank = int(np.sum(sizes > ROUND_OFF * max(1.0, float(np.max(sizes, initial=0.0)))))
+    return np.asarray(basis @ turned[rank:].T)

@@ -1,0 +1,173 @@
+"""What a run computed: signals by name, events, energies, statistics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base.errors import ClutchworkError
+from clutchwork.declare.calls import explained
+from clutchwork.declare.options import Options
+from clutchwork.declare.status import DONE, NAMES
+from clutchwork.results.channels import Channels
+from clutchwork.results.energy import EnergyBalance, balance
+from clutchwork.results.events import Events
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from clutchwork.assembly.system import System
+    from clutchwork.results.dependence import DependentPhase
+    from clutchwork.results.events import Event
+
+Array = NDArray[np.float64]
+
+
+class SimulationError(ClutchworkError, RuntimeError):
+    """A run failed; `trajectory` holds what was computed before."""
+
+    def __init__(self, message: str, trajectory: Trajectory | None = None) -> None:
+        super().__init__(message)
+        self.trajectory = trajectory
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.trajectory)
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """The result of a run.
+
+    `run.time` [s] and `run["engine.speed"]` are arrays over the same instants; an instant that stands twice gives
+    the left and the right limit at an event. `run.names` lists all signals, `run.units` their units,
+    `run.events`, `run.energy` and `run.statistics` what else is known.
+    """
+
+    system: System
+    options: Options
+    t_end: float  # s, the end that was asked for
+    time: Array  # s
+    rows: Array = field(repr=False)  # output rows of the core, layout.ROW
+    events: Events = field(repr=False)
+    status: str  # "done", or why the run stopped early: a name of layout.STATUS
+    message: str  # "" when done; else what, where, when, and what to do
+    statistics: Mapping[str, float] = field(repr=False)
+    repeat: Callable[[Any], Trajectory] = field(repr=False)  # the same run, bit for bit, at other instants [s]
+
+    @property
+    def finished(self) -> bool:
+        """Whether the run reached its end time."""
+        return self.status == NAMES[DONE]
+
+    def raise_for_status(self) -> Trajectory:
+        """Return itself when the run is complete, else raise SimulationError."""
+        if not self.finished:
+            raise SimulationError(self.message, self)
+        return self
+
+    @cached_property
+    def wiring(self) -> Wiring:
+        """Who is joined to what."""
+        return wiring(self.system)
+
+    @cached_property
+    def channels(self) -> Channels:
+        """Unit and evaluation of every signal."""
+        return Channels(self.wiring, angles=self.options.angles, work=self.options.work)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all signals."""
+        return tuple(self.channels)
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """Unit of every signal."""
+        return {name: channel.unit for name, channel in self.channels.items()}
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """A signal over `time`; KeyError with near names when there is none of that name."""
+        return self.channels[name].evaluate(self.rows)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.channels
+
+    def __len__(self) -> int:
+        """Number of instants."""
+        return len(self.time)
+
+    def at(self, times: Any) -> Trajectory:
+        """The same run at other instants [s], in order of time, as exact as the solver: nothing is interpolated.
+
+        The run is repeated, bit for bit; controllers are not called again, their decisions are replayed.
+        """
+        return self.repeat(times)
+
+    @cached_property
+    def energy(self) -> EnergyBalance:
+        """Energy balance between the first and the last instant."""
+        if not self.options.work:
+            raise ValueError("the energy balance needs the work integrals: run with work=True")
+        if not len(self):
+            raise ValueError(f"no instant was computed, so there is no energy balance: {self.message}")
+        window = [e for e in self.events if self.time[0] <= e.time <= self.time[-1]]
+        return balance(self.wiring, self.rows, Events(window))
+
+    @cached_property
+    def dependent(self) -> tuple[DependentPhase, ...]:
+        """When contacts were locked whose directions depend on each other, so that the torque of each is a convention.
+
+        Their motion and the load that they carry together are unique; it is shared in proportion to capacity.
+        """
+        from clutchwork.results.dependence import dependent_phases
+
+        return dependent_phases(self)
+
+    def to_csv(self, path: str | Path, names: Any = None) -> None:
+        """Write signals (all by default) as columns `name [unit]` with 17 digits, the time first."""
+        from clutchwork.results.export import to_csv
+
+        to_csv(self, Path(path), self._chosen(names))
+
+    def to_pandas(self, names: Any = None) -> Any:
+        """A pandas DataFrame over time; needs pandas."""
+        from clutchwork.results.export import to_pandas
+
+        return to_pandas(self, self._chosen(names))
+
+    def to_xarray(self, names: Any = None) -> Any:
+        """An xarray Dataset with units as attributes; needs xarray."""
+        from clutchwork.results.export import to_xarray
+
+        return to_xarray(self, self._chosen(names))
+
+    @explained("plot")
+    def plot(self, path: str | Path | None = None, *, lockup: Event | None = None) -> Figure:
+        """Picture of speeds, lock-up, inputs and torques; written to `path` when given. Needs matplotlib.
+
+        Parameters: lockup, the event to look at closely, by default the last one in which a contact locks.
+        """
+        from clutchwork.results.plot import picture
+
+        return picture(self, path, lockup=lockup)
+
+    def _chosen(self, names: Any) -> tuple[str, ...]:
+        if names is None:
+            return self.names
+        chosen = (names,) if isinstance(names, str) else tuple(names)
+        for name in chosen:
+            self.channels[name]
+        return chosen
+
+    def __repr__(self) -> str:
+        return (
+            f"<Trajectory {self.status}, 0 to {self.time[-1] if len(self) else 0:g} s, {len(self)} instants, "
+            f"{len(self.names)} signals, {len(self.events)} events>"
+        )

@@ -1,0 +1,131 @@
+"""Python functions that are called at a period, read signals and set inputs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.wiring import wiring
+from clutchwork.results.channels import Channels
+from clutchwork.results.trajectory import SimulationError
+from clutchwork.signals.sampled import Sampled
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.records import Input
+    from clutchwork.assembly.system import System
+
+
+class Readings(Mapping[str, Any]):
+    """All signals at one instant by name, each evaluated when it is read."""
+
+    def __init__(self, channels: Channels, row: NDArray[np.float64]) -> None:
+        self._channels = channels
+        self._row = np.asarray(row).reshape(1, -1)
+
+    def __getitem__(self, name: str) -> Any:
+        return self._channels[name].evaluate(self._row)[0].item()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._channels)
+
+    def __len__(self) -> int:
+        return len(self._channels)
+
+
+@dataclass(frozen=True)
+class Controller:
+    """A function f(t, readings) -> value that sets one input every period [s]."""
+
+    name: str
+    index: int
+    period: float
+    function: Callable[[float, Mapping[str, Any]], float]
+
+    def value(self, time: float, readings: Mapping[str, Any]) -> float:
+        """Call the function; what it raises or a value that is not finite ends the run with its name."""
+        try:
+            given = self.function(time, readings)
+            value = math.nan if given is None else float(given)
+        except Exception as error:
+            raise SimulationError(f"controller of {self.name!r} failed at {time:.9g} s: {error!r}") from error
+        if not math.isfinite(value):
+            words = f"controller of {self.name!r} returned {None if given is None else value} at {time:.9g} s"
+            raise SimulationError(f"{words}: return a finite number")
+        return value
+
+
+def controllers(inputs: Sequence[Input]) -> tuple[Controller, ...]:
+    """The inputs of a System that Python functions set."""
+    return tuple(
+        Controller(item.name, index, item.signal.period, item.signal.function)
+        for index, item in enumerate(inputs)
+        if isinstance(item.signal, Sampled)
+    )
+
+
+class Signals:
+    """The signals of a System, found when they are first asked for; a copy finds them again."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self._found: Channels | None = None
+
+    def __call__(self) -> Channels:
+        """All of them."""
+        if self._found is None:
+            self._found = Channels(wiring(self._system))
+        return self._found
+
+    def __reduce__(self) -> tuple[type[Signals], tuple[System]]:
+        return Signals, (self._system,)
+
+
+Settings = list[tuple[int, float]]
+
+
+@dataclass
+class Control:
+    """Calls the controllers at their instants, and remembers what they set so that a run can be repeated."""
+
+    controllers: tuple[Controller, ...]
+    channels: Callable[[], Channels]
+    log: dict[float, Settings] = field(default_factory=dict)
+
+    def act(self, run: Any, time: float) -> bool:
+        """Set the inputs that are due; False when there is nothing to do."""
+        if time not in self.log:
+            self.log[time] = self._decide(run, time)
+        elif self.log[time]:
+            # a repetition takes the same path through the core
+            run.row()
+        for index, value in self.log[time]:
+            run.set_input(index, value)
+        return bool(self.log[time])
+
+    def _decide(self, run: Any, time: float) -> Settings:
+        due = [controller for controller in self.controllers if _is_due(controller.period, time)]
+        if not due:
+            return []
+        readings = Readings(self.channels(), run.row())
+        return [(controller.index, controller.value(time, readings)) for controller in due]
+
+    def stops(self, t_end: float) -> Iterator[float]:
+        """Instants up to which the core may run: those of all controllers, then the end [s]."""
+        counts = [1] * len(self.controllers)
+        while self.controllers:
+            instants = [count * c.period for count, c in zip(counts, self.controllers, strict=True)]
+            first = min(instants)
+            if first >= t_end:
+                break
+            yield first
+            counts = [n + (at <= first * (1 + 1e-12)) for n, at in zip(counts, instants, strict=True)]
+        yield t_end
+
+
+def _is_due(period: float, time: float) -> bool:
+    return abs(time - round(time / period) * period) <= 1e-12 * max(time, period)

@@ -1,0 +1,79 @@
+"""How a run that cannot go on is reported: what, where, when, and what to do about it."""
+
+from __future__ import annotations
+
+import warnings
+from math import isfinite
+from typing import Any
+
+from clutchwork.base.errors import caller
+from clutchwork.declare.layout import STATUS
+from clutchwork.declare.schema import specs
+from clutchwork.results.trajectory import Trajectory
+
+# why a run stopped, where a value tells more
+WITH_VALUE = ("not_finite", "out_of_table", "chatter")
+
+
+class StoppedEarly(RuntimeWarning):
+    """Warning that a run ended before its end time; `trajectory` holds what was computed."""
+
+    def __init__(self, message: str, trajectory: Trajectory) -> None:
+        super().__init__(message)
+        self.trajectory = trajectory
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.trajectory)
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during a run; `trajectory` holds what was computed before.
+
+    It is a KeyboardInterrupt; a script that does not catch it ends with exit code 1, not that of a signal.
+    """
+
+    def __init__(self, message: str, trajectory: Trajectory) -> None:
+        super().__init__(message)
+        self.trajectory = trajectory
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.trajectory)
+
+
+class FaultWarning(RuntimeWarning):
+    """Warning that a fault was triggered that its element reports as a warning."""
+
+
+def explain(status: int, component: Any, time: float, value: float, quantity: str = "") -> str:
+    """One line for a status of the core: message, element or quantity, value, range of a table, time, remedy."""
+    name, message, remedy = STATUS[status]
+    if name == "zeno" and quantity:
+        crowded = f"{quantity!r} has more than 50 knots within a microsecond"
+        return f"stopped at {time:.9g} s: {crowded}: thin out the signal, or filter it before it becomes a table"
+    if quantity:
+        told = f"; the largest is {quantity}, {value:g}" if isfinite(value) else f": {quantity} is {value:g}"
+        return f"stopped at {time:.9g} s: {message}{told}: {remedy}"
+    where = f" at {component.name!r}" if component is not None else ""
+    covered = _covered(component) if name == "out_of_table" else ""
+    seen = f" (value {value:g}{covered})" if component is not None and name in WITH_VALUE else ""
+    return f"stopped at {time:.9g} s: {message}{where}{seen}: {remedy}"
+
+
+def _covered(component: Any) -> str:
+    """Ranges of the tables of a friction law."""
+    law, axes = getattr(component, "friction", None), dict[str, str]()
+    for item, spec in specs(type(law), "curve", "numbers"):
+        values = [x for x, _ in getattr(law, item.name)] if spec.what == "curve" else getattr(law, item.name)
+        if spec.what == "curve" or spec.rising:
+            axes.setdefault(f"{min(values):g} to {max(values):g} {spec.unit_x or spec.unit}", item.name)
+    return f", the table covers {' and '.join(axes)}" if axes else ""
+
+
+def report_faults(run: Trajectory) -> None:
+    """Warn of the faults of a run whose elements report them as a warning."""
+    contacts: dict[str, Any] = {contact.name: contact for contact in run.system.contacts}
+    for event in run.events:
+        contact = contacts.get(event.element)
+        if event.cause == "fault" and getattr(contact, "report", "") == "warning":
+            what = str(getattr(contact, "fault", "")).replace("_", " ")
+            warnings.warn(FaultWarning(f"{event.element!r} {what} from {event.time:.9g} s on"), stacklevel=caller())

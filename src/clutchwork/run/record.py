@@ -1,0 +1,135 @@
+"""The loop over the compiled core: advance, make room, call controllers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.declare.layout import EVENT
+from clutchwork.declare.status import DONE, EVENTS_FULL, INTERRUPTED, ROWS_FULL
+from clutchwork.run.control import Control
+
+Array = NDArray[np.float64]
+Progress = Callable[[float, float], None]
+
+FIRST_CHUNK = 512
+LARGEST_CHUNK = 16_384
+# a longer grid is cut into stretches, so that progress can be told
+LONG_GRID = 100_000
+
+
+class Recording:
+    """What a run has written so far."""
+
+    def __init__(self, run: Any, row_size: int) -> None:
+        self.run = run
+        self.row_size = row_size
+        self.status = DONE
+        self.raised: BaseException | None = None  # by a signal handler, such as Ctrl-C
+        self.core_seconds = 0.0
+        self._parts: list[tuple[Array, Array]] = []
+        self._events: list[Array] = []
+
+    def advance(self, stop: float, times: Array, rows: Array, first: int, steps: bool) -> int:
+        """Let the core run; the number of rows that it added."""
+        started = perf_counter()
+        self.status, filled, self.raised = self.run.advance(stop, times, rows, first, steps)
+        if self.raised is not None:
+            self.status = INTERRUPTED
+        self.core_seconds += perf_counter() - started
+        return int(filled)
+
+    def add(self, times: Array, rows: Array) -> None:
+        """Append output rows and the events up to now."""
+        if len(times):
+            self._parts.append((times, rows))
+        happened = np.asarray(self.run.events())
+        if len(happened):
+            self._events.append(happened)
+
+    @property
+    def times(self) -> Array:
+        """Instants of the rows [s]."""
+        return np.concatenate([times for times, _ in self._parts]) if self._parts else np.empty(0)
+
+    @property
+    def rows(self) -> Array:
+        """Output rows, shape (instants, row size)."""
+        return np.concatenate([rows for _, rows in self._parts]) if self._parts else np.empty((0, self.row_size))
+
+    @property
+    def events(self) -> Array:
+        """Events, shape (events, columns of layout.EVENT)."""
+        return np.concatenate(self._events) if self._events else np.empty((0, len(EVENT)))
+
+
+def record(recording: Recording, t_end: float, grid: Array | None, control: Control, progress: Progress | None) -> None:
+    """Run to the end, or until the core stops; a grid of None records the solver's steps."""
+    begin = 0.0
+    for stop in control.stops(t_end):
+        acted = control.act(recording.run, begin)
+        if grid is None:
+            _steps(recording, stop, t_end, acted, progress)
+        else:
+            _grid(recording, stop, t_end, _part(grid, begin, stop, stop == t_end), progress)
+        if recording.status != DONE:
+            return
+        begin = stop
+
+
+def _steps(recording: Recording, stop: float, t_end: float, acted: bool, progress: Progress | None) -> None:
+    """Record every step of the solver, in buffers that grow."""
+    run, size = recording.run, FIRST_CHUNK
+    skip_at = -1.0
+    if acted:
+        # the right limit after the controllers; the core may give it once more
+        skip_at = run.time
+        recording.add(np.array([skip_at]), np.array(run.row()).reshape(1, -1))
+    while True:
+        times, rows = np.empty(size), np.empty((size, recording.row_size))
+        filled = recording.advance(stop, times, rows, 0, True)
+        first = int(np.searchsorted(times[:filled], skip_at, "right"))
+        recording.add(times[first:filled].copy(), rows[first:filled].copy())
+        if progress is not None:
+            progress(run.time, t_end)
+        if recording.status not in (ROWS_FULL, EVENTS_FULL):
+            return
+        size = min(2 * size, LARGEST_CHUNK)
+
+
+def _grid(recording: Recording, stop: float, t_end: float, times: Array, progress: Progress | None) -> None:
+    """Record the given instants, all of them up to the stop."""
+    cuts = range(LARGEST_CHUNK, len(times), LARGEST_CHUNK) if len(times) > LONG_GRID else ()
+    first = 0
+    for cut in cuts:
+        _stretch(recording, float(times[cut]), times[first:cut])
+        if progress is not None:
+            progress(recording.run.time, t_end)
+        if recording.status != DONE:
+            return
+        first = cut
+    _stretch(recording, stop, times[first:])
+
+
+def _stretch(recording: Recording, stop: float, times: Array) -> None:
+    rows, filled = np.empty((len(times), recording.row_size)), 0
+    while True:
+        filled += recording.advance(stop, times, rows, filled, False)
+        if recording.status not in (ROWS_FULL, EVENTS_FULL):
+            recording.add(times[:filled], rows[:filled])
+            return
+        recording.add(times[:0], rows[:0])
+
+
+def _part(grid: Array, begin: float, stop: float, last: bool) -> Array:
+    """Instants of one stretch: of its end once, the left limit as at any event; what is left is of the next one."""
+    first, end = int(np.searchsorted(grid, begin, "left")), int(np.searchsorted(grid, stop, "left"))
+    if begin > 0.0 and first < len(grid) and grid[first] == begin:
+        first += 1
+    if last:
+        return grid[first:]
+    return grid[first : end + int(end < len(grid) and grid[end] == stop)]

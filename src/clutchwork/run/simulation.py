@@ -1,0 +1,204 @@
+"""Run a System and collect what it does."""
+
+from __future__ import annotations
+
+import os
+import time
+import warnings
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.system import System
+from clutchwork.assembly.wiring import row_columns, wiring
+from clutchwork.base.errors import UseError, caller
+from clutchwork.base.shown import shown
+from clutchwork.declare.calls import explained
+from clutchwork.declare.core import core
+from clutchwork.declare.options import Options, end_time
+from clutchwork.declare.status import DONE, INTERRUPTED, NAMES, NOT_FINITE
+from clutchwork.results.events import from_rows
+from clutchwork.results.trajectory import SimulationError, Trajectory
+from clutchwork.run.control import Control, Signals, controllers
+from clutchwork.run.effort import refuse_endless
+from clutchwork.run.failure import Interrupted, StoppedEarly, explain, report_faults
+from clutchwork.run.grid import output_grid
+from clutchwork.run.jumps import jump_times
+from clutchwork.run.record import Progress, Recording, record
+
+Array = NDArray[np.float64]
+
+
+class Assembles(Protocol):
+    """What can be assembled to a System: a Driveline."""
+
+    def assemble(self) -> System:
+        """The System of it."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run that is wanted."""
+
+    system: System
+    t_end: float
+    options: Options
+    control: Control
+
+    def again(self, times: Any) -> Trajectory:
+        """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
+        instants = np.sort(np.atleast_1d(np.asarray(times, dtype=float)))
+        return _trajectory(replace(self, options=self.options.changed({"times": instants, "dt": None})), None)
+
+
+@explained("simulate")
+def simulate(
+    model: Assembles | System,
+    t_end: float,
+    *,
+    options: Options | None = None,
+    progress: Progress | None = None,
+    **changes: Any,
+) -> Trajectory:
+    """Compute the motion of a Driveline or a System from 0 to t_end.
+
+    Parameters: t_end [s]; options, an `Options`, or its fields by name (rtol=, dt=, method= ...); progress, a
+    function of (time reached [s], t_end [s]) that is called now and then.
+
+    A fault that its element reports as a warning is a `FaultWarning`. A run that cannot go on warns with `StoppedEarly`
+    and returns the trajectory so far, with `status` and `message`.
+    A controller that raises ends in `SimulationError`, which holds the trajectory so far too, and so does
+    `Interrupted`, the KeyboardInterrupt that Ctrl-C raises.
+    """
+    t_end = end_time(t_end)
+    if options is not None and not isinstance(options, Options):
+        raise UseError("simulate", [f"options is {shown(options)}: it must be cw.Options(...)"])
+    chosen = (options or Options()).changed(changes)
+    if not isinstance(model, System) and not hasattr(model, "assemble"):
+        raise UseError("simulate", [_no_model(model)])
+    system = model if isinstance(model, System) else model.assemble()
+    refuse_endless(system.inputs, t_end, chosen.max_steps)
+    control = Control(controllers(system.inputs), Signals(system))
+    run = _trajectory(Job(system, t_end, chosen, control), progress)
+    report_faults(run)
+    return run
+
+
+def _no_model(given: object) -> str:
+    remedy = "give a Driveline or a System"
+    if isinstance(given, str | os.PathLike):
+        remedy = f"a file is read by cw.Driveline.load({os.fspath(given)!r})"
+    return f"{shown(given)} is not a model; {remedy}"
+
+
+def _trajectory(job: Job, progress: Progress | None) -> Trajectory:
+    """Run, and tell how it ended."""
+    started = time.perf_counter()
+    recording, failure = _collect(job, progress)
+    made = _named(job, recording, time.perf_counter() - started)
+    if failure is not None:
+        raise SimulationError(str(failure), made) from failure.__cause__
+    if isinstance(recording.raised, KeyboardInterrupt):
+        raise Interrupted(made.message, made) from None
+    if recording.raised is not None:
+        raise recording.raised
+    if not made.finished:
+        warnings.warn(StoppedEarly(made.message, made), stacklevel=caller())
+    return made
+
+
+def _collect(job: Job, progress: Progress | None) -> tuple[Recording, SimulationError | None]:
+    """Record a run; smooth output repeats it on a grid that is known to hold every step and event."""
+    data, grid = job.system.to_bytes(), output_grid(job.options, job.t_end)
+    first, failure = _once(job, data, grid, progress)
+    if grid is not None or job.options.output != "smooth" or failure is not None or first.status == INTERRUPTED:
+        return first, failure
+    spacing = job.t_end / job.options.points
+    finer = refined(first.times, spacing, jump_times(job.system.inputs, job.t_end))
+    if finer.size == first.times.size:
+        return first, None
+    second, failure = _once(job, data, finer, None)
+    second.core_seconds = first.core_seconds
+    if second.status == INTERRUPTED:
+        # the bare steps reach further
+        first.status, first.raised = INTERRUPTED, second.raised
+        return first, None
+    return second, failure
+
+
+def _once(
+    job: Job, data: bytes, grid: Array | None, progress: Progress | None
+) -> tuple[Recording, SimulationError | None]:
+    run = new_run(data)
+    for name, value in job.options.core_options().items():
+        run.set_option(name, value)
+    row_size = max(part.stop for part in row_columns(job.system.counts).values())
+    recording = Recording(run, row_size)
+    try:
+        record(recording, job.t_end, grid, job.control, progress)
+    except SimulationError as error:
+        return recording, error
+    except KeyboardInterrupt as error:
+        # between two calls of the core
+        recording.status, recording.raised = INTERRUPTED, error
+    return recording, None
+
+
+def new_run(data: bytes) -> Any:
+    """A run of the compiled core over the bytes of a System."""
+    return core().Run(data)
+
+
+def refined(steps: Array, spacing: float, jumps: Array) -> Array:
+    """The solver's steps with more instants where they lie further apart than the spacing.
+
+    An instant that stands twice stays so; where a signal jumps it is made to stand twice.
+    """
+    gaps = np.diff(steps)
+    parts = np.maximum(1, np.ceil(gaps / spacing - 1e-9)).astype(int)
+    left, width = np.repeat(steps[:-1], parts), np.repeat(gaps / parts, parts)
+    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    grid = np.append(left + number * width, steps[-1:])
+    reached = jumps[jumps < grid[-1]] if grid.size else jumps[:0]
+    present = np.searchsorted(grid, reached, "right") - np.searchsorted(grid, reached, "left")
+    return np.sort(np.concatenate([grid, np.repeat(reached, np.maximum(0, 2 - present))]))
+
+
+def _message(system: System, status: int, run: Any) -> str:
+    """Why a run stopped. What is not finite is an element, or a number of a row; else the largest one is named."""
+    index, at, value, column = run.detail()
+    parts = [*system.elements, *system.contacts]
+    if NAMES[status] == "zeno" and index < 0:
+        return explain(status, None, at, value, system.inputs[int(value)].name)
+    if status != NOT_FINITE or 0 <= index < len(parts):
+        return explain(status, parts[index] if 0 <= index < len(parts) else None, at, value)
+    if column < 0:
+        row = np.asarray(run.row())
+        column = int(np.argmax(np.abs(row)))
+        value = float(row[column])
+    from clutchwork.results.rows import numbers
+
+    name, _ = numbers(wiring(system))[column]
+    return explain(status, None, at, value, name)
+
+
+def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
+    """The numbers of a run with the names of its system."""
+    run, status, system = recording.run, recording.status, job.system
+    message = ""
+    if status != DONE:
+        message = _message(system, status, run)
+    return Trajectory(
+        system=system,
+        options=job.options,
+        t_end=job.t_end,
+        time=recording.times,
+        rows=recording.rows,
+        events=from_rows(recording.events, [contact.name for contact in system.contacts]),
+        status=NAMES[status],
+        message=message,
+        repeat=job.again,
+        statistics={**run.statistics(), "core_seconds": recording.core_seconds, "seconds": seconds},
+    )

@@ -1,0 +1,1 @@
+"""What signals are made of: pieces over time, columns of CSV files."""

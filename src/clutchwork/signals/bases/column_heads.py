@@ -1,0 +1,54 @@
+"""Heads of columns in CSV files, such as `c1 [bar]`: which one a name means, and what its unit is worth in SI."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from clutchwork.declare.quantity import QuantityError, factor_to_si
+from clutchwork.declare.units import parse
+
+_HEAD = re.compile(r"(.*?)\s*\[(.*)\]")
+# what heads write for "no unit"
+BARE = ("", "-")
+
+
+@dataclass(frozen=True)
+class Head:
+    """A column: its whole head in the file, and its unit, empty where none is given."""
+
+    text: str
+    unit: str
+
+    def factor(self, wanted: tuple[str, ...] = ()) -> float:
+        """Factor to SI, 1 without a unit; QuantityError where the unit is not known or fits none of those wanted."""
+        if not self.unit:
+            return 1.0
+        if wanted:
+            return factor_to_si(self.unit, wanted[0], wanted[1:], self.text)
+        try:
+            return parse(self.unit).factor
+        except ValueError:
+            remedy = "write one such as [bar], or leave it out where the values are in SI"
+            try:
+                return factor_to_si(self.unit, "K", (), self.text)
+            except QuantityError as bad:
+                zero = "whose zero is another" in bad.message
+                raise QuantityError(bad.message, bad.value, bad.remedy if zero else remedy) from None
+
+
+def split(head: str) -> tuple[str, str]:
+    """Name and unit of a head such as `slip [rad/s]`."""
+    match = _HEAD.fullmatch(head)
+    return (match[1], "" if match[2].strip() in BARE else match[2]) if match else (head, "")
+
+
+def meant(wanted: str, known: list[str]) -> list[Head]:
+    """The columns that a name may mean: the one of that very head, else those of that name.
+
+    A name without unit means a head with one, and a unit that is given with a name counts where the head has none.
+    """
+    name, unit = split(wanted)
+    same = [head for head in known if head == wanted]
+    alike = [head for head in known if split(head)[0] == name and "" in (unit, split(head)[1])]
+    return [Head(head, split(head)[1] or unit) for head in same or alike]
