@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/advance.hpp>
+#include <clutchwork/run/advance.hpp>
 
 /// The phases that are compiled apart, to build on several cores. Scalar: double.
 #define CLUTCHWORK_SMALL(KEYWORD, NZ, NS) \

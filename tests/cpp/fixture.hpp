@@ -1,6 +1,6 @@
 #pragma once
 #include <clutchwork/c_api.h>
-#include <clutchwork/input.hpp>
+#include <clutchwork/components/input.hpp>
 
 #include <clutchwork/registry.gen.hpp>
 #include <initializer_list>

@@ -1,6 +1,6 @@
 #include <clutchwork/workspace.hpp>
 //
-#include <clutchwork/contacts.hpp>
+#include <clutchwork/contacts/problem.hpp>
 #include <vector>
 
 #include "check.hpp"

@@ -1,4 +1,4 @@
-#include <clutchwork/dense.hpp>
+#include <clutchwork/components/dense.hpp>
 #include <vector>
 
 #include "check.hpp"

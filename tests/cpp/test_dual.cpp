@@ -1,4 +1,4 @@
-#include <clutchwork/dual.hpp>
+#include <clutchwork/components/dual.hpp>
 
 #include "check.hpp"
 

@@ -1,4 +1,4 @@
-#include <clutchwork/guards.hpp>
+#include <clutchwork/run/guards.hpp>
 
 #include "check.hpp"
 

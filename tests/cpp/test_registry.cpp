@@ -1,4 +1,4 @@
-#include <clutchwork/branch.hpp>
+#include <clutchwork/components/branch.hpp>
 #include <initializer_list>
 
 #include "check.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/advance.hpp>
+#include <clutchwork/run/advance.hpp>
 
 #include "fixture.hpp"
 

@@ -27,7 +27,7 @@ def copy(to: Path) -> Path:
     return to
 
 
-def generate(project: Path) -> subprocess.CompletedProcess[str]:
+def generate(project: Path, to: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run the registry generator of a copy; without the site module no editable install gets in its way."""
     command = [
         sys.executable,
@@ -35,7 +35,7 @@ def generate(project: Path) -> subprocess.CompletedProcess[str]:
         "-S",
         str(project / "tools/gen_registry.py"),
         str(project),
-        str(project / "gen/registry.gen.hpp"),
+        str(to or project / "gen/registry.gen.hpp"),
     ]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 

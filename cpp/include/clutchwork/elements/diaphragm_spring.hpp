@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/interpolation.hpp>
+#include <clutchwork/component.hpp>
 
 namespace clutchwork::elements {
 

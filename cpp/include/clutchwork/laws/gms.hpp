@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/maxwell_slip.hpp>
+#include <clutchwork/components/maxwell_slip.hpp>
 
 namespace clutchwork::laws {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/stribeck_curve.hpp>
+#include <clutchwork/components/stribeck_curve.hpp>
 
 namespace clutchwork::laws {
 

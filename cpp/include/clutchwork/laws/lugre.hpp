@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/bristles.hpp>
+#include <clutchwork/components/bristles.hpp>
 
 namespace clutchwork::laws {
 

@@ -1,6 +1,10 @@
 #pragma once
-#include <clutchwork/dependent.hpp>
-#include <clutchwork/modes.hpp>
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/contacts/dependent.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// The locked contacts of the present mode: carriers, spares, and the sets that they make. docs/theory/contacts.md
 namespace clutchwork {

@@ -1,6 +1,13 @@
 #pragma once
-#include <clutchwork/integrator/dopri5.hpp>
-#include <clutchwork/integrator/rodas5p.hpp>
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// Where inside a step something changes: docs/theory/events.md.
 namespace clutchwork {

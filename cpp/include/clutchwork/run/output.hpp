@@ -1,5 +1,12 @@
 #pragma once
-#include <clutchwork/guards.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// Rows of output and the integrals of angle and work: docs/theory/energy.md.
 namespace clutchwork {

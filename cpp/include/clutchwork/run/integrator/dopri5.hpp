@@ -1,5 +1,6 @@
 #pragma once
-#include <clutchwork/integrator/memory.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
 
 /// DOPRI5: explicit Runge-Kutta pair of order 5(4) with dense output of order 4.
 /// J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6 (1980), doi 10.1016/0771-050X(80)90013-3;

@@ -1,5 +1,9 @@
 #pragma once
-#include <clutchwork/locked.hpp>
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// The reduced motion of one mode: v = Z z + Y u with the locked slips gone. docs/theory/multipliers.md.
 namespace clutchwork {

@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/input.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// Torque of one branch and its derivatives; the only place where components are called.
 namespace clutchwork {

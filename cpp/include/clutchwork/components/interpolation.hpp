@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/component.hpp>
+#include <clutchwork/components/component.hpp>
 
 /// Tables of friction coefficients: linear or smooth, beyond their ends continued, kept or refused.
 /// docs/theory/clutches.md

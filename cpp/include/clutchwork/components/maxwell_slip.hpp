@@ -1,5 +1,6 @@
 #pragma once
-#include <clutchwork/stribeck_curve.hpp>
+#include <clutchwork/components/component.hpp>
+#include <clutchwork/components/stribeck_curve.hpp>
 
 /// Elements in parallel that bend and then slide: what Leuven and GMS share. Element i is one point of a curve
 /// (deflection at which it breaks away, share of the coefficient); bit i of the piece: it slides.

@@ -1,5 +1,6 @@
 #pragma once
-#include <clutchwork/dense.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// The bounded convex problem behind sticking: docs/theory/contacts.md.
 namespace clutchwork {

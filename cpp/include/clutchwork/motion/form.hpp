@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/shared.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// Two forms of the same reduced motion M dz/dt = sum of row' torque, behind one set of functions.
 namespace clutchwork {

@@ -1,5 +1,18 @@
 #pragma once
-#include <clutchwork/phase.hpp>
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/form.hpp>
+#include <clutchwork/motion/reduce.hpp>
+#include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/event.hpp>
+#include <clutchwork/run/integrator/dopri5.hpp>
+#include <clutchwork/run/integrator/rodas5p.hpp>
+#include <clutchwork/run/output.hpp>
+#include <clutchwork/run/phase.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// The whole run: modes, smooth phase, switch, until the end time.
 namespace clutchwork {

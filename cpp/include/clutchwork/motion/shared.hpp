@@ -1,5 +1,8 @@
 #pragma once
-#include <clutchwork/sparse.hpp>
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// States that any component may read (temperatures, pressures, wear): flows between them, heat into them, processes of
 /// their own. docs/theory/thermal.md, and docs/theory/integrators.md for the border that they put around the motion.

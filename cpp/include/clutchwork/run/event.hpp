@@ -1,5 +1,17 @@
 #pragma once
-#include <clutchwork/output.hpp>
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/contacts/acceleration.hpp>
+#include <clutchwork/contacts/decision.hpp>
+#include <clutchwork/contacts/impulses.hpp>
+#include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/output.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// What happens at an instant: decide the modes anew and report every change.
 namespace clutchwork {

@@ -1,5 +1,6 @@
 #pragma once
-#include <clutchwork/component.hpp>
+#include <clutchwork/components/component.hpp>
+#include <clutchwork/components/scalar.hpp>
 
 /// The Stribeck curve that many laws share: docs/theory/friction-laws.md.
 namespace clutchwork {

@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/reduce.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// Reduced coordinates for many speeds: a subset of v, each locked contact eliminating one; everything stays sparse.
 namespace clutchwork {

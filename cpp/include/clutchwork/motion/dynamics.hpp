@@ -1,5 +1,13 @@
 #pragma once
-#include <clutchwork/form.hpp>
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/reduce.hpp>
+#include <clutchwork/motion/shared.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// The smooth motion inside a mode: torques, derivatives, multipliers. y = (z, states).
 namespace clutchwork {

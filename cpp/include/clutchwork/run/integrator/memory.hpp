@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/dynamics.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// Memory of one step and its dense output, shared by both methods.
 namespace clutchwork {

@@ -1,5 +1,9 @@
 #pragma once
-#include <clutchwork/integrator/memory.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// Rodas5P: stiffly accurate Rosenbrock method of order 5(4) with dense output of order 4.
 /// G. Steinebach, BIT Numerical Mathematics 63, 27 (2023), doi 10.1007/s10543-023-00967-x.

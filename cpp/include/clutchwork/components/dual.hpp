@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/scalar.hpp>
+#include <clutchwork/components/scalar.hpp>
 
 namespace clutchwork {
 

@@ -1,5 +1,6 @@
 #pragma once
-#include <clutchwork/stribeck_curve.hpp>
+#include <clutchwork/components/component.hpp>
+#include <clutchwork/components/stribeck_curve.hpp>
 
 /// Bristles that bend under the slip, what LuGre and its elastic-plastic variant share. Law::bending gives the rate of
 /// the deflection [rad/s]; the state is the elastic part of the coefficient, stiffness times deflection.

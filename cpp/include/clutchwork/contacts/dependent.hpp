@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/dense.hpp>
+#include <clutchwork/components/dense.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// What contacts whose directions depend on each other hold together, and the share of each: docs/theory/contacts.md.

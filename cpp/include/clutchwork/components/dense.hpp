@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/scalar.hpp>
+#include <clutchwork/components/scalar.hpp>
 
 /// Small dense kernels on row-major views; sizes from 1 to a few hundred, no heap.
 namespace clutchwork {

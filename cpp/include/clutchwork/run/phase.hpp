@@ -1,5 +1,20 @@
 #pragma once
-#include <clutchwork/event.hpp>
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/motion/form.hpp>
+#include <clutchwork/motion/reduce.hpp>
+#include <clutchwork/motion/shared.hpp>
+#include <clutchwork/motion/sparse.hpp>
+#include <clutchwork/run/event.hpp>
+#include <clutchwork/run/guards.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/output.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// One smooth phase: from an event to the next one.
 namespace clutchwork {

@@ -1,0 +1,178 @@
+#pragma once
+#include <clutchwork/components/dual.hpp>
+
+#include <concepts>
+
+/// What an element or a friction law provides: parameters and pure functions of one rate, own states and inputs.
+namespace clutchwork {
+
+inline constexpr int most_inputs = 6;  ///< of one component
+
+/// Compile-time name of a component.
+template <class E>
+struct Tag {
+  using type = E;
+};
+
+/// Parameter that is a piecewise linear function: a range of the pool of points.
+template <class T>
+struct Curve {
+  T first;  ///< [1] number of the first point
+  T count;  ///< [1] number of points
+};
+
+/// Where a component is evaluated.
+template <class S>
+struct At {
+  S rate;                ///< [rad/s] rate of an element; slip of a contact in the direction in which it slips
+  const S* state;        ///< own states
+  const S* input;        ///< own inputs, in the order of declaration
+  int piece;             ///< number of the smooth piece of the rate
+  const double* points;  ///< pool of curves: x, y, slope to the next point
+};
+
+/// Number of kinks inside a curve, where one linear piece follows another.
+template <class T>
+CLUTCHWORK_INLINE int curve_edges(const Curve<T>& c) {
+  const int n = int(value(c.count));
+  return n > 2 ? n - 2 : 0;
+}
+
+/// Abscissa of kink number i.
+template <class T>
+CLUTCHWORK_INLINE double curve_edge(const Curve<T>& c, const double* points, int i) {
+  return points[3 * (int(value(c.first)) + i + 1)];
+}
+
+/// Value of a curve on one of its pieces, continued linearly beyond it.
+template <class T, class S>
+CLUTCHWORK_INLINE S curve_value(const Curve<T>& c, const double* points, S x, int piece) {
+  const double* p = points + 3 * (int(value(c.first)) + piece);
+  return (x - S(p[0])) * S(p[2]) + S(p[1]);
+}
+
+/// Torque as a function of rate, states and inputs, plus the rates of the states.
+template <class E>
+concept TorqueElement = requires(const typename E::template Params<double>& p, const At<double>& at, double* rates) {
+  { E::torque(p, at) } -> std::same_as<double>;
+  { E::state_rates(p, at, rates) } -> std::same_as<void>;
+  { E::inputs } -> std::convertible_to<int>;
+};
+
+/// Friction contact: the load that multiplies the coefficient of its law, and whether it is a freewheel.
+template <class E>
+concept ContactElement = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::load(p, at) } -> std::same_as<double>;
+  { E::one_way } -> std::convertible_to<bool>;
+  { E::inputs } -> std::convertible_to<int>;
+};
+
+/// Contact whose torque per load is a function of the coefficient and the direction of slip; else it is the
+/// coefficient.
+template <class E>
+concept ShapedContact = requires(const typename E::template Params<double>& p) {
+  { E::gain(p, 0.5, 1) } -> std::same_as<double>;
+};
+
+/// Contact with a static torque of its own: what resists slip in a direction, for the static coefficient `hold`.
+template <class E>
+concept LimitedContact = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::limit(p, at, 0.5, 1) } -> std::same_as<double>;
+};
+
+/// Freewheel that gives way at a torque.
+template <class E>
+concept YieldingContact = requires(const typename E::template Params<double>& p) {
+  { E::holding(p) } -> std::same_as<double>;
+};
+
+/// Contact that can fail: `fault` is above zero when it does, then for good.
+template <class E>
+concept FaultyContact = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::fault(p, at) } -> std::same_as<double>;
+  { E::fault_kind(p) } -> std::same_as<int>;
+  { E::fault_report(p) } -> std::same_as<int>;
+};
+enum Fault : int { sound, cannot_transmit, cannot_unlock };
+
+/// Element that turns only a part of its work into heat.
+template <class E>
+concept HeatingElement = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::heat(p, at) } -> std::same_as<double>;
+};
+
+/// Flow between two shared states: inputs 0 and 1 are their values.
+template <class E>
+concept FlowElement = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::flow(p, at) } -> std::same_as<double>;
+  { E::inputs } -> std::convertible_to<int>;
+};
+
+/// Component that has shared states and nothing else.
+template <class E>
+concept ProcessElement = requires(const typename E::template Params<double>& p, const At<double>& at, double* rates) {
+  { E::state_rates(p, at, rates) } -> std::same_as<void>;
+  { E::states } -> std::convertible_to<int>;
+  { E::inputs } -> std::convertible_to<int>;
+};
+
+/// Law that sticks exactly: kinetic coefficient over slip (slip >= 0, continued smoothly below), static at rest.
+template <class L>
+concept StickingLaw = requires(const typename L::template Params<double>& p, const At<double>& at) {
+  { L::slide(p, at) } -> std::same_as<double>;
+  { L::hold(p, at) } -> std::same_as<double>;
+};
+
+/// Law that never sticks: coefficient over signed slip and own states, which are coefficients themselves.
+template <class L>
+concept CompliantLaw = requires(const typename L::template Params<double>& p, const At<double>& at) {
+  { L::coefficient(p, at) } -> std::same_as<double>;
+  { L::hold(p, at) } -> std::same_as<double>;
+};
+
+template <class L>
+concept FrictionLaw = StickingLaw<L> != CompliantLaw<L>;
+
+/// Compliant law, or torque element, that changes between smooth pieces by its own states. `margin` is positive inside
+/// `at.piece` and tells who is closest to leaving; `cross` gives the next piece and may move states (who = turned: the
+/// slip changed sign, watched where `turns`).
+template <class L>
+concept SwitchingLaw =
+    requires(const typename L::template Params<double>& p, const At<double>& at, double* state, int& who) {
+      { L::margin(p, at, who) } -> std::same_as<double>;
+      { L::cross(p, at, 0, state) } -> std::same_as<int>;
+      { L::turns(p, 0) } -> std::same_as<bool>;
+    };
+inline constexpr int turned = -1;
+
+/// Law whose coefficient depends on more than the slip, as on a temperature.
+template <class L>
+concept DrivenLaw = requires {
+  { L::inputs } -> std::convertible_to<int>;
+};
+template <class L>
+consteval int law_inputs() {
+  if constexpr (DrivenLaw<L>) return L::inputs;
+  return 0;
+}
+
+/// Law that is not known everywhere: `outside` is below zero where a table is left; `seen` is what left it.
+template <class L>
+concept BoundedLaw = requires(const typename L::template Params<double>& p, const At<double>& at, double& seen) {
+  { L::outside(p, at, seen) } -> std::same_as<double>;
+};
+
+/// Law whose number of states depends on its parameters; `states` is the most.
+template <class L>
+concept SizedLaw = requires(const typename L::template Params<double>& p) {
+  { L::count(p) } -> std::same_as<int>;
+};
+
+/// A component whose function of the rate has kinks.
+template <class E, class T>
+concept Kinked = requires(const typename E::template Params<T>& p, const double* points) {
+  { E::edges(p) } -> std::same_as<int>;
+  { E::edge(p, points, 0) } -> std::same_as<double>;
+};
+
+}  // namespace clutchwork

@@ -1,0 +1,137 @@
+#pragma once
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// What each contact can hold now, and which may stick: docs/theory/contacts.md.
+namespace clutchwork {
+
+/// Load of a contact now, negative included.
+template <class T>
+T load_of(const Workspace<T>& ws, int c) {
+  const System& sys = ws.sys;
+  if (ws.fault[c] == cannot_transmit) return T(-1);
+  return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], ws.u + sys.contact_input[c], sys.points);
+}
+
+/// Static torque of a contact now that resists slip in a direction [N m].
+template <class T>
+T static_torque(const Workspace<T>& ws, int c, int direction) {
+  return ws.fault[c] == cannot_transmit ? T(0)
+                                        : contact_limit(ws.sys, c, ws.params, ws.u + ws.sys.contact_input[c],
+                                                        ws.u + ws.sys.contact_law_input[c], direction);
+}
+
+/// What a contact can hold now against slip in a direction [N m]: nothing where its law never sticks.
+template <class T>
+T capacity_of(const Workspace<T>& ws, int c, int direction) {
+  if (ws.fault[c] == cannot_unlock) return T(infinity);
+  return ws.compliant[c] ? T(0) : static_torque(ws, c, direction);
+}
+
+/// The capacity that counts while a contact holds a torque: a positive one resists backward slip.
+template <class T>
+T capacity_at(const Workspace<T>& ws, int c, T torque) {
+  return capacity_of(ws, c, value(torque) > 0 && !contact_one_way(ws, c) ? backward : forward);
+}
+
+/// Above zero when a contact fails; below for one that cannot.
+template <class T>
+double fault_trigger(const Workspace<T>& ws, int c) {
+  return visit_contact(ws.sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (FaultyContact<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + ws.sys.contact_param[c]);
+      return value(E::fault(p, At<T>{T(0), nullptr, ws.u + ws.sys.contact_input[c], 0, ws.sys.points}));
+    }
+    return -1.0;
+  });
+}
+
+/// What a failure does to a contact, and how it is reported.
+template <class T>
+void fault_of(const Workspace<T>& ws, int c, int& kind, int& report) {
+  kind = sound, report = 1;
+  visit_contact(ws.sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (FaultyContact<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + ws.sys.contact_param[c]);
+      kind = E::fault_kind(p), report = E::fault_report(p);
+    }
+  });
+}
+
+/// Whether a contact may stick: its law can, or it is a freewheel.
+template <class T>
+bool may_stick(const Workspace<T>& ws, int c) {
+  return !ws.compliant[c] || contact_one_way(ws, c) || ws.fault[c] == cannot_unlock;
+}
+
+/// Time derivative of the load of a contact.
+template <class T>
+T load_slope(const Workspace<T>& ws, int c) {
+  const System& sys = ws.sys;
+  return visit_contact(sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    Dual<T, 1> input[E::inputs > 0 ? E::inputs : 1];
+    for (int i = 0; i < E::inputs; ++i) {
+      const int ref = sys.contact_input[c] + i;
+      input[i] = Dual<T, 1>(ws.u[ref]);
+      input[i].d[0] = ws.du[ref] + ws.shared_slope[ref];
+    }
+    return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0], sys.points).d[0];
+  });
+}
+
+/// Whether the load of a contact bends over time, so that it may dip between two instants.
+template <class T>
+bool load_bends(const Workspace<T>& ws, int c) {
+  const System& sys = ws.sys;
+  const int first = sys.contact_input[c];
+  for (int i = first; i < first + contact_inputs(sys.contact_kind[c]); ++i) {
+    const std::int64_t ref = sys.input_refs[i];
+    if (ref >= sys.inputs || !ws.signal[ref].linear) return true;
+  }
+  return false;
+}
+
+/// Whether a contact is pressed: a load now, or one that is about to rise from zero.
+template <class T>
+bool is_pressed(const Workspace<T>& ws, int c) {
+  const double load = value(load_of(ws, c));
+  return load != 0 ? load > 0 : value(load_slope(ws, c)) > 0;
+}
+
+/// Whether a contact can transmit: it is pressed, blocks one way, or cannot let go.
+template <class T>
+bool is_closed(const Workspace<T>& ws, int c) {
+  return ws.pressed[c] || contact_one_way(ws, c) || (ws.fault[c] == cannot_unlock && ws.mode[c] == locked);
+}
+
+/// Static torque that a contact can use in a decision: one that rises from zero counts as it is a nanosecond later.
+template <class T>
+T usable_capacity(const Workspace<T>& ws, int c, int direction) {
+  const System& sys = ws.sys;
+  if (ws.compliant[c] || ws.fault[c] == cannot_unlock || value(load_of(ws, c)) > 0)
+    return capacity_of(ws, c, direction);
+  const T rising = larger(load_slope(ws, c), T(0)) * T(1e-9);
+  return rising * law_hold(sys.contact_law[c], ws.params + sys.contact_law_param[c], ws.u + sys.contact_law_input[c],
+                           sys.points);
+}
+
+/// Tolerance under which a slip counts as zero.
+template <class T>
+double slip_tolerance(const Workspace<T>& ws) {
+  double largest = 0;
+  for (int i = 0; i < ws.sys.speeds; ++i) {
+    if (abs(value(ws.v[i])) > largest) largest = abs(value(ws.v[i]));
+  }
+  return 1e-10 * (1 + largest);
+}
+
+/// A contact without inertia on either side of its slip: prescribed speeds alone decide it.
+template <class T>
+bool is_rigid(const Workspace<T>& ws, int c) {
+  return value(ws.mobility[c * ws.sys.contacts + c]) == 0;
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,104 @@
+"""The rooms of the core: includes run downward, in no circle, and every header stands alone."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+from support import project
+
+HEADERS = project.ROOT / "cpp/include/clutchwork"
+# a room may include itself and those before it; files at the root, elements and laws belong to the first one
+ROOMS = ("components", "contacts", "motion", "run")
+REGISTRY = "registry.gen.hpp"
+Includes = Mapping[str, Sequence[str]]
+
+
+def rank(header: str) -> int:
+    """Number of the room of a header."""
+    room = header.partition("/")[0]
+    return ROOMS.index(room) if room in ROOMS else 0
+
+
+def upward(includes: Includes) -> list[str]:
+    """Includes that run up."""
+    return [f"{h} includes {other}" for h, found in includes.items() for other in found if rank(other) > rank(h)]
+
+
+def circle(includes: Includes) -> list[str]:
+    """Headers that include each other in a circle; empty: there is none."""
+    try:
+        list(TopologicalSorter(includes).static_order())
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def includes_of_the_core() -> Includes:
+    """What every header of the core includes of it."""
+    headers = sorted(path for path in HEADERS.rglob("*.hpp"))
+    pattern = re.compile(r"#include <clutchwork/([^>]*)>")
+    found = {str(path.relative_to(HEADERS)): pattern.findall(path.read_text()) for path in headers}
+    # the generated one includes every component
+    found[REGISTRY] = [header for header in found if header.partition("/")[0] in ("elements", "laws")]
+    return found
+
+
+def test_every_folder_is_a_room() -> None:
+    assert {path.name for path in HEADERS.iterdir() if path.is_dir()} == {*ROOMS, "elements", "laws"}
+
+
+def test_includes_run_downward() -> None:
+    assert upward(includes_of_the_core()) == []
+
+
+def test_no_headers_include_each_other_in_a_circle() -> None:
+    assert circle(includes_of_the_core()) == []
+
+
+def test_an_include_that_runs_up_is_found() -> None:
+    includes = {"contacts/a.hpp": ["components/b.hpp", "run/c.hpp"], "elements/d.hpp": ["workspace.hpp"]}
+    assert upward(includes) == ["contacts/a.hpp includes run/c.hpp"]
+
+
+def test_a_circle_is_found() -> None:
+    assert set(circle({"a.hpp": ["b.hpp"], "b.hpp": ["a.hpp"], "c.hpp": ["a.hpp"]})) == {"a.hpp", "b.hpp"}
+
+
+@pytest.fixture(scope="module")
+def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder for -I with the generated header."""
+    folder = tmp_path_factory.mktemp("generated")
+    (folder / "clutchwork").mkdir()
+    result = project.generate(project.ROOT, folder / "clutchwork" / REGISTRY)
+    assert result.returncode == 0, result.stderr
+    return folder
+
+
+def compiled_alone(header: Path, generated: Path) -> str:
+    """What the compiler says about a unit that includes one header and nothing else; "": nothing."""
+    command = [
+        "c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-x", "c++",
+        "-I", str(HEADERS.parent), "-I", str(generated), "-",
+    ]  # fmt: skip
+    unit = f'#include "{header}"\n'
+    return subprocess.run(command, input=unit, capture_output=True, text=True, check=False).stderr
+
+
+def test_every_header_compiles_alone(generated: Path) -> None:
+    headers = sorted(HEADERS.rglob("*.h*"))
+    with ThreadPoolExecutor(2) as pool:
+        found = list(pool.map(lambda header: compiled_alone(header, generated), headers))
+    assert "".join(found) == ""
+
+
+def test_a_header_that_needs_another_does_not_compile_alone(generated: Path, tmp_path: Path) -> None:
+    header = tmp_path / "needy.hpp"
+    header.write_text("#pragma once\ninline clutchwork::Options options;\n")
+    assert "clutchwork" in compiled_alone(header, generated)
