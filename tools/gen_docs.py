@@ -10,11 +10,12 @@ import inspect
 import re
 import sys
 from collections.abc import Iterator
-from dataclasses import MISSING, Field
+from dataclasses import Field
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import clutchwork  # noqa: F401  importing the package fills the registry
+from clutchwork.declare.docs import described, words
 from clutchwork.declare.schema import REGISTRY, Role, Spec, State, specs
 
 
@@ -65,14 +66,6 @@ compares them.
 | law | type in files | sticks | states | |
 |---|---|---|---|---|"""
 
-SORTS = {
-    "param": "number",
-    "alternative": "signal",
-    "option": "setting",
-    "law": "friction law",
-    "thermal": "thermal port",
-}
-
 
 def write(folder: Path) -> list[Path]:
     """Write all pages and return their paths."""
@@ -106,7 +99,7 @@ def _overview(laws: list[tuple[str, Any]]) -> Iterator[str]:
     """Table of all friction laws, and their pages."""
     yield LAWS
     for kind, cls in laws:
-        summary = (inspect.getdoc(cls) or "").partition("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+        summary = words(cls).partition("\n\n")[0].replace("\n", " ").replace("|", "\\|")
         sticks = "yes" if cls.sticks else "no"
         yield f"| [{cls.__name__}](laws/{kind}.md) | `{kind}` | {sticks} | {len(cls.states) or ''} | {summary} |"
     yield "\n```{toctree}\n:hidden:\n:maxdepth: 1\n"
@@ -179,7 +172,7 @@ def _component(level: str, kind: str, cls: Any, headers: str) -> Iterator[str]:
     yield f"({kind})=\n{level} {cls.__name__}\n"
     sort = "" if headers != "laws" else ". It sticks exactly." if cls.sticks else ". It is compliant: it never locks."
     yield f'`cw.{cls.__name__}`, in model files `type = "{kind}"`{sort}\n'
-    yield f"{_linked(inspect.getdoc(cls) or '')}\n"
+    yield f"{_linked(words(cls))}\n"
     yield "| field | sort | unit | default | bound | meaning |\n|---|---|---|---|---|---|"
     yield from (_row(item, spec) for item, spec in specs(cls))
     yield ""
@@ -203,30 +196,9 @@ def _in_use(cls: Any) -> str:
 
 
 def _row(item: Field[Any], spec: Spec) -> str:
-    sort = "flag" if spec.flag else "choice" if spec.choices else SORTS.get(spec.what, spec.what)
-    unit = f"{spec.unit_x} -> {spec.unit}" if spec.what == "curve" else spec.unit
-    units = (
-        " or ".join(dict.fromkeys((unit.replace("*", "of its input"), *spec.units)))
-        if unit and not spec.flag and not spec.choices
-        else ""
-    )
-    bound = ", ".join(spec.choices) or spec.bound
-    cells = (f"`{item.name}`", sort, units, _default(item, spec), bound, _meaning(spec))
+    told = described(item, spec)
+    cells = (f"`{told.name}`", told.sort, told.unit, told.default, told.bound, told.meaning)
     return "| " + " | ".join(cells) + " |"
-
-
-def _meaning(spec: Spec) -> str:
-    return f"{spec.doc} (instead of `{spec.instead_of}`)" if spec.instead_of else spec.doc
-
-
-def _default(item: Field[Any], spec: Spec) -> str:
-    if item.default is MISSING:
-        return "required"
-    if item.default is None:
-        return "the housing" if spec.what == "port" else "none"
-    if spec.flag:
-        return "true" if item.default else "false"
-    return f"{item.default:g}" if isinstance(item.default, int | float) else str(item.default)
 
 
 if __name__ == "__main__":

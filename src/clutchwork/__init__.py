@@ -30,6 +30,7 @@ from clutchwork.base.errors import UseError as UseError
 from clutchwork.base.errors import near
 from clutchwork.declare.calls import explain
 from clutchwork.declare.core import core
+from clutchwork.declare.docs import document
 from clutchwork.declare.node import Domain as Domain
 from clutchwork.declare.node import HeatFlow as HeatFlow
 from clutchwork.declare.node import Law as Law
@@ -137,6 +138,8 @@ _PACKAGES = ("fit", "rig")
 
 _DECLARED = {cls.__name__: cls for kinds in REGISTRY.values() for cls in kinds.values()}
 globals().update(_DECLARED)
+for _made in _DECLARED.values():
+    document(_made)
 for _made in (*_DECLARED.values(), Driveline, HeatFlow, Node, Rate, ThermalNode):
     explain(_made)
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import Enum
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:
@@ -56,8 +57,33 @@ class Passive(NamedTuple):
     damping: float
 
 
+# attributes that a user of a declaration needs beside its fields; methods are called by the engine
+OFFERED = (property, cached_property)
+
+
+class Listed(type):
+    """Class of declarations: dir() and help() list what their users need, and no hook that only the engine calls."""
+
+    # help() asks a class for its docstring by way of its own class, whose docstring would hide that of the declaration
+    __doc__ = vars(type)["__doc__"]
+
+    def __dir__(cls) -> list[str]:
+        found = {name: value for base in reversed(cls.__mro__) for name, value in vars(base).items()}
+        return [
+            name for name, value in found.items() if name == "part" or (isinstance(value, OFFERED) and name[0] != "_")
+        ]
+
+
+class Declared(metaclass=Listed):
+    """Base of elements, laws and signals."""
+
+    def __dir__(self) -> list[str]:
+        known: Any = self
+        return [*(item.name for item in fields(known) if item.repr), *dir(type(self))]
+
+
 @dataclass(frozen=True)
-class Component:
+class Component(Declared):
     """An element with a name that is its path in results and errors."""
 
     one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
@@ -99,7 +125,7 @@ class Component:
 
 
 @dataclass(frozen=True)
-class Law:
+class Law(Declared):
     """A friction law; it has no name of its own.
 
     A law that sticks is set-valued: it locks exactly. One that does not is compliant: its torque is a function of
@@ -150,7 +176,7 @@ class Segment(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Signal:
+class Signal(Declared):
     """A value over time in the unit of the quantity that it drives."""
 
     def segments(self) -> tuple[Segment, ...]:

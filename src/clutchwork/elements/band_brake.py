@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import tau
 
-from clutchwork.declare.node import Law, Node, SignalLike
-from clutchwork.declare.schema import Role, component, flag, law, option, param, port, signal
+from clutchwork.declare import Law, Node, Role, SignalLike, component, flag, law, option, param, port, signal
 from clutchwork.elements.bases.heating import Heating
 
 

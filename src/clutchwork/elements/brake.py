@@ -2,8 +2,20 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Law, Node, SignalLike
-from clutchwork.declare.schema import Role, component, law, option, param, port, signal
+from clutchwork.declare import (
+    GAIN_OF_FORCE,
+    GAIN_OF_PRESSURE,
+    Law,
+    Node,
+    Role,
+    SignalLike,
+    component,
+    law,
+    option,
+    param,
+    port,
+    signal,
+)
 from clutchwork.elements.bases.heating import Heating
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from clutchwork.declare.node import Component, Law, Node, ThermalNode
-from clutchwork.declare.schema import Role, component, law, option, param, port
+from clutchwork.declare import Component, Law, Node, Role, ThermalNode, component, law, option, param, port
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.flyweights import Flyweights
 from clutchwork.elements.plate_contact import PlateContact

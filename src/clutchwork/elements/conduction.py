@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Component, ThermalNode
-from clutchwork.declare.schema import Role, component, param, port
+from clutchwork.declare import Component, Role, ThermalNode, component, param, port
 
 
 @component(Role.FLOW)

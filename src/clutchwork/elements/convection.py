@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Component, Points, SignalLike, ThermalNode
-from clutchwork.declare.schema import Role, component, curve, port, signal
+from clutchwork.declare import Component, Points, Role, SignalLike, ThermalNode, component, curve, port, signal
 
 
 @component(Role.FLOW)

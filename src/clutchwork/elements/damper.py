@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.declare.node import Node, Passive
-from clutchwork.declare.schema import Role, component, param, port
+from clutchwork.declare import Node, Passive, Role, component, param, port
 from clutchwork.elements.bases.heating import Heating
 
 

@@ -4,8 +4,20 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from clutchwork.declare.node import Component, Points, Signal, SignalLike
-from clutchwork.declare.schema import Role, State, choice, component, curve, option, param, signal
+from clutchwork.declare import (
+    Component,
+    Points,
+    Role,
+    Signal,
+    SignalLike,
+    State,
+    choice,
+    component,
+    curve,
+    option,
+    param,
+    signal,
+)
 from clutchwork.laws.bases.tables import Found, few_points
 from clutchwork.signals.bases.waveform import value
 

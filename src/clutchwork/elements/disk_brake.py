@@ -5,8 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import pi
 
-from clutchwork.declare.node import HOUSING, Component, Law, Node, SignalLike, ThermalNode
-from clutchwork.declare.schema import Role, component, law, option, param, port, signal
+from clutchwork.declare import (
+    HOUSING,
+    Component,
+    Law,
+    Node,
+    Role,
+    SignalLike,
+    ThermalNode,
+    component,
+    law,
+    option,
+    param,
+    port,
+    signal,
+)
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.plate_contact import PlateContact
 

@@ -5,8 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import cached_property
 
-from clutchwork.declare.node import Component, HeatFlow, Law, Node, SignalLike, ThermalNode
-from clutchwork.declare.schema import Role, choice, component, law, option, param, port, signal
+from clutchwork.declare import (
+    Component,
+    HeatFlow,
+    Law,
+    Node,
+    Role,
+    SignalLike,
+    ThermalNode,
+    choice,
+    component,
+    law,
+    option,
+    param,
+    port,
+    signal,
+)
 from clutchwork.elements.bases.geometry import Found, derating_when_worn, effective_radius, ring_problems
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.bases.plates import fault_problems, trigger

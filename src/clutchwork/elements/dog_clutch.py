@@ -5,8 +5,7 @@ from __future__ import annotations
 from math import tau
 from typing import ClassVar
 
-from clutchwork.declare.node import Node, SignalLike
-from clutchwork.declare.schema import Role, State, component, flag, option, param, port, signal
+from clutchwork.declare import Node, Role, SignalLike, State, component, flag, option, param, port, signal
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.bases.tables import Found
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from clutchwork.declare.node import Component, Node
-from clutchwork.declare.rational import exact
-from clutchwork.declare.schema import Role, component, param, port
+from clutchwork.declare import Component, Node, Role, component, exact, param, port
 
 
 @component(Role.GEAR)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from clutchwork.declare.node import Law, Node, SignalLike
-from clutchwork.declare.schema import Role, choice, component, law, option, param, port, signal
+from clutchwork.declare import Law, Node, Role, SignalLike, choice, component, law, option, param, port, signal
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.bases.tables import Found
 

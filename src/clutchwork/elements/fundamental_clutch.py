@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.declare.node import Law, Node, SignalLike
-from clutchwork.declare.schema import Role, component, option, port, signal
+from clutchwork.declare import Law, Node, Role, SignalLike, component, option, port, signal
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Component, SignalLike, ThermalNode
-from clutchwork.declare.schema import Role, component, param, port, signal
+from clutchwork.declare import Component, Role, SignalLike, ThermalNode, component, param, port, signal
 
 
 @component(Role.FLOW)

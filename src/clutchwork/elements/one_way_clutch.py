@@ -4,8 +4,20 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.declare.node import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Law, Node, SignalLike
-from clutchwork.declare.schema import Role, component, law, option, param, port, signal
+from clutchwork.declare import (
+    GAIN_OF_FORCE,
+    GAIN_OF_PRESSURE,
+    Law,
+    Node,
+    Role,
+    SignalLike,
+    component,
+    law,
+    option,
+    param,
+    port,
+    signal,
+)
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
 

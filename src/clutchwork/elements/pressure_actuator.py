@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Component, SignalLike
-from clutchwork.declare.schema import Role, State, component, option, param, signal
-from clutchwork.declare.speech import say
+from clutchwork.declare import Component, Role, SignalLike, State, component, option, param, say, signal
 from clutchwork.elements.bases.geometry import Found
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Component, Node
-from clutchwork.declare.schema import Role, component, flag, param, port
+from clutchwork.declare import Component, Node, Role, component, flag, param, port
 
 
 @component(Role.TORQUE)

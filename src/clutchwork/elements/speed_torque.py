@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Component, Node, Points
-from clutchwork.declare.schema import Role, component, curve, param, port
+from clutchwork.declare import Component, Node, Points, Role, component, curve, param, port
 
 
 @component(Role.TORQUE)

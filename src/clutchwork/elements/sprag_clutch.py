@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.declare.node import Law, Node
-from clutchwork.declare.schema import Role, component, law, option, param, port
+from clutchwork.declare import Law, Node, Role, component, law, option, param, port
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
 

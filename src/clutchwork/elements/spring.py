@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Component, Node, Passive
-from clutchwork.declare.schema import Role, State, component, param, port
+from clutchwork.declare import Component, Node, Passive, Role, State, component, param, port
 
 
 @component(Role.TORQUE, states=(State("spring_torque", "N m", "stiffness times twist"),))

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import pi, sin
 
-from clutchwork.declare.node import Component, Law, Node, SignalLike, ThermalNode
-from clutchwork.declare.schema import Role, component, law, param, port, signal
+from clutchwork.declare import Component, Law, Node, Role, SignalLike, ThermalNode, component, law, param, port, signal
 from clutchwork.elements.bases.geometry import Found
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.dog_clutch import DogClutch, gap_problems

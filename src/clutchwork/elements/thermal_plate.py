@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
-from clutchwork.declare.node import Component, ThermalNode
-from clutchwork.declare.schema import Role, component, param
+from clutchwork.declare import Component, Role, ThermalNode, component, param
 from clutchwork.elements.conduction import Conduction
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Component, Node, SignalLike
-from clutchwork.declare.schema import Role, component, port, signal
+from clutchwork.declare import Component, Node, Role, SignalLike, component, port, signal
 
 
 @component(Role.TORQUE)

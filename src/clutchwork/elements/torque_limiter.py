@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Law, Node
-from clutchwork.declare.schema import Role, component, law, option, param, port
+from clutchwork.declare import Law, Node, Role, component, law, option, param, port
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
 

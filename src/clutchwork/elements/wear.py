@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Component, SignalLike
-from clutchwork.declare.schema import Role, State, component, param, signal
+from clutchwork.declare import Component, Role, SignalLike, State, component, param, signal
 
 
 @component(Role.PROCESS, states=(State("depth", "m", "depth of wear"),))

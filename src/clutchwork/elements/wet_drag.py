@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Node, SignalLike
-from clutchwork.declare.schema import Role, component, param, port, signal
+from clutchwork.declare import Node, Role, SignalLike, component, param, port, signal
 from clutchwork.elements.bases.heating import Heating
 
 

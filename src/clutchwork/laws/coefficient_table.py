@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Law, Points
-from clutchwork.declare.schema import Role, component, curve, param
+from clutchwork.declare import Law, Points, Role, component, curve, param
 from clutchwork.laws.bases.tables import Found, beyond_the_ends, continued, slip_axis
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.declare.node import Law
-from clutchwork.declare.schema import Role, State, component, param
+from clutchwork.declare import Law, Role, State, component, param
 
 
 @component(Role.LAW, states=(State("elastic", "1", "elastic coefficient"),))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from clutchwork.declare.node import SignalLike
-from clutchwork.declare.schema import Role, component, numbers, signal
+from clutchwork.declare import Role, SignalLike, component, numbers, signal
 from clutchwork.laws.bases.tables import Found, Tabulated, continued, crossing, few_points, slip_axis
 
 

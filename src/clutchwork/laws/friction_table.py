@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Points
-from clutchwork.declare.schema import Role, component, curve, param
+from clutchwork.declare import Points, Role, component, curve, param
 from clutchwork.laws.bases.tables import Found, Tabulated, continued, crossing, few_points, not_positive, slip_axis
 
 

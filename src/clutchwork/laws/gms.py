@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.declare.node import Points
-from clutchwork.declare.schema import Role, State, component, curve, param
+from clutchwork.declare import Points, Role, State, component, curve, param
 from clutchwork.laws.bases.stribeck import Found, StribeckCurve, element_problems, kinetic_problems
 
 FEWEST, LARGEST = 4, 10

@@ -5,9 +5,7 @@ from __future__ import annotations
 from math import exp, tanh
 from typing import ClassVar
 
-from clutchwork.declare.node import Law
-from clutchwork.declare.schema import Role, State, choice, component, flag, param
-from clutchwork.declare.speech import say
+from clutchwork.declare import Law, Role, State, choice, component, flag, param, say
 from clutchwork.laws.bases.stribeck import Found, static_problems
 
 # least inner friction over 1 - kinetic/static: largest (1 - exp(-x^2))/x, and that over the slope of tanh at 1

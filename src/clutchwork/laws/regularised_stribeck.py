@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.declare.schema import Role, component, param
+from clutchwork.declare import Role, component, param
 from clutchwork.laws.bases.stribeck import StribeckCurve
 
 

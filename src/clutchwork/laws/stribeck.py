@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.schema import Role, component
+from clutchwork.declare import Role, component
 from clutchwork.laws.bases.stribeck import StribeckCurve
 
 

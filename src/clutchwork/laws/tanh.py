@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.declare.node import Law
-from clutchwork.declare.schema import Role, component, param
+from clutchwork.declare import Law, Role, component, param
 
 
 @component(Role.LAW)

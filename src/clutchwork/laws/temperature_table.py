@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Points, SignalLike
-from clutchwork.declare.schema import Role, component, curve, signal
+from clutchwork.declare import Points, Role, SignalLike, component, curve, signal
 from clutchwork.laws.bases.tables import Found, Tabulated, continued, crossing, few_points, not_positive
 
 

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from clutchwork.base.errors import FileError
-from clutchwork.declare.node import Segment, Signal
-from clutchwork.declare.schema import Role, component, param, text
+from clutchwork.declare import Role, Segment, Signal, component, param, text
 from clutchwork.signals.table import pieces
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from clutchwork.declare.node import Segment, Signal
-from clutchwork.declare.schema import Role, component, function, param
+from clutchwork.declare import Role, Segment, Signal, component, function, param
 
 
 @component(Role.SIGNAL)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
-from clutchwork.declare.node import Segment, Signal
-from clutchwork.declare.schema import Role, component, param
+from clutchwork.declare import Role, Segment, Signal, component, param
 
 
 @component(Role.SIGNAL)

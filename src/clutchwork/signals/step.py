@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Segment, Signal
-from clutchwork.declare.schema import Role, component, param
+from clutchwork.declare import Role, Segment, Signal, component, param
 
 
 @component(Role.SIGNAL)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from clutchwork.declare.node import Points, Segment, Signal
-from clutchwork.declare.schema import Role, component, curve
+from clutchwork.declare import Points, Role, Segment, Signal, component, curve
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare.node import Component, ThermalNode
-from clutchwork.declare.schema import family, option, port
+from clutchwork.declare import Component, ThermalNode, family, option, port
 
 
 @family

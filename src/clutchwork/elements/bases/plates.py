@@ -9,7 +9,7 @@ from clutchwork.signals.constant import Constant
 from clutchwork.signals.step import Step
 
 if TYPE_CHECKING:
-    from clutchwork.declare.node import Signal, SignalLike
+    from clutchwork.declare import Signal, SignalLike
 
 
 def trigger(time: float | None) -> Signal | None:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from clutchwork.declare.node import Law
-from clutchwork.declare.schema import choice, family, param
+from clutchwork.declare import Law, choice, family, param
 
 if TYPE_CHECKING:
-    from clutchwork.declare.node import Points
+    from clutchwork.declare import Points
 
 SHAPES = ("gaussian", "tustin", "lorentz", "power")
 # limits that equal a value may differ from it by round-off

@@ -6,13 +6,12 @@ from itertools import pairwise
 from math import inf
 from typing import TYPE_CHECKING
 
-from clutchwork.declare.node import Law
-from clutchwork.declare.schema import choice, family
+from clutchwork.declare import Law, choice, family
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from clutchwork.declare.node import Points
+    from clutchwork.declare import Points
 
 # points that each interpolation needs along every axis
 FEWEST = {"linear": 2, "smooth": 3}

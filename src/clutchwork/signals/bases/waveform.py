@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import chain
 from math import comb, exp, pi, sin
 
-from clutchwork.declare.node import Segment, Signal
+from clutchwork.declare import Segment, Signal
 
 # amplitude, omega, phase, decay
 Wave = tuple[float, float, float, float]

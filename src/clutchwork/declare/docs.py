@@ -1,0 +1,125 @@
+"""What the parameters of a declaration are, in words: for help(), editors, type stubs and the reference pages."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator
+from dataclasses import MISSING, Field, fields
+from inspect import Parameter, Signature
+from typing import Any, NamedTuple
+
+from clutchwork.declare.schema import Spec, specs
+
+SORTS = {
+    "param": "number",
+    "alternative": "signal",
+    "option": "setting",
+    "law": "friction law",
+    "thermal": "thermal port",
+}
+NAME = "name (text, required): its path in results and messages"
+
+
+class Described(NamedTuple):
+    """A field in words; empty where there is nothing to say."""
+
+    name: str
+    sort: str  # "number", "signal", "port" ...
+    unit: str  # "Pa or N"
+    default: str  # "required", "none", "0.001" ...
+    bound: str  # "> 0", or the words of a choice
+    meaning: str
+
+
+def described(item: Field[Any], spec: Spec) -> Described:
+    """A field in words."""
+    bound = ", ".join(spec.choices) or spec.bound
+    meaning = f"{spec.doc} (instead of `{spec.instead_of}`)" if spec.instead_of else spec.doc
+    return Described(item.name, _sort(spec), _unit(spec), _default(item, spec), bound, meaning)
+
+
+def _sort(spec: Spec) -> str:
+    if spec.flag or spec.choices:
+        return "flag" if spec.flag else "choice"
+    return "whole number" if spec.whole else SORTS.get(spec.what, spec.what)
+
+
+def _unit(spec: Spec) -> str:
+    if spec.what == "law" or spec.flag or spec.choices:
+        return ""
+    unit = f"{spec.unit_x} -> {spec.unit}" if spec.what == "curve" else spec.unit
+    return " or ".join(dict.fromkeys((unit.replace("*", "of its input"), *spec.units))) if unit else ""
+
+
+def _default(item: Field[Any], spec: Spec) -> str:
+    if item.default is MISSING:
+        return "required"
+    if item.default is None:
+        return "the housing" if spec.what == "port" else "none"
+    if spec.flag:
+        return "true" if item.default else "false"
+    return f"{item.default:g}" if isinstance(item.default, int | float) else str(item.default)
+
+
+def parameters(cls: type) -> Iterator[str]:
+    """A line for each parameter, in a form that editors know: `radius (number [m] > 0, default none): meaning`."""
+    if "name" in {item.name for item in fields(cls)}:
+        yield NAME
+    for item, spec in specs(cls):
+        told = described(item, spec)
+        sort = f"{told.sort}: {told.bound}" if spec.choices else " ".join(filter(None, (told.sort, _bounded(told))))
+        default = told.default if told.default == "required" else f"default {told.default}"
+        yield f"{told.name} ({sort}{';' if spec.choices else ','} {default}): {told.meaning}"
+
+
+def _bounded(told: Described) -> str:
+    return " ".join(filter(None, (f"[{told.unit}]" if told.unit else "", told.bound)))
+
+
+def words(cls: type) -> str:
+    """What a declaration says of itself, without its parameters."""
+    own = vars(cls).get("__doc__") or ""
+    return inspect.cleandoc(own.words if isinstance(own, _Docstring) else own)
+
+
+def docstring(cls: type) -> str:
+    """The words of a declaration, then its parameters."""
+    lines = "\n".join(f"    {line}" for line in parameters(cls))
+    return f"{words(cls)}\n\nParameters:\n{lines}" if lines else words(cls)
+
+
+def signature(cls: type) -> Signature:
+    """How a declaration is called, its parameters in the order of `parameters`."""
+    order = {item.name: place for place, (item, _) in enumerate(specs(cls))}
+    given = [item for item in fields(cls) if item.init]
+    found = sorted(given, key=lambda item: (item.kw_only, order.get(item.name, len(order))))
+    return Signature([_parameter(item) for item in found], return_annotation=None)
+
+
+def _parameter(item: Field[Any]) -> Parameter:
+    kind = Parameter.KEYWORD_ONLY if item.kw_only else Parameter.POSITIONAL_OR_KEYWORD
+    default = Parameter.empty if item.default is MISSING else item.default
+    return Parameter(item.name, kind, default=default, annotation=item.type)
+
+
+class _Docstring:
+    """The docstring of a class, written when it is read: the import pays nothing for it."""
+
+    def __init__(self, words: str) -> None:
+        self.words = words
+
+    def __get__(self, thing: object, cls: type) -> str:
+        return docstring(cls)
+
+
+class _Signature:
+    """The signature of a class, made when it is asked for."""
+
+    def __get__(self, thing: object, cls: type) -> Signature:
+        return signature(cls)
+
+
+def document(cls: Any) -> None:
+    """Let help() and editors show all parameters of a declaration."""
+    cls.__doc__ = _Docstring(cls.__doc__ or "")
+    cls.__signature__ = _Signature()
