@@ -84,7 +84,7 @@ test-cpp: $(STAMPS)/tools
 test-python: $(STAMPS)/package
 	@$(BIN)/python -m pytest
 
-# every checker runs, so that one call shows all there is to mend
+# every checker runs, so that one call shows all there is to fix
 check: $(STAMPS)/package $(STAMPS)/check
 	@bad=; try() { echo "== $$*" | cut -c 1-60; "$$@" || bad="$$bad $$1"; }; \
 	try $(BIN)/ruff format --check --quiet .; \

@@ -77,7 +77,7 @@ def test_start_values_of_tables() -> None:
     assert [tuple(row) for row in law.kinetic] == [(0.2, 0.19, 0.18), (0.15, 0.14, 0.13)]  # type: ignore[attr-defined]
     assert tuple(law.speeds) == (0.0, 50.0, 100.0)  # type: ignore[attr-defined]
     assert law.temperature is None  # type: ignore[attr-defined]
-    with pytest.raises(ValueError, match="'e' is no number"):
+    with pytest.raises(ValueError, match="'e' is not a number"):
         law_from_text("friction_map", "speeds=0/e")
 
 
@@ -98,13 +98,13 @@ def test_a_temperature(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> No
     [
         ({"--law": "stribek"}, 3, "did you mean 'stribeck'"),
         ({"--start": "static=0.2,kinetic=0.1,speeds=1"}, 3, "did you mean 'speed'"),
-        ({"--start": "static"}, 2, "is no name=value"),
+        ({"--start": "static"}, 2, "is not name=value"),
         ({"--start": "static=0.2,kinetic=0.3,speed=1"}, 3, "below the kinetic"),
         ({"--free": "sped"}, 2, "did you mean 'speed'"),
         ({"--slip": "slop"}, 2, "did you mean 'slip"),
         ({"--load": "force"}, 2, "no column 'force'"),
-        ({"--bounds": "speed=1"}, 2, "no low:high"),
-        ({"--bounds": "speed=2:a"}, 2, "'a' is no number"),
+        ({"--bounds": "speed=1"}, 2, "is not low:high"),
+        ({"--bounds": "speed=2:a"}, 2, "'a' is not a number"),
         ({"--rest": "1e9"}, 2, "lower `rest`"),
     ],
 )
@@ -121,7 +121,7 @@ def test_a_file_that_is_not_there(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_bounds_reach_the_fit(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*LINE, "--bounds", "speed=:2,kinetic=0.05:"]) == 1
-    assert "speed is not determined: it rests on its bound" in capsys.readouterr().out
+    assert "speed is not determined: it lies on its bound" in capsys.readouterr().out
 
 
 def test_files_and_python_say_the_same(capsys: pytest.CaptureFixture[str]) -> None:

@@ -46,7 +46,7 @@ def spoilt(name: str, place: int, number: float) -> dict[str, Any]:
         ({**good(), "torque": 0.0 * good()["torque"]}, "torque is always zero"),
         ({**good(), "torque": good()["torque"][:-1]}, "torque has 959 values, time has 960"),
         ({**good(), "torque": good()["torque"].reshape(-1, 2)}, "torque has 2 dimensions"),
-        ({**good(), "slip": ["a"] * 960}, "slip holds something that is no number"),
+        ({**good(), "slip": ["a"] * 960}, "slip contains something that is not a number"),
         ({name: row[:3] for name, row in good().items()}, "time has 3 values"),
         ({name: row[:43] for name, row in good().items()}, "samples give 4 equations for 4 parameters"),
     ],
@@ -65,7 +65,7 @@ def test_samples(data: dict[str, Any], words: str) -> None:
         ({"free": []}, "free names no parameter"),
         ({"free": ["static", "static"]}, "twice"),
         ({"free": ["exponent"]}, "does not let vary"),
-        ({"free": ["shape"]}, "which Stribeck has not"),
+        ({"free": ["shape"]}, "which is not a fittable parameter of Stribeck"),
         ({"bounds": {"speeds": (0.0, 1.0)}}, "did you mean 'speed'"),
         ({"bounds": {"speed": (3.0, 4.0)}}, "start within the bounds"),
         ({"rest": -1.0}, "rest is -1"),
@@ -80,7 +80,7 @@ def test_settings(settings: dict[str, Any], words: str) -> None:
 
 
 def test_laws() -> None:
-    with pytest.raises(FitError, match="no friction law"):
+    with pytest.raises(FitError, match="not a friction law"):
         fit_law("stribeck", **good())  # type: ignore[arg-type]
     with pytest.raises(FitError, match=r"start values that do not fit.*static"):
         fit_law(cw.Stribeck(static=0.1, kinetic=0.2, speed=2.0), **good())
@@ -89,7 +89,7 @@ def test_laws() -> None:
 @pytest.mark.parametrize(
     ("law", "temperature", "words"),
     [
-        (LAW, 300.0, "temperature is given, and Stribeck does not depend on it; leave it out"),
+        (LAW, 300.0, "temperature is given, and Stribeck does not depend on it; remove it"),
         (replace(MAP, temperature=None), None, "temperature is missing, and FrictionMap depends on it"),
         (replace(MAP, temperature=cw.Step(height=50.0, start=0.5)), None, "a fit runs no signals; give the measured"),
         (MAP, "warm", "temperature is 'warm'; give a number in .K"),
@@ -119,7 +119,7 @@ def test_experiments_stay_inside_a_table_that_must_not_be_left() -> None:
 def test_inputs_that_no_fit_can_give(monkeypatch: pytest.MonkeyPatch) -> None:
     wet = [(["wetness"], Spec("signal", "1", "wetness of the lining"))]
     monkeypatch.setattr(clutchwork.fit.temperature, "inputs", lambda cls: iter(wet))
-    with pytest.raises(FitError, match="wetness drives Stribeck, and a fit knows no signals but the temperature"):
+    with pytest.raises(FitError, match="wetness drives Stribeck, and a fit supports no signal other than"):
         fit_law(LAW, **good())
 
 

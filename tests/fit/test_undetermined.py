@@ -109,7 +109,7 @@ def test_exactly_lost_directions_are_told_as_such() -> None:
     start = cw.Exponential(static=0.2, slow=0.14, fast=0.09, speed=2.0)
     result = fit_law(start, **slid(law, np.full(50, 1.0), noise=0.0), free=["slow", "fast"])
     assert open_names(result) == ["slow", "fast"]
-    assert result["slow"].reason == "the samples tell only a combination of slow, fast"
+    assert result["slow"].reason == "the samples determine only a combination of slow, fast"
 
 
 def test_stiffness_does_not_show_in_steady_sliding() -> None:
@@ -129,7 +129,7 @@ def test_a_parameter_at_its_bound() -> None:
     data["torque"] -= 0.005 * data["slip"]
     result = fit_law(cw.Stribeck(static=0.2, kinetic=0.1, speed=1.0, viscous=1e-3), **data)
     assert open_names(result) == ["viscous"]
-    assert result["viscous"].reason == "it rests on its bound >= 0"
+    assert result["viscous"].reason == "it lies on its bound >= 0"
     assert result.law.viscous == 0.0  # type: ignore[attr-defined]
 
 

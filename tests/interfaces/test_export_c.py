@@ -183,9 +183,9 @@ def test_exporting_again_keeps_what_was_edited(tmp_path: Path) -> None:
     [
         ({}, "no end time"),
         ({"t_end": 1.0, "signals": ["c1.slpi"]}, "did you mean 'c1.slip'"),
-        ({"t_end": 1.0, "signals": ["c1.state"]}, "take c1.mode"),
+        ({"t_end": 1.0, "signals": ["c1.state"]}, "use c1.mode"),
         ({"t_end": 1.0, "times": [0.0, 1.0]}, "give dt"),
-        ({"t_end": 100.0, "dt": 1e-5}, "take a larger dt"),
+        ({"t_end": 100.0, "dt": 1e-5}, "use a larger dt"),
     ],
 )
 def test_what_cannot_be_exported(given: dict[str, Any], words: str, tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ def test_bad_values(changes: dict[str, object], words: str) -> None:
 
 
 def test_a_misspelt_option_is_answered_with_a_near_one() -> None:
-    with pytest.raises(TypeError, match="no option 'rtoll'; did you mean 'rtol'"):
+    with pytest.raises(TypeError, match="unknown option 'rtoll'; did you mean 'rtol'"):
         Options().changed({"rtoll": 1e-3})
 
 

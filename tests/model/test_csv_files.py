@@ -55,7 +55,7 @@ def test_the_first_few_bad_cells_are_named(tmp_path):
         ("time,p\n0,0\n1\n", "is empty"),
         ("time,p\n0,0\n1e-320,1e300\n", "change too fast"),
         ("time,p\n0,0\n1\0,1\n", "not text"),
-        (b"time,p\n0,\xff\n", "not text in UTF-8"),
+        (b"time,p\n0,\xff\n", "not UTF-8 text"),
         ("time,p\n" + "1" * 2_000_000, "has a line of more than"),
         ("time,p\n0," + "1" * 200_000 + "\n", "cannot be read"),
         ("\n0,1\n", "is empty"),
@@ -123,10 +123,10 @@ def test_heads_with_units_are_converted(tmp_path, head, names, points):
     ("head", "more", "words"),
     [
         ("time,c1 [baar]", {}, "has the unknown unit 'baar'; did you mean 'bar'?; write one such as [bar]"),
-        ("time,c1 [degC]", {}, "whose zero is another; give it in [K]"),
-        ("time [bar],c1", {}, "is in a unit that does not fit; give it in [s]"),
+        ("time,c1 [degC]", {}, "which has another zero; give it in [K]"),
+        ("time [bar],c1", {}, "has a unit that does not fit; give it in [s]"),
         ("time,c1 [bar],c1 [kPa]", {}, "has 2 columns 'c1'; name one of them: c1 [bar], c1 [kPa]"),
-        ("time,c1 [bar]", {"scale": 1e5}, "repeats the unit of column 'c1 [bar]' of 'p.csv'; leave out scale"),
+        ("time,c1 [bar]", {"scale": 1e5}, "repeats the unit of column 'c1 [bar]' of 'p.csv'; remove scale"),
         ("time,c1 [bar]", {"column": "c1 [kPa]"}, "has no column 'c1 [kPa]'; the columns are time, c1 [bar]"),
     ],
 )
@@ -147,7 +147,7 @@ def test_the_driven_quantity_decides_which_unit_fits(tmp_path):
     assert _braked(_column(tmp_path, "time,p [kNm]\n0,2\n")).check() == []
     (problem,) = _braked(_column(tmp_path, "time,p [bar]\n0,2\n")).check()
     assert str(problem) == (
-        "cw.Torque(\"t\"): torque.column 'p [bar]' is in a unit that does not fit; give it in [N m] or [N]"
+        "cw.Torque(\"t\"): torque.column 'p [bar]' has a unit that does not fit; give it in [N m] or [N]"
     )
 
 
@@ -164,5 +164,5 @@ def test_a_unit_beside_that_of_the_head_is_refused(tmp_path):
         '[[shaft]]\nname = "a"\ninertia = 1.0\n[[element]]\nname = "t"\ntype = "torque"\nshaft = "a"\n'
         'torque = {type = "column", path = "p.csv", column = "p", unit = "kNm"}\n'
     )
-    with pytest.raises(cw.ModelError, match=r"is given beside the unit \[kNm\] of the column; leave out unit"):
+    with pytest.raises(cw.ModelError, match=r"the head of the column has the unit \[kNm\]; remove unit"):
         cw.Driveline.load(model)

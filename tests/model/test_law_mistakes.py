@@ -41,13 +41,16 @@ MISTAKES = {
     ),
     "exponent without its shape": (
         cw.Stribeck(**CURVE, exponent=0.5),
-        "friction.exponent is 0.5 with shape 'gaussian', which has none; leave it out, or give shape \"power\"",
+        "friction.exponent is 0.5, but shape 'gaussian' has no exponent; remove it, or give shape \"power\"",
     ),
     "unknown shape": (
         cw.Stribeck(**CURVE, shape="gauss"),
-        "friction.shape = 'gauss': is not known; did you mean 'gaussian'?; known are gaussian, tustin",
+        "friction.shape = 'gauss': is an unknown choice; did you mean 'gaussian'? choose one of gaussian, tustin",
     ),
-    "number for a word": (cw.Stribeck(**CURVE, shape=1), "friction.shape = 1: is not known; known are gaussian"),
+    "number for a word": (
+        cw.Stribeck(**CURVE, shape=1),
+        "friction.shape = 1: is an unknown choice; choose one of gaussian",
+    ),
     "no kinetic coefficient to divide by": (
         cw.LuGre(**{**BRISTLES, "kinetic": 0.0}),
         "friction.kinetic is 0, and this law divides by it",
@@ -91,7 +94,7 @@ MISTAKES = {
     ),
     "range without its reset": (
         cw.Mykhalevych(static=0.2, kinetic=0.1, elastic=1e-4, speed=1.0, viscous=1.0, reset="clip", range=2.0),
-        "friction.range is 2 with reset 'clip', which has none",
+        "friction.range is 2, but reset 'clip' has no range",
     ),
     "flag that is none": (
         cw.Mykhalevych(static=0.2, kinetic=0.1, elastic=1e-4, speed=1.0, viscous=1.0, passive="yes"),
@@ -128,7 +131,7 @@ def test_what_is_just_allowed(law):
 def test_a_law_that_never_locks_cannot_start_locked():
     (problem,) = _brake(cw.Tanh(kinetic=0.1, speed=0.1), locked=True).check()
     assert problem.quantity == "locked"
-    assert "with a law that never locks; leave it out, or take a law that sticks: coefficient_table" in str(problem)
+    assert "with a law that never locks; remove it, or use a law that sticks: coefficient_table" in str(problem)
     assert _brake(cw.Stribeck(**CURVE), locked=True).check() == []
     # a freewheel locks by itself
     d = cw.Driveline()
@@ -239,7 +242,9 @@ def test_a_misspelt_word_in_a_file(tmp_path):
     d.save(tmp_path / "model.toml")
     text = (tmp_path / "model.toml").read_text().replace("lorentz", "lorenz")
     (tmp_path / "model.toml").write_text(text)
-    with pytest.raises(cw.ModelError, match=r"friction\.shape = 'lorenz': is not known; did you mean 'lorentz'\?"):
+    with pytest.raises(
+        cw.ModelError, match=r"friction\.shape = 'lorenz': is an unknown choice; did you mean 'lorentz'\?"
+    ):
         cw.Driveline.load(tmp_path / "model.toml")
 
 

@@ -44,12 +44,12 @@ CASES = {
     "misspelt key": (
         "inertia = 0.2",
         "inertai = 0.2",
-        "shaft \"engine\": inertai is not known here; did you mean 'inertia'?",
+        "shaft \"engine\": inertai is an unknown key; did you mean 'inertia'?",
     ),
     "misspelt type": (
         'type = "clutch"',
         'type = "clutsh"',
-        "element \"c1\": type = 'clutsh': is not known; did you mean 'clutch'?",
+        "element \"c1\": type = 'clutsh': is an unknown type; did you mean 'clutch'?",
     ),
     "class in place of kind": ('"clutch"', '"Clutch"', "did you mean 'clutch'?"),
     "missing type": ('type = "clutch"', "", 'element "c1": type is missing'),
@@ -68,12 +68,16 @@ CASES = {
         "",
         "give pressure or normal_force",
     ),
-    "pressure and force": ("gain = 0.1", "gain = 0.1\nnormal_force = 3.0", "normal_force is given beside 'pressure'"),
+    "pressure and force": (
+        "gain = 0.1",
+        "gain = 0.1\nnormal_force = 3.0",
+        "normal_force cannot be given together with 'pressure'",
+    ),
     "text for a number": ("gain = 0.1", 'gain = "big"', "gain = 'big': is not a number; write a number in [m3]"),
     "number in quotes": (
         "gain = 0.1",
         'gain = "0.1"',
-        "gain = '0.1': is a text without unit; write the number without quotes",
+        "gain = '0.1': has no unit; remove the quotes or add one, such as",
     ),
     "true for a number": ("gain = 0.1", "gain = true", "gain = True: must be a number in [m3]"),
     "list for a number": ("gain = 0.1", "gain = [1]", "gain = [1]: must be a number in [m3]"),
@@ -84,7 +88,7 @@ CASES = {
     "wrong unit": (
         "gain = 0.1",
         'gain = "0.1 m2/s"',
-        "gain = '0.1 m2/s': is in a unit that does not fit; give it in [m3]",
+        "gain = '0.1 m2/s': has a unit that does not fit; give it in [m3]",
     ),
     "gain of a force at a pressure": ("gain = 0.1", 'gain = "0.1 N m"', "give it in [m3] or [m2]"),
     "unknown unit": ("speed = 100.0", 'speed = "100 rpn"', "unknown unit 'rpn'; did you mean 'rpm'?"),
@@ -98,9 +102,9 @@ CASES = {
         "kinetic = 0.2",
         "friction.static = 0.12: is below the kinetic coefficient at vanishing slip, 0.2",
     ),
-    "unknown law": ('"coulomb"', '"culomb"', "friction.type = 'culomb': is not known; did you mean 'coulomb'?"),
+    "unknown law": ('"coulomb"', '"culomb"', "friction.type = 'culomb': is an unknown type; did you mean 'coulomb'?"),
     "law without type": ('{type = "coulomb", ', "{", "must be a table with the type of a law"),
-    "law key": ("kinetic = 0.1", "kinetik = 0.1", "friction.kinetik is not known here; did you mean 'kinetic'?"),
+    "law key": ("kinetic = 0.1", "kinetik = 0.1", "friction.kinetik is an unknown key; did you mean 'kinetic'?"),
     "table not increasing": (
         "[0.5, 2e5]",
         "[0.5, 2e5], [0.4, 1.0]",
@@ -109,29 +113,29 @@ CASES = {
     "table with text": ("[0.5, 2e5]", '[0.5, "x"]', "pressure.points, point 2 = 'x': must be a number in [Pa]"),
     "table with a triple": ("[0.5, 2e5]", "[0.5, 1.0, 2.0]", "point 2 = [0.5, 1.0, 2.0]: must be a pair of numbers"),
     "empty table": ("[[0.0, 0.0], [0.5, 2e5]]", "[]", "pressure.points = []: must be a list of points"),
-    "unknown signal": ('"table"', '"tabel"', "pressure.type = 'tabel': is not known; did you mean 'table'?"),
+    "unknown signal": ('"table"', '"tabel"', "pressure.type = 'tabel': is an unknown type; did you mean 'table'?"),
     "unit of a signal": (
         '{type = "table", ',
         '{type = "table", unit = "m", ',
-        "pressure.unit = 'm': is in a unit that does not fit",
+        "pressure.unit = 'm': has a unit that does not fit",
     ),
     "function in a file": (
         '"table"',
         '"sampled", function = "os.system", period = 1.0',
-        "pressure.function cannot stand in a model file",
+        "pressure.function is not allowed in a model file",
     ),
-    "name taken": ('name = "load"', 'name = "engine"', "name = 'engine': is taken by shaft \"engine\""),
-    "reserved name": ('name = "load"', 'name = "housing"', "is taken by the housing"),
-    "one shaft at both ports": ('base = "load"', 'base = "engine"', "base and follower are both on 'engine'"),
+    "name taken": ('name = "load"', 'name = "engine"', "name = 'engine': is already the name of shaft \"engine\""),
+    "reserved name": ('name = "load"', 'name = "housing"', "is already the name of the housing"),
+    "one shaft at both ports": ('base = "load"', 'base = "engine"', "base and follower are both attached to 'engine'"),
     "housing alone": (
         'base = "load"\nfollower = "engine"',
         'base = "housing"\nfollower = "housing"',
-        "joins nothing but the housing",
+        "is attached to the housing alone",
     ),
     "unknown table": (
         'name = "two discs"',
         'name = "two discs"\nshafts = 3',
-        "file: shafts is not known here; did you mean 'shaft'?",
+        "file: shafts is an unknown key; did you mean 'shaft'?",
     ),
     "shaft as table": (
         'name = "two discs"',
@@ -141,7 +145,7 @@ CASES = {
     "unknown setting": (
         'name = "two discs"',
         'name = "x"\nsimulation = {t_end = 1.0, rtoll = 3}',
-        "rtoll is not known here; did you mean 'rtol'?",
+        "rtoll is an unknown key; did you mean 'rtol'?",
     ),
     "wrong setting": (
         'name = "two discs"',
@@ -151,12 +155,12 @@ CASES = {
     "unknown method": (
         'name = "two discs"',
         'name = "x"\nsimulation = {method = "rodas"}',
-        "method = 'rodas': is not known; did you mean 'rodas5p'?",
+        "method = 'rodas': is an unknown method; did you mean 'rodas5p'?",
     ),
     "format of the future": (
         'name = "two discs"',
         'name = "x"\nformat = 2',
-        "file: format = 2: is not known; this version reads format 1",
+        "file: format = 2: is an unknown format; this version reads format 1",
     ),
     "no toml": (
         'name = "two discs"',
@@ -207,16 +211,16 @@ def test_all_mistakes_come_at_once(tmp_path):
 
 def test_json_has_the_same_checks(tmp_path):
     text = '{"shaft": [{"name": "a", "inertia": 1, "inertia": 2}]}'
-    assert "key 'inertia' stands twice" in _mistakes(tmp_path, text, "model.json")[0]
+    assert "key 'inertia' appears twice" in _mistakes(tmp_path, text, "model.json")[0]
     text = '{"shaft": [{"name": "a", "inertia": NaN}]}'
-    assert "NaN is not a number of a model file" in _mistakes(tmp_path, text, "model.json")[0]
+    assert "NaN is not allowed in a model file" in _mistakes(tmp_path, text, "model.json")[0]
     text = '{"shaft": [{"name": "a", "inertia": "1"}]}'
-    assert "is a text without unit" in _mistakes(tmp_path, text, "model.json")[0]
+    assert "has no unit" in _mistakes(tmp_path, text, "model.json")[0]
     assert "file: must be a table" in _mistakes(tmp_path, "[1, 2]", "model.json")[0]
 
 
 def test_files_that_cannot_be_read(tmp_path):
-    with pytest.raises(cw.ModelError, match="cannot be read: No such file"):
+    with pytest.raises(cw.ModelError, match="does not exist; check the path"):
         cw.Driveline.load(tmp_path / "none.toml")
     assert "must end in .toml or .json" in _mistakes(tmp_path, GOOD, "model.yaml")[0]
     (tmp_path / "latin.toml").write_bytes(b'name = "\xe9"')
@@ -236,7 +240,7 @@ def test_files_that_cannot_be_read(tmp_path):
         ('path = "p.csv"', "pressure.column is missing"),
         (
             'path = "p.csv", column = "F1", unit = "kg"',
-            "pressure.unit = 'kg': is in a unit that does not fit; give it in [Pa]",
+            "pressure.unit = 'kg': has a unit that does not fit; give it in [Pa]",
         ),
     ],
 )
@@ -264,7 +268,7 @@ def test_foreign_node():
     d.shaft("a", inertia=1.0)
     d.add(cw.Damper("x", base=d.housing, follower=other.shaft("a", inertia=1.0), damping=1.0))
     (message,) = map(str, d.check())
-    assert message.startswith("cw.Damper(\"x\"): follower = 'a': is of another driveline")
+    assert message.startswith("cw.Damper(\"x\"): follower = 'a': belongs to another driveline")
 
 
 def test_shaft_joined_to_a_mass():
@@ -273,7 +277,7 @@ def test_shaft_joined_to_a_mass():
     d.add(cw.Damper("x", base=a, follower=m, damping=1.0))
     d.add(cw.RollingWheel("w", shaft=m, mass=a, radius=0.3))
     messages = list(map(str, d.check()))
-    assert "joins a shaft and a mass" in messages[0]
+    assert "connects a shaft and a mass" in messages[0]
     assert "shaft = 'm': must be a shaft" in messages[1]
     assert "mass = 'a': must be a mass" in messages[2]
 

@@ -33,7 +33,7 @@ MISTAKES = {
     "empty": ({"speeds": []}, "friction.speeds", "must be a list of numbers"),
     "no list": ({"speeds": 3.0}, "friction.speeds", "must be a list of numbers"),
     "not rising": ({"speeds": [0.0, 50.0, 40.0]}, "friction.speeds, number 3", "comes after 50 rad/s"),
-    "twice": ({"temperatures": [300.0, 300.0]}, "friction.temperatures, number 2", "stands twice, after 300 K"),
+    "twice": ({"temperatures": [300.0, 300.0]}, "friction.temperatures, number 2", "appears twice; sort the numbers"),
     "not finite": ({"static": [0.4, float("nan")]}, "friction.static, number 2", "must be finite"),
     "below its bound": ({"static": [0.4, 0.0]}, "friction.static, number 2", "must be > 0"),
     "ragged": ({"kinetic": [[0.3, 0.2, 0.1], [0.3, 0.2]]}, "friction.kinetic", "has rows of different lengths"),
@@ -54,7 +54,7 @@ def test_units_in_a_model_file() -> None:
     speeds = cw.Driveline.from_dict(data).elements[0].friction.speeds
     assert speeds == pytest.approx([0.0, 31.4159265, 62.8318531])
     data["element"][0]["friction"]["speeds"] = {"values": [0.0, 1.0, 2.0], "unit": "Pa"}
-    with pytest.raises(cw.ModelError, match="is in a unit that does not fit"):
+    with pytest.raises(cw.ModelError, match="has a unit that does not fit"):
         cw.Driveline.from_dict(data)
 
 

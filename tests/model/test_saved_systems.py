@@ -90,7 +90,7 @@ def test_every_byte_of_an_archive_is_checked(tmp_path):
 
 def test_archives_are_regular_files(tmp_path):
     for path in ("/dev/zero", tmp_path, tmp_path / "none"):
-        with pytest.raises(SystemFormatError, match="no System can be read"):
+        with pytest.raises(SystemFormatError, match="cannot read a System"):
             cw.System.load(path)
 
 

@@ -183,9 +183,9 @@ def test_column_reads_times_and_values(tmp_path):
         ("time,F1\n0,1\n1\n", "column", "line 3 of 'p.csv': the cell in column 'F1' is empty"),
         ("time,F1\n0,1\nnan,1\n", "time", "line 3 of 'p.csv': the cell in column 'time' is not a finite number"),
         ("time,F1\n0,1\n2,1\n1,1\n", "time", "line 4 of 'p.csv': its time is before that of line 3"),
-        ('time,F1\n0,"1,5"\n', "column", "with a point for the decimals"),
+        ('time,F1\n0,"1,5"\n', "column", "with a decimal point"),
         ("", "path", "is empty"),
-        ("time,F1\n", "path", "has no line of numbers"),
+        ("time,F1\n", "path", "has no row of numbers"),
     ],
 )
 def test_column_names_what_is_wrong_with_its_file(tmp_path, text, quantity, words):

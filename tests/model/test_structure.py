@@ -72,7 +72,7 @@ def test_redundant_rows_are_accepted_and_noted():
     d, *_ = _geared(2.5, 2.5)
     system = d.assemble()
     assert system.counts["speeds"] == 1
-    assert system.notes == ('cw.Gear("g1") and cw.Gear("g2"): one of them repeats what the others say',)
+    assert system.notes == ('cw.Gear("g1") and cw.Gear("g2"): one of them is redundant',)
 
 
 def test_redundancy_is_seen_through_decimals():
@@ -107,7 +107,7 @@ def test_contradiction_around_a_loop():
 def test_a_shaft_that_a_gear_holds_still():
     d = cw.Driveline()
     d.add(cw.Gear("g", input=d.shaft("a", inertia=1.0), output=d.housing, ratio=2.0))
-    assert _messages(d) == ['cw.Gear("g"): holds shaft "a" still for ever; use the housing in place of the shaft']
+    assert _messages(d) == ['cw.Gear("g"): holds shaft "a" at rest permanently; use the housing in place of the shaft']
 
 
 def test_prescribed_speeds_that_follow_from_each_other():

@@ -53,11 +53,11 @@ def test_bytes_read_back(system):
 
 def test_bytes_that_do_not_fit(system):
     data = system.to_bytes()
-    with pytest.raises(SystemFormatError, match="hold no System"):
+    with pytest.raises(SystemFormatError, match="are not a System"):
         cw.System.from_bytes(b"something else")
     with pytest.raises(SystemFormatError, match="by another version; assemble the driveline again"):
         cw.System.from_bytes(data[:8] + b"\0" * 8 + data[16:])
-    with pytest.raises(SystemFormatError, match="is cut off"):
+    with pytest.raises(SystemFormatError, match="is truncated"):
         cw.System.from_bytes(data[:-8])
 
 
@@ -86,16 +86,16 @@ def test_file_with_a_forced_choice_and_a_csv_column(tmp_path):
 
 def test_file_that_is_none(tmp_path):
     (tmp_path / "x.npz").write_text("no archive")
-    with pytest.raises(SystemFormatError, match=r"write it with System\.save"):
+    with pytest.raises(SystemFormatError, match=r"write the file with System\.save"):
         cw.System.load(tmp_path / "x.npz")
     np.savez(tmp_path / "y.npz", mass=np.eye(2))
-    with pytest.raises(SystemFormatError, match="no System can be read"):
+    with pytest.raises(SystemFormatError, match="cannot read a System"):
         cw.System.load(tmp_path / "y.npz")
 
 
 def test_objects_are_never_unpickled(tmp_path):
     np.savez(tmp_path / "x.npz", content=np.array([{"a": 1}], dtype=object), model=1, independent=1)
-    with pytest.raises(SystemFormatError, match="no System can be read"):
+    with pytest.raises(SystemFormatError, match="cannot read a System"):
         cw.System.load(tmp_path / "x.npz")
 
 

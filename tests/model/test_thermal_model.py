@@ -75,13 +75,13 @@ def test_heat_to_a_node_of_another_driveline():
     d, a, _, _, _ = _model()
     other = cw.Driveline().thermal("plate", capacity=1.0)
     d.add(cw.Brake("b1", shaft=a, friction=LAW, gain=1.0, pressure=1.0, heat=other))
-    assert "heat = 'plate': is of another driveline; create it in this one; did you mean 'plates'?" in _one(d)
+    assert "heat = 'plate': belongs to another driveline; create it here; did you mean 'plates'?" in _one(d)
 
 
 def test_flow_between_one_and_the_same_node():
     d, _, _, plates, _ = _model()
     d.add(cw.Conduction("wall", hot=plates, cold=plates, conductance=1.0))
-    assert "hot and cold are both on 'plates'" in _one(d)
+    assert "hot and cold are both attached to 'plates'" in _one(d)
 
 
 def test_share_of_the_heat_is_between_zero_and_one():
@@ -93,7 +93,7 @@ def test_share_of_the_heat_is_between_zero_and_one():
 def test_names_are_taken_once_among_all():
     d, _a, _, _plates, _ = _model()
     d.thermal("a", capacity=1.0)
-    assert "name = 'a': is taken by shaft \"a\"" in _one(d)
+    assert "name = 'a': is already the name of shaft \"a\"" in _one(d)
 
 
 def test_conductance_over_speed_is_not_negative():
@@ -112,13 +112,13 @@ def _pressed(d, a, value):
 
 def test_an_input_from_something_of_another_unit():
     d, a, _, plates, _ = _model()
-    assert "pressure is in [Pa], and 'plates' gives [K]" in _pressed(d, a, plates)
+    assert "pressure must be in [Pa], but 'plates' gives [K]" in _pressed(d, a, plates)
 
 
 def test_an_input_from_an_element_without_output():
     d, a, b, _, _ = _model()
     damper = d.add(cw.Damper("v", base=a, follower=b, damping=1.0))
-    assert "pressure = 'v': is an element without output" in _pressed(d, a, damper)
+    assert "pressure = 'v': has no output" in _pressed(d, a, damper)
 
 
 def test_rates_and_heats_are_inputs_of_flows_and_processes_only():
@@ -138,7 +138,7 @@ def test_heat_flow_is_no_speed():
     d, a, b, plates, air = _model()
     damper = d.add(cw.Damper("v", base=a, follower=b, damping=1.0))
     d.add(cw.Convection("f1", hot=plates, cold=air, conductance=1.0, speed=cw.HeatFlow(damper)))
-    assert "speed is in [rad/s], and HeatFlow of 'v' gives [W]" in _one(d)
+    assert "speed must be in [rad/s], but HeatFlow of 'v' gives [W]" in _one(d)
 
 
 def test_speed_of_a_flow_in_all_its_forms():
@@ -224,11 +224,11 @@ def test_model_file(tmp_path):
 
 FILE_MISTAKES = {
     "no capacity": ('capacity = "0.5 kJ/K"', "", 'thermal "plates": capacity is missing; give a value in [J/K]'),
-    "unit of the capacity": ('"0.5 kJ/K"', '"0.5 kJ"', "is in a unit that does not fit; give it in [J/K]"),
+    "unit of the capacity": ('"0.5 kJ/K"', '"0.5 kJ"', "has a unit that does not fit; give it in [J/K]"),
     "unknown key": (
         'capacity = "0.5 kJ/K"',
         "capacity = 500.0\nmass = 1.0",
-        'thermal "plates": mass is not known here',
+        'thermal "plates": mass is an unknown key',
     ),
     "unknown node": (
         'heat = "plates"',
@@ -238,7 +238,11 @@ FILE_MISTAKES = {
     "shaft as thermal node": ('heat = "plates"', 'heat = "a"', "heat = 'a': is not a thermal node of this model"),
     "thermal node as shaft": ('shaft = "a"', 'shaft = "plates"', "shaft = 'plates': is not a shaft of this model"),
     "unknown part": ('"disc.surface"', '"disc.middle"', "cold = 'disc.middle': is not a thermal node of this model"),
-    "unknown element": ('of = "b1"', 'of = "b2"', "speed = 'b2': is not known; did you mean 'b1'?"),
+    "unknown element": (
+        'of = "b1"',
+        'of = "b2"',
+        "speed = 'b2': is not a thermal node, element or shaft of this model; did you mean 'b1'?",
+    ),
 }
 
 
@@ -259,7 +263,7 @@ def test_an_element_with_mistakes_is_reported_once(tmp_path):
 
 def test_elements_that_refer_to_each_other_in_a_circle(tmp_path):
     text = FILE.replace("pressure = 20.0", 'pressure = "fan"')
-    with pytest.raises(cw.ModelError, match="leads back to itself"):
+    with pytest.raises(cw.ModelError, match="refers back to itself"):
         _load(tmp_path, text)
 
 
@@ -338,7 +342,7 @@ def test_a_name_that_a_part_has_already():
     d, a, b, *_ = _model()
     d.add(Pair("p", base=b, follower=a, damping=0.3))
     d.add(cw.Damper("p.twin", base=b, follower=a, damping=0.3))
-    assert "name = 'p.twin': is taken by" in _one(d)
+    assert "name = 'p.twin': is already the name of" in _one(d)
 
 
 def test_parts_of_a_plate():

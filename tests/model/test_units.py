@@ -54,12 +54,12 @@ def test_what_is_no_text_and_no_table_is_left_to_the_checks(value):
 @pytest.mark.parametrize(
     ("value", "unit", "words"),
     [
-        ("3 bar", "kg m2", "is in a unit that does not fit; give it in [kg m2]"),
+        ("3 bar", "kg m2", "has a unit that does not fit; give it in [kg m2]"),
         ("3 Hz", "rad/s", "does not fit"),
         ("3 N m", "N m/rad", "does not fit"),
         ("3 baar", "Pa", "unknown unit 'baar'; did you mean 'bar'?"),
         ("3 kg m2 zz", "kg m2", "unknown unit 'zz'"),
-        ("3", "Pa", "is a text without unit; write the number without quotes"),
+        ("3", "Pa", "has no unit; remove the quotes or add one, such as"),
         ("three", "Pa", "is not a number"),
         ("nan s", "s", "is not a number"),
         ("__import__('os')", "s", "is not a number"),

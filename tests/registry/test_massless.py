@@ -102,7 +102,7 @@ def test_a_dog_clutch_at_a_shaft_without_inertia_is_refused(engaged, load):
     (problem,) = d.check()
     assert str(problem) == (
         'shaft "b": inertia is missing, and nothing else determines its motion; give it inertia > 0 kg m2, '
-        "or join it by a gear or a spring with damping to one that has some"
+        "or connect it by a gear or a damped spring to a shaft that has some"
     )
 
 

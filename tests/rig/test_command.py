@@ -63,7 +63,7 @@ def test_a_law_that_chatters_is_told_and_no_failure(capsys: pytest.CaptureFixtur
         (["drift", "--preset", "fristt"], "did you mean 'first'"),
         (["drift", "--set", "frequenzy=1"], "did you mean 'frequency'"),
         (["drift", "--set", "frequency"], "write it as name=number"),
-        (["all", "--set", "frequency=1"], "name it in place of all"),
+        (["all", "--set", "frequency=1"], "give its name in place of all"),
         (["drift", "--laws", ","], "no friction law is given"),
     ],
 )

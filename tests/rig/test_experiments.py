@@ -116,5 +116,5 @@ def test_shafts_take_the_place_of_masses() -> None:
     assert result.table.columns[1].head == "elastic peak [N m]"
     assert result.table.value("stribeck", "elastic peak") == pytest.approx(300.0, rel=1e-6)
     assert np.max(np.abs(result["stribeck", "sliding"]["body.angle"])) == pytest.approx(20 * 2e-4, rel=1e-3)
-    with pytest.raises(ValueError, match='take preset "clutch"'):
+    with pytest.raises(ValueError, match='use preset "clutch"'):
         rig.stall("stribeck", preset="first")

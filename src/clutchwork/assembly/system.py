@@ -108,7 +108,7 @@ class System:
         """A System without names from the bytes of `to_bytes`."""
         head = len(MAGIC) + 8 + 8 * len(COUNTS)
         if len(data) < head or data[: len(MAGIC)] != MAGIC:
-            raise SystemFormatError("these bytes hold no System; take those of System.to_bytes")
+            raise SystemFormatError("these bytes are not a System; use those from System.to_bytes")
         if struct.unpack_from("<q", data, len(MAGIC))[0] != schema_hash(layout_text()):
             raise SystemFormatError("this System was assembled by another version; assemble the driveline again")
         sizes = dict(zip((n for n, _ in COUNTS), struct.unpack_from(f"<{len(COUNTS)}q", data, 16), strict=True))
@@ -117,7 +117,7 @@ class System:
             lengths = [size if isinstance(size, int) else sizes[size] for size in shape]
             count = int(np.prod(lengths))
             if start + count * TYPES[kind].itemsize > len(data):
-                raise SystemFormatError(f"these bytes end within {item!r}; the file is cut off")
+                raise SystemFormatError(f"these bytes end inside {item!r}; the file is truncated")
             arrays[item] = np.frombuffer(data, TYPES[kind], count, start).reshape(lengths)
             start += -(-count * TYPES[kind].itemsize // 8) * 8
         return cls(name=name, arrays=frozen(arrays))
@@ -139,13 +139,13 @@ class System:
             model, independent = map(json.loads, texts)
         except (ValueError, RecursionError, OSError) as error:
             why = reason(error) if isinstance(error, OSError) else shortened(str(error))
-            raise SystemFormatError(f"{path}: no System can be read: {why}; write it with System.save") from None
+            raise SystemFormatError(f"{path}: cannot read a System: {why}; write the file with System.save") from None
         if not isinstance(independent, list) or not all(isinstance(name, str) for name in independent):
-            raise SystemFormatError(f"{path}: its independent speeds are no names; write it with System.save")
+            raise SystemFormatError(f"{path}: its independent speeds are not names; write the file with System.save")
         named = cls.of(from_dict(model), independent)
         plain = cls.from_bytes(content, named.name)
         if any(plain.arrays[name].shape != array.shape for name, array in named.arrays.items()):
-            raise SystemFormatError(f"{path}: its arrays do not fit its model; write it with System.save")
+            raise SystemFormatError(f"{path}: its arrays do not fit its model; write the file with System.save")
         return replace(named, arrays=plain.arrays)
 
 

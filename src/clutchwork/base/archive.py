@@ -36,4 +36,4 @@ def read(path: str | Path, names: Sequence[str]) -> list[bytes]:
                 raise ValueError(f"it unpacks to more than {MOST_BYTES} bytes")
             return [archive.read(there[name]) for name in names]
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError):
-        raise ValueError("it is damaged, or no archive") from None
+        raise ValueError("it is damaged or not an archive") from None

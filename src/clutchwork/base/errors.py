@@ -10,12 +10,13 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from clutchwork.base.shown import LONGEST, printable, shortened
+from clutchwork.base.text import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Problem:
     """One mistake in a model: where it is, what is wrong, and what to do about it."""
 
@@ -31,7 +32,16 @@ class Problem:
         where = f"{path}: {quantity}" if quantity else path
         given = f" = {shortened(self.value)}" if self.value else ""
         separator = ": " if given or not quantity else " "
-        return printable(f"{where}{given}{separator}{self.message}" + (f"; {self.remedy}" if self.remedy else ""))
+        return printable(f"{where}{given}{separator}{advised(self.message, self.remedy)}")
+
+    def __repr__(self) -> str:
+        """As a list of problems shows it: what `print` shows."""
+        return f"<{type(self).__name__} {self}>"
+
+
+def advised(message: str, remedy: str) -> str:
+    """A message and what to do about it, as one sentence; a question has its own end."""
+    return f"{message}{' ' if message.endswith('?') else '; '}{remedy}" if remedy else message
 
 
 class ClutchworkError(Exception):
@@ -48,7 +58,7 @@ class ModelError(ClutchworkError, ValueError):
     def __init__(self, problems: Sequence[Problem], source: str = "") -> None:
         self.problems = tuple(problems)
         self.source = source
-        count = counted(len(self.problems))
+        count = counted(len(self.problems), "problems")
         head = f"{printable(shortened(source))}: {count}" if source else f"{count} in the model"
         lines = [f"  line {p.line}: {p}" if p.line else f"  {p}" for p in self.problems[:MOST_LINES]]
         more = len(self.problems) - MOST_LINES
@@ -67,7 +77,7 @@ class UseError(ClutchworkError, TypeError):
 
     def __init__(self, call: str, problems: Sequence[str]) -> None:
         self.call, self.problems = call, tuple(problems)
-        head = f"{call}: {counted(len(self.problems))}"
+        head = f"{call}: {counted(len(self.problems), 'problems')}"
         super().__init__("\n".join([head, *(f"  {printable(problem)}" for problem in self.problems)]))
 
     def __reduce__(self) -> tuple[type, tuple[str, Sequence[str]]]:
@@ -90,11 +100,6 @@ class UnknownName(ClutchworkError, KeyError):  # noqa: N818, it is what the name
 
     def __str__(self) -> str:
         return str(self.args[0])
-
-
-def counted(problems: int) -> str:
-    """How many problems there are."""
-    return f"{problems} problems" if problems > 1 else "1 problem"
 
 
 class ModelWarning(UserWarning):
@@ -124,7 +129,7 @@ class FileError(ClutchworkError, ValueError):
 
     def __init__(self, problems: Sequence[tuple[str, str, str]]) -> None:
         self.problems = list(problems)
-        super().__init__("\n".join(printable(f"{message}; {remedy}") for _, message, remedy in self.problems))
+        super().__init__("\n".join(printable(advised(message, remedy)) for _, message, remedy in self.problems))
 
     def __reduce__(self) -> tuple[type, tuple[Sequence[tuple[str, str, str]]]]:
         return type(self), (self.problems,)
@@ -134,10 +139,10 @@ class FileError(ClutchworkError, ValueError):
 MOST_COMPARED = 500
 
 
-def near(name: object, known: Iterable[str]) -> str:
-    """`; did you mean ...?` when a known name is close to a misspelt one, else nothing."""
+def near(name: object, known: Iterable[str], rest: str = "") -> str:
+    """`; did you mean ...?` when a known name is close to a misspelt one, then the rest of the sentence."""
     found = nearest(name, known)
-    return f"; did you mean {found!r}?" if found else ""
+    return advised(f"; did you mean {found!r}?", rest) if found else rest and f"; {rest}"
 
 
 def nearest(name: object, known: Iterable[str]) -> str:

@@ -1,8 +1,19 @@
-"""Tables of text for the terminal."""
+"""Tables and counts of things for the terminal."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+
+
+def counted(count: int, plural: str) -> str:
+    """A number and what it counts: `1 event`, `2 events`, `1 shaft or mass`."""
+    return f"{count} {plural if count != 1 else ' '.join(map(_singular, plural.split()))}"
+
+
+def _singular(word: str) -> str:
+    if word == "and":
+        return "or"
+    return word.removesuffix("es") if word.endswith("sses") else word.removesuffix("s")
 
 
 def columns(lines: Sequence[Sequence[str]], right: Collection[int] = ()) -> str:

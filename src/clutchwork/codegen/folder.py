@@ -41,7 +41,7 @@ def export_c(
     settings = dict(model.simulation) if isinstance(model, Driveline) else {}
     settings |= changes | ({} if t_end is None else {"t_end": t_end})
     if "t_end" not in settings:
-        raise ValueError("no end time: give t_end, or t_end in the [simulation] table of the model file")
+        raise ValueError("no end time given: set t_end, or t_end in the [simulation] table of the model file")
     end = end_time(settings.pop("t_end"))
     made = (options or Options()).changed(settings)
     if made.times is not None:
@@ -57,7 +57,7 @@ def _refuse_large(exported: Exported) -> None:
     size = 8 * exported.instants * len(exported.columns)
     if size > MOST_MEMORY:
         words = f"{exported.instants} instants need {size / 2**20:.0f} MiB of static memory"
-        raise ValueError(f"dt is {exported.dt:g} s: {words}; take a larger dt")
+        raise ValueError(f"dt is {exported.dt:g} s: {words}; use a larger dt")
 
 
 def _write(exported: Exported, folder: Path) -> Path:

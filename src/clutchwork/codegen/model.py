@@ -200,5 +200,5 @@ def chosen(names: Sequence[str] | None, channels: Channels) -> tuple[str, ...]:
         return tuple(name for name, item in channels.items() if not _is_text(item))
     for name in names:
         if _is_text(channels[name]):
-            raise ValueError(f"{name} is a text: take {name.rpartition('.')[0]}.mode, its number")
+            raise ValueError(f"{name} is a string: use {name.rpartition('.')[0]}.mode, its number")
     return tuple(names)

@@ -68,8 +68,8 @@ def _run_parser(run: argparse.ArgumentParser) -> None:
     run.add_argument("--method", choices=sorted(METHODS), help="default rodas5p")
     run.add_argument("--dt", type=float, metavar="S", help="spacing of the output [s]; default: refined steps")
     run.add_argument("--max-step", type=float, metavar="S", help="longest step of the solver [s]")
-    run.add_argument("--ratio", metavar="A/B", help="shafts whose speed ratio is told; default: drive and load")
-    run.add_argument("--out", type=Path, metavar="DIR", help="write picture.png, trajectory.csv and events.csv there")
+    run.add_argument("--ratio", metavar="A/B", help="shafts whose speed ratio is reported; default: drive and load")
+    run.add_argument("--out", type=Path, metavar="DIR", help="folder for picture.png, trajectory.csv, events.csv")
     run.add_argument("--plot", type=Path, metavar="FILE", help="write the picture (png, svg or pdf)")
     run.add_argument("--csv", type=Path, metavar="FILE", help="write all signals")
     run.add_argument("--events", type=Path, metavar="FILE", help="write the events")
@@ -80,7 +80,7 @@ def _run_parser(run: argparse.ArgumentParser) -> None:
 def _check_parser(check: argparse.ArgumentParser) -> None:
     check.set_defaults(command=_check)
     check.add_argument("model", type=Path, help="model file, TOML or JSON")
-    check.add_argument("--ratio", metavar="A/B", help="shafts whose speed ratio is told; default: drive and load")
+    check.add_argument("--ratio", metavar="A/B", help="shafts whose speed ratio is reported; default: drive and load")
     check.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
 
 
@@ -112,7 +112,7 @@ def _run(asked: argparse.Namespace) -> int:
 
 
 def _assembled(driveline: Driveline) -> System:
-    """The system of a model; what it is warned of is told on standard error."""
+    """The system of a model; its warnings go to standard error."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         system = driveline.assemble()
@@ -131,10 +131,10 @@ def _simulated(driveline: Driveline, system: System, asked: argparse.Namespace) 
         given = getattr(asked, name)
         settings |= {} if given is None else {name: given}
     if "t_end" not in settings:
-        raise ValueError("no end time: give --t-end, or t_end in the [simulation] table of the model file")
+        raise ValueError("no end time given: set --t-end, or t_end in the [simulation] table of the model file")
     t_end = end_time(settings.pop("t_end"))
     with warnings.catch_warnings(), Bar(hidden=asked.quiet or asked.json) as bar:
-        # told by exit code and message instead
+        # the exit code and the message report it
         warnings.simplefilter("ignore", StoppedEarly)
         try:
             run = simulate(system, t_end, options=Options().changed(settings), progress=bar.show)
@@ -203,7 +203,7 @@ def _shafts(system: System, asked: str | None) -> tuple[str, str] | None:
         if upper in names and lower in names:
             return upper, lower
     missing = next((name for name in (cuts[0] if cuts else (asked,)) if name not in names), asked)
-    raise ValueError(f"--ratio {asked}: no shaft {missing!r}{near(missing, names)}; write it as input/output")
+    raise ValueError(f"--ratio {asked}: no shaft {missing!r}{near(missing, names, 'write it as input/output')}")
 
 
 def _fail(asked: argparse.Namespace, code: int, message: str, problems: Sequence[str] = ()) -> int:

@@ -1,4 +1,4 @@
-"""What the command line tells about a run or a model."""
+"""What the command line reports about a run or a model."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.assembly.wiring import wiring
-from clutchwork.base.text import columns
+from clutchwork.base.text import columns, counted
 from clutchwork.results.ratios import Gears, Phase, gears
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from clutchwork.results.trajectory import Trajectory
 
 MOST_LINES = 40
-# signals whose last value is told
+# signals whose last value is reported
 FINAL = (".speed", ".temperature")
 
 
@@ -76,8 +76,9 @@ def effort_text(run: Trajectory) -> str:
     s = run.statistics
     return (
         f"{run.time[-1]:g} s computed in {1e3 * s['core_seconds']:.3f} ms"
-        f" ({1e3 * s['seconds']:.1f} ms with all signals at {len(run)} instants),"
-        f" {s.get('steps', 0):g} steps, {s.get('rejected', 0):g} rejected, {len(run.events)} events"
+        f" ({1e3 * s['seconds']:.1f} ms with all signals at {counted(len(run), 'instants')}),"
+        f" {counted(int(s.get('steps', 0)), 'steps')}, {s.get('rejected', 0):g} rejected,"
+        f" {counted(len(run.events), 'events')}"
     )
 
 
@@ -100,7 +101,7 @@ def run_data(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
 
 def model_text(system: System, shafts: tuple[str, str] | None) -> str:
     """Size of a model, the ratios that its contacts can give, and which of these depend on each other."""
-    parts = [", ".join(f"{count} {name}" for name, count in sizes(system).items())]
+    parts = [", ".join(counted(count, name) for name, count in sizes(system).items())]
     dependent = "; ".join(" ".join(names) for names in system.dependent)
     if dependent:
         parts.append(f"depend on each other when locked together, and share their load by capacity: {dependent}")
@@ -111,7 +112,7 @@ def model_text(system: System, shafts: tuple[str, str] | None) -> str:
     if lines:
         parts.append(columns([("closed", f"{shafts[0]}/{shafts[1]}"), *lines], right={1}))
     if found.untried is not None:
-        parts.append(f"not tried: {found.untried} or more contacts closed at once, there are too many such sets")
+        parts.append(f"not tried: {found.untried} or more contacts closed at once, there are too many combinations")
     return "\n\n".join(parts)
 
 

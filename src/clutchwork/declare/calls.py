@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from clutchwork.base.errors import UseError, near, nearest
 from clutchwork.base.shown import listed, shown
+from clutchwork.base.text import counted
 from clutchwork.declare.schema import specs
 from clutchwork.declare.wanted import wanted
 
@@ -87,9 +88,9 @@ def _problems(
         rest = sorted((p for p in parameters if p.name in known), key=lambda p: p.default is not p.empty)
         yield _spare(spare, [p for p in by_place if p not in OWNERS], [p.name for p in rest if p.name not in given])
     for name in set(by_place[: len(args)]) & set(named):
-        yield f"{name} is given twice, positional and by keyword; give it once"
+        yield f"{name} is given twice, by position and by keyword; give it once"
     for name in unknown:
-        yield f"unknown field {shown(name)}{near(name, known)}; allowed: {listed(known)}"
+        yield f"unknown field {shown(name)}{near(name, known, f'known fields: {listed(known)}')}"
     for p in parameters[len(args) :]:
         lacks = p.default is p.empty and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) and p.name not in named
         # values by place are meant for some of them, and so is a name close to theirs
@@ -99,8 +100,8 @@ def _problems(
 
 def _spare(spare: tuple[Any, ...], by_place: list[str], known: list[str]) -> str:
     if by_place == ["points"] and hasattr(spare[0], "__len__"):
-        return "times and values are positional; write pairs: cw.Table([(0, 0), (1, 2e5)])"
-    values = "1 value is" if len(spare) == 1 else f"{len(spare)} values are"
-    first = f"only {' and '.join(by_place)} may be" if by_place else "none may be"
+        return "times and values are given apart; write pairs: cw.Table([(0, 0), (1, 2e5)])"
+    first = f"only {' and '.join(by_place)} is positional" if by_place else "none can be given"
     example = ", ".join(f"{name}=..." for name in known[: len(spare)])
-    return f"{values} positional, {first}; give the others by keyword{f', such as {example}' if example else ''}"
+    such = f", such as {example}" if example else ""
+    return f"{counted(len(spare), 'positional values')} too many: {first}; give them by keyword{such}"

@@ -71,9 +71,11 @@ class Options:
         """These options with some replaced; an unknown name is a UseError, a TypeError, with a near match."""
         known = [item.name for item in fields(self)]
         words = [*known, "options", "progress"]
-        found = [f"no option {name!r}{near(name, words)}" for name in changes if name not in known]
-        if found:
-            raise UseError("simulate", [*found[:-1], f"{found[-1]}; options are {', '.join(known)}"])
+        unknown = [name for name in changes if name not in known]
+        if unknown:
+            rests = [*("" for _ in unknown[1:]), f"known options: {', '.join(known)}"]
+            found = [f"unknown option {x!r}{near(x, words, rest)}" for x, rest in zip(unknown, rests, strict=True)]
+            raise UseError("simulate", found)
         return replace(self, **changes)
 
     def core_options(self) -> dict[str, float]:
@@ -137,4 +139,5 @@ def _as_number(value: object) -> float | None:
 
 
 def _not_one_of(name: str, value: object, known: Sequence[str]) -> str:
-    return "" if value in known else f"{name} is {shown(value)}{near(value, known)}; it may be {', '.join(known)}"
+    words = f"it must be one of {', '.join(known)}"
+    return "" if value in known else f"{name} is {shown(value)}{near(value, known, words)}"

@@ -1,11 +1,11 @@
-"""Numbers at the border: plain, as text with a unit, or as a table {value, unit}, turned into SI."""
+"""Numbers at the border: plain, as a string with a unit, or as a table {value, unit}, turned into SI."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import ClutchworkError, near
+from clutchwork.base.errors import ClutchworkError, advised, near
 from clutchwork.base.shown import shown
 from clutchwork.declare import units
 
@@ -17,16 +17,21 @@ if TYPE_CHECKING:
 OTHER_ZERO = ("degC", "C", "degF", "F")
 
 
+def within(unit: str) -> str:
+    """` in [N m]`; nothing for a number without a unit."""
+    return "" if unit in ("", "1") else f" in [{unit}]"
+
+
 class QuantityError(ClutchworkError, ValueError):
-    """A value that is no quantity of the wanted unit."""
+    """A value that is not a quantity of the wanted unit."""
 
     def __init__(self, message: str, value: str, remedy: str) -> None:
         self.message, self.value, self.remedy = message, value, remedy
-        super().__init__(f"{value}: {message}; {remedy}")
+        super().__init__(f"{value}: {advised(message, remedy)}")
 
 
 def in_si(value: Any, unit: str, others: tuple[str, ...] = (), factor: float = 1.0, *, whole: bool = False) -> Any:
-    """The number in SI. What is no text and no table is handed back for the checks that follow.
+    """The number in SI. What is neither a string nor a table is returned for the checks that follow.
 
     Parameters: unit, the SI unit that is wanted; others, further ones that the quantity may have; factor, to SI from
     a plain number; whole, whether an integer stays one.
@@ -46,10 +51,11 @@ def in_si(value: Any, unit: str, others: tuple[str, ...] = (), factor: float = 1
         parts = units.split(value)
         if parts is None:
             raise QuantityError(
-                "is not a number", shown(value), f"write a number in [{unit}], or a text such as '1.5 {unit}'"
+                "is not a number", shown(value), f"write a number{within(unit)}, or a string such as '1.5 {unit}'"
             )
         if not parts[1]:
-            raise QuantityError("is a text without unit", shown(value), "write the number without quotes")
+            example = "" if unit == "1" else f" or add one, such as '{parts[0]:g} {unit}'"
+            raise QuantityError("has no unit", shown(value), f"remove the quotes{example}")
         return parts[0] * factor_to_si(parts[1], unit, others, value) + 0.0
     return value if whole else _times(value, factor)
 
@@ -59,7 +65,7 @@ def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), whole: obj
     value = shown(given if whole is None else whole)
     wanted = " or ".join(f"[{name}]" for name in (unit, *others))
     if not isinstance(given, str):
-        raise QuantityError("must be a unit", value, f"write it as text, such as {unit!r}")
+        raise QuantityError("must be a unit", value, f"write it as a string, such as {unit!r}")
     try:
         factor, powers = units.parse(given)
     except ValueError as error:
@@ -67,10 +73,10 @@ def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), whole: obj
         remedy = f"give it in {wanted}"
         if word in OTHER_ZERO:
             remedy = f"{remedy}; temperatures are in K; 0 degC is 273.15 K"
-            raise QuantityError(f"is in {word}, whose zero is another", value, remedy) from None
+            raise QuantityError(f"is in {word}, which has another zero", value, remedy) from None
         raise QuantityError(f"has the unknown unit {shown(word)}{near(word, units.known())}", value, remedy) from None
     if all(powers != units.parse(name).powers for name in (unit, *others)):
-        raise QuantityError("is in a unit that does not fit", value, f"give it in {wanted}")
+        raise QuantityError("has a unit that does not fit", value, f"give it in {wanted}")
     return factor
 
 
@@ -105,14 +111,14 @@ def numbers_in_si(value: Any, spec: Spec, unit: str) -> Any:
 
 
 def _scaled(value: Any, x: float, y: float) -> Any:
-    """Pairs times factors; what is no list of pairs of numbers is handed back for the checks that follow."""
+    """Pairs times factors; what is not a list of pairs of numbers is returned for the checks that follow."""
     if not isinstance(value, list) or not all(isinstance(point, list) and len(point) == 2 for point in value):
         return value
     return [(_times(a, x), _times(b, y)) for a, b in value]
 
 
 def _times(value: Any, factor: float) -> Any:
-    """A number times a factor; true, false and what is no number stay."""
+    """A number times a factor; true, false and what is not a number stay."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
     try:

@@ -8,7 +8,7 @@ The C++ header of the same stem holds the equations; `tools/gen_registry.py` pai
 from __future__ import annotations
 
 import hashlib
-from dataclasses import MISSING, Field, dataclass, field, fields
+from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Any, TypeVar, dataclass_transform
 
@@ -60,6 +60,7 @@ class Spec:
     instead_of: str = ""  # of an alternative: the signal that it stands for
     gain: tuple[str, ...] = ()  # of a signal: units that the parameter `gain` has when it is given
     otherwise: float | None = None  # of a signal: its value when neither it nor its alternative is given
+    presses: bool = False  # of a signal: below zero it counts as zero, so that a constant below zero never acts
     flag: bool = False  # true or false in Python, 1 or 0 in the core
     whole: bool = False  # a whole number
     rising: str = ""  # of a curve: "strictly", or "weakly" where equal x mean a jump
@@ -182,6 +183,7 @@ def signal(
     gain: tuple[str, ...] = (),
     instead_of: str = "",
     otherwise: float | None = None,
+    presses: bool = False,
 ) -> Any:
     """An input: a number, a Signal, a thermal node (its temperature), a process (its first state), or (process, state).
 
@@ -189,11 +191,10 @@ def signal(
     The C++ functions get them as `at.input[i]`, in order of declaration.
 
     With `instead_of` it is another way to give the signal of that name: exactly one of them is given, or
-    none where that signal has a value `otherwise`.
+    none where that signal has a value `otherwise`. With `presses` a constant below zero is warned of.
     """
-    what = "alternative" if instead_of else "signal"
-    spec = Spec(what, unit, doc, default is None, units=units, gain=gain, instead_of=instead_of, otherwise=otherwise)
-    return _field(spec, default)
+    spec = Spec("alternative" if instead_of else "signal", unit, doc, default is None, units=units, gain=gain)
+    return _field(replace(spec, instead_of=instead_of, otherwise=otherwise, presses=presses), default)
 
 
 def law(doc: str, *, default: object = MISSING) -> Any:

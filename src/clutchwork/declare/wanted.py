@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Role, Spec
 from clutchwork.declare.speech import kinds_of
 
@@ -15,6 +16,6 @@ def wanted(spec: Spec, unit: str) -> str:
         "thermal": "a thermal node",
         "law": f"a friction law ({kinds_of(Role.LAW)})",
         "curve": f"points in [{spec.unit_x}] and [{unit}]",
-        "numbers": f"a list of numbers in [{unit}]",
-        "text": "a text",
-    }.get(spec.what, f"a value in [{unit}]")
+        "numbers": f"a list of numbers{within(unit)}",
+        "text": "a string",
+    }.get(spec.what, f"a value{within(unit)}" if within(unit) else "a number")

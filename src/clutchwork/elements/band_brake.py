@@ -25,7 +25,7 @@ class BandBrake(Heating):
     radius: float = param("m", "radius of the drum", above=0.0)
     wrap: float = param("rad", "angle over which the band lies on the drum", above=0.0, at_most=3 * tau)
     reversed: bool = flag("energises itself in backward slip", default=False)
-    force: SignalLike = signal("N", "force at the pulled end; below zero counts as zero")
+    force: SignalLike = signal("N", "force at the pulled end; below zero counts as zero", presses=True)
     tolerance: float = option(
         "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
     )

@@ -34,9 +34,17 @@ class Clutch(Heating):
     gain: float = param(
         "m3", "torque per unit of pressure and coefficient", above=0.0, units=GAIN_OF_FORCE + GAIN_OF_PRESSURE
     )
-    pressure: SignalLike | None = signal("Pa", "pressure on the piston", default=None, gain=GAIN_OF_PRESSURE)
+    pressure: SignalLike | None = signal(
+        "Pa", "pressure on the piston", default=None, gain=GAIN_OF_PRESSURE, presses=True
+    )
     normal_force: SignalLike | None = signal(
-        "N", "force on the linings, or its share", default=None, units=("1",), gain=GAIN_OF_FORCE, instead_of="pressure"
+        "N",
+        "force on the linings, or its share",
+        default=None,
+        units=("1",),
+        gain=GAIN_OF_FORCE,
+        instead_of="pressure",
+        presses=True,
     )
     tolerance: float = option(
         "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)

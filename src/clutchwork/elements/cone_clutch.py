@@ -45,7 +45,7 @@ class ConeClutch(Heating):
     inner_diameter: float | None = param("m", "smallest diameter of the contact", default=None, at_least=0.0)
     half_angle: float = param("rad", "angle between the surface and the axis", above=0.0, at_most=pi / 2, example=0.12)
     surfaces: int = param("1", "number of friction surfaces", default=1, above=0.0, whole=True)
-    force: SignalLike = signal("N", "axial force; below zero counts as zero")
+    force: SignalLike = signal("N", "axial force; below zero counts as zero", presses=True)
     tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
     locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
 

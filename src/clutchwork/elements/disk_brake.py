@@ -40,8 +40,12 @@ class DiskBrake(Heating):
     radius: float = param("m", "mean radius of the pads", above=0.0)
     bore: float = param("m", "diameter of each piston", above=0.0)
     pads: int = param("1", "number of pads", default=2, above=0.0, whole=True)
-    pressure: SignalLike | None = signal("Pa", "pressure on the pistons; below zero counts as zero", default=None)
-    normal_force: SignalLike | None = signal("N", "force on each pad", default=None, instead_of="pressure")
+    pressure: SignalLike | None = signal(
+        "Pa", "pressure on the pistons; below zero counts as zero", default=None, presses=True
+    )
+    normal_force: SignalLike | None = signal(
+        "N", "force on each pad", default=None, instead_of="pressure", presses=True
+    )
     tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
     locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
 

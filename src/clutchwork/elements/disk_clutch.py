@@ -61,8 +61,12 @@ class DiskClutch(Heating):
     threshold: float = param(
         "Pa", "pressure, or force in N, up to which it stays open", default=0.0, at_least=0.0, units=("N",)
     )
-    pressure: SignalLike | None = signal("Pa", "pressure on the piston; below zero counts as zero", default=None)
-    normal_force: SignalLike | None = signal("N", "force on the discs", default=None, instead_of="pressure")
+    pressure: SignalLike | None = signal(
+        "Pa", "pressure on the piston; below zero counts as zero", default=None, presses=True
+    )
+    normal_force: SignalLike | None = signal(
+        "N", "force on the discs", default=None, instead_of="pressure", presses=True
+    )
     drag: float = param("N m s/rad", "viscous drag coefficient", default=0.0, at_least=0.0)
     direction: str = choice(
         "slips in both directions, or only forward",
@@ -99,7 +103,11 @@ class DiskClutch(Heating):
         found += fault_problems(self.fault, self.fault_time, self.fault_signal)
         if self.thermal_mass is not None and self.heat is not None:
             found.append(
-                ("heat", "is given beside thermal_mass", "give one of them; `plates` is the node of the own mass")
+                (
+                    "heat",
+                    "cannot be given together with thermal_mass",
+                    "give one of them; `plates` is the node of the own mass",
+                )
             )
         return found
 

@@ -34,7 +34,7 @@ class DoubleShoeBrake(Heating):
         choices=("simplex", "duplex"),
         default="simplex",
     )
-    force: SignalLike = signal("N", "actuating force on each shoe; below zero counts as zero")
+    force: SignalLike = signal("N", "actuating force on each shoe; below zero counts as zero", presses=True)
     tolerance: float = option(
         "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
     )
@@ -51,7 +51,7 @@ class DoubleShoeBrake(Heating):
         limit, largest = self.locking_coefficient(), largest_coefficient(self.friction)
         if largest < limit:
             return []
-        fault = f"has the coefficient {largest:g}, at which a leading shoe locks by itself: it must be < {limit:g}"
+        fault = f"has the coefficient {largest:g}, at which a leading shoe locks up by itself: it must be < {limit:g}"
         return [("friction", fault, "lower it, or move the hinge outwards")]
 
     def locking_coefficient(self) -> float:

@@ -32,7 +32,7 @@ class PressureActuator(Component):
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.filled or self.initial_pressure == 0.0:
             return []
-        fault = f"is {self.initial_pressure:g} Pa, and the piston is not filled"
+        fault = f"is {self.initial_pressure:g} Pa, but the piston is not filled"
         return [("initial_pressure", fault, f"give {say('filled = true', 'filled=True')}")]
 
     def initial_states(self) -> tuple[float, ...]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from clutchwork.base.errors import ModelError, Problem, UseError, warn
 from clutchwork.base.shown import shown
+from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained
 from clutchwork.declare.node import HOUSING, Component, Domain, Node, Signal, ThermalNode
 from clutchwork.declare.speech import words_of_files
@@ -30,6 +31,11 @@ class Driveline:
     def __init__(self, name: str = "driveline") -> None:
         """Start an empty driveline."""
         self._model = Model(name)
+
+    def __repr__(self) -> str:
+        """Its name and what it has."""
+        has = {"shafts and masses": self.nodes, "thermal nodes": self.thermal_nodes, "elements": self.elements}
+        return f"<Driveline {shown(self.name)}: {', '.join(counted(len(all_), of) for of, all_ in has.items())}>"
 
     @property
     def name(self) -> str:
@@ -108,7 +114,7 @@ class Driveline:
         return node
 
     def add(self, element: E) -> E:
-        """Add an element and hand it back; UseError, a TypeError, for what is none."""
+        """Add an element and return it; UseError, a TypeError, for anything else."""
         if not isinstance(element, Component):
             raise UseError("d.add", [f"{shown(element)} is not an element; add one such as cw.Clutch(...)"])
         self._model.elements.append(element)

@@ -3,7 +3,7 @@
     name = "two discs"
     [[shaft]]
     name = "engine"
-    inertia = 0.2                       # SI, or a text with a unit: "2000 kg cm2"
+    inertia = 0.2                       # SI, or a string with a unit: "2000 kg cm2"
     [[element]]
     name = "c1"
     type = "clutch"                     # kind of element, then its ports and parameters
@@ -34,9 +34,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from clutchwork.base.errors import ModelError, ModelFileError, Problem
+from clutchwork.base.errors import ModelError, ModelFileError, Problem, nearest
 from clutchwork.base.regular import read_regular, reason
-from clutchwork.base.shown import shortened, shown
+from clutchwork.base.shown import listed, shortened, shown
 from clutchwork.declare.node import Domain
 from clutchwork.declare.speech import words_of_files
 from clutchwork.files.lines import Lines
@@ -48,6 +48,7 @@ from clutchwork.model.thermal import node_kind
 
 # more belongs into CSV files
 MOST_BYTES = 10_000_000
+ENDINGS = (".toml", ".json")
 
 
 def load(path: str | Path) -> Model:
@@ -56,15 +57,28 @@ def load(path: str | Path) -> Model:
     try:
         text = read_regular(path, MOST_BYTES).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        why = reason(error) if isinstance(error, OSError) else "it is not text in UTF-8"
-        problem = Problem("file", "", f"cannot be read: {why}", remedy="give a TOML or JSON file in UTF-8")
+        why = reason(error) if isinstance(error, OSError) else "it is not UTF-8 text"
+        missing = isinstance(error, FileNotFoundError)
+        remedy = _elsewhere(path) if missing else "give a TOML or JSON file in UTF-8"
+        problem = Problem("file", "", "does not exist" if missing else f"cannot be read: {why}", remedy=remedy)
         raise ModelFileError([problem], str(path)) from None
     return _from_text(path, text.replace("\r\n", "\n"))
 
 
+def _elsewhere(path: Path) -> str:
+    """Where a file that is missing may be."""
+    if not path.parent.is_dir():
+        return f"check the path: there is no folder {shown(str(path.parent))}"
+    others = {other.stem: other.name for other in sorted(path.parent.iterdir()) if other.suffix.lower() in ENDINGS}
+    found = nearest(path.stem, others)
+    if found:
+        return f"did you mean {others[found]!r}?"
+    return f"check the path; in its folder: {listed([*others.values()][:5])}" if others else "check the path"
+
+
 def _from_text(path: Path, text: str) -> Model:
-    if path.suffix.lower() not in (".toml", ".json"):
-        problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename it")
+    if path.suffix.lower() not in ENDINGS:
+        problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename the file")
         raise ModelError([problem], str(path))
     with tolerable(str(path)):
         data = _parsed(path, text)
@@ -97,13 +111,13 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     made: dict[str, Any] = {}
     for key, value in pairs:
         if key in made:
-            raise ValueError(f"key {shown(key)} stands twice in one object")
+            raise ValueError(f"key {shown(key)} appears twice in one object")
         made[key] = value
     return made
 
 
 def _no_constant(name: str) -> float:
-    raise ValueError(f"{name} is not a number of a model file")
+    raise ValueError(f"{name} is not allowed in a model file")
 
 
 def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines | None = None) -> Model:
@@ -128,7 +142,7 @@ def save(model: Model, path: str | Path) -> None:
     elif path.suffix.lower() == ".toml":
         text = toml(data)
     else:
-        problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename it")
+        problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename the file")
         raise ModelError([problem], str(path))
     path.write_text(text, encoding="utf-8")
 
@@ -155,4 +169,4 @@ def to_dict(model: Model, *, folder: str | Path | None = None, embed: bool = Fal
 def _fix(words: str) -> str:
     """The place in a file that a parser complains of, to be fixed."""
     found = re.search(r"line (\d+),? column (\d+)", words)
-    return f"fix line {found[1]}, column {found[2]}" if found else "fix the text there"
+    return f"fix line {found[1]}, column {found[2]}" if found else "fix the syntax"

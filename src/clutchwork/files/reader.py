@@ -52,7 +52,7 @@ class Reader(Values):
         self._unknown(data, TOP, At("file", ""))
         if data.get("format", FORMAT) != FORMAT:
             remedy = f"this version reads format {FORMAT}"
-            self._report(At("file", "format"), "is not known", shown(data["format"]), remedy)
+            self._report(At("file", "format"), "is an unknown format", shown(data["format"]), remedy)
         model = Model(self._text(data, "name", At("file", ""), "driveline"))
         for kind, domain in (("shaft", Domain.ROTATION), ("mass", Domain.TRANSLATION)):
             for place, entry in self._entries(data, kind):
@@ -75,7 +75,7 @@ class Reader(Values):
         value = data.get(key, default)
         if isinstance(value, str) and value:
             return value
-        message = "must be a text" if key in data else "is missing"
+        message = "must be a string" if key in data else "is missing"
         self._report(at.inner(key), message, shown(value) if key in data else "", f"give a {key}")
         return default
 
@@ -117,8 +117,8 @@ class Reader(Values):
         kind = self._text(entry, "type", At(path, ""))
         before = len(self.problems)
         if kind and kind not in known:
-            remedy = f"known are {listed(known)}"
-            self._report(At(path, "type"), "is not known" + near(kind, known), shown(kind), remedy)
+            remedy = f"known types: {listed(known)}"
+            self._report(At(path, "type"), "is an unknown type" + near(kind, known), shown(kind), remedy)
         elif kind:
             values = self._values(known[kind], entry, At(element_path(name, known[kind]), ""), ("name", "type"))
             if name and len(self.problems) == before:
@@ -130,7 +130,7 @@ class Reader(Values):
     def _simulation(self, data: Any) -> dict[str, Any]:
         at = At("simulation", "")
         if not isinstance(data, Mapping):
-            return self._report(at, "must be a table", shown(data), "write [simulation] above its lines") and {}
+            return self._report(at, "must be a table", shown(data), "write [simulation] above its keys") and {}
         self._unknown(data, SIMULATION, at)
         made = {}
         for key, spec in SIMULATION.items():
@@ -147,5 +147,9 @@ def _simulation_problems(value: Any, spec: Spec, at: At) -> list[Problem]:
 
     found = list(CHECKS[spec.what](value, spec, at))
     if spec.what == "text" and not found and value not in METHODS:
-        found.append(at.problem("is not known" + near(value, METHODS), shown(value), f"known are {', '.join(METHODS)}"))
+        found.append(
+            at.problem(
+                "is an unknown method" + near(value, METHODS), shown(value), f"known methods: {', '.join(METHODS)}"
+            )
+        )
     return found

@@ -34,8 +34,8 @@ class Values:
     def _unknown(self, data: Mapping[str, Any], known: Any, at: At) -> None:
         for key in data:
             if key not in known:
-                remedy = f"known are {listed(known)}"
-                self._report(at.inner(str(key)), "is not known here" + near(key, known), remedy=remedy)
+                remedy = f"known keys: {listed(known)}"
+                self._report(at.inner(str(key)), "is an unknown key" + near(key, known), remedy=remedy)
 
     def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
         """Values of the fields of a declaration, in SI; mistakes are reported."""
@@ -62,7 +62,7 @@ class Values:
         if spec.what == "numbers":
             return self._converted(lambda: numbers_in_si(value, spec, at.unit), at)
         if spec.what == "function":
-            return self._report(at, "cannot stand in a model file", remedy="give it in Python")
+            return self._report(at, "is not allowed in a model file", remedy="build this model in Python")
         if spec.what == "text" or spec.flag or spec.choices:
             return value
         return self._number(value, spec, at)
@@ -84,7 +84,7 @@ class Values:
         if part is not None:
             return part
         what = "shaft" if spec.what == "port" else "thermal node"
-        remedy = f"known are {listed(known)}" if known else "add one: [[thermal]] or [[ambient]]"
+        remedy = f"known {what}s: {listed(known)}" if known else "add one: [[thermal]] or [[ambient]]"
         return self._report(at, f"is not a {what} of this model" + near(value, known), shown(value), remedy)
 
     def _other(self, value: Any, at: At) -> Any:
@@ -94,22 +94,23 @@ class Values:
         found = found or self.elements.get(name) or self.nodes.get(name)
         if name in self.elements and found is None:
             # its own mistakes are reported where it stands
-            return BROKEN if self.elements.broken(name) else self._report(at, "leads back to itself", shown(name))
+            return BROKEN if self.elements.broken(name) else self._report(at, "refers back to itself", shown(name))
         if found is None:
             known = [*self.thermal, *self.elements, *self.nodes]
-            return self._report(at, "is not known" + near(name, known), shown(name), f"known are {listed(known)}")
+            message = "is not a thermal node, element or shaft of this model" + near(name, known)
+            return self._report(at, message, shown(name), f"known names: {listed(known)}")
         return found if isinstance(value, str) else referred(value, found)
 
     def _typed(self, value: Any, role: Role, at: At, taken: tuple[str, ...] = ("type",)) -> Any:
         """A law or a signal from a table with its type."""
         known = REGISTRY[role]
         if not isinstance(value, Mapping) or "type" not in value:
-            remedy = f'write {{type = "...", ...}} with one of {", ".join(known)}'
+            remedy = f'write {{type = "...", ...}}; known types: {listed(known)}'
             return self._report(at, f"must be a table with the type of a {role.value}", shown(value), remedy)
         kind = value["type"]
         if not isinstance(kind, str) or kind not in known:
-            remedy = f"known are {listed(known)}"
-            return self._report(at.inner("type"), "is not known" + near(kind, known), shown(kind), remedy)
+            remedy = f"known types: {listed(known)}"
+            return self._report(at.inner("type"), "is an unknown type" + near(kind, known), shown(kind), remedy)
         before = len(self.problems)
         values = self._values(known[kind], value, at, taken)
         return known[kind](**values) if len(self.problems) == before else BROKEN
@@ -124,8 +125,8 @@ class Values:
         if isinstance(signal, Column):
             signal = replace(signal, scale=signal.scale * place.factor, folder=self.folder)
             if "unit" in value and place.factor != 1.0 and (unit := replace(signal, scale=1.0).unit()):
-                fault = f"is given beside the unit [{unit}] of the column"
-                return self._report(at.inner("unit"), fault, shown(value["unit"]), "leave out unit")
+                fault = f"cannot be given: the head of the column has the unit [{unit}]"
+                return self._report(at.inner("unit"), fault, shown(value["unit"]), "remove unit")
         return BROKEN if factor is BROKEN else signal
 
 

@@ -1,4 +1,4 @@
-"""`clutchwork fit`: arguments, and what is told and written."""
+"""`clutchwork fit`: arguments, report and files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def add_command(subparsers: Any) -> None:
     fit = subparsers.add_parser(
         "fit",
         help="parameters of a friction law from measured slip and torque",
-        epilog="Exit code 1: the samples do not determine all free parameters; what they say is told and written.",
+        epilog="Exit code 1: the samples do not determine all free parameters; the results are written all the same.",
     )
     fit.set_defaults(command=fit_command)
     fit.add_argument("file", type=Path, help="CSV file; a unit in brackets behind the name of a column is converted")
@@ -55,7 +55,7 @@ def add_command(subparsers: Any) -> None:
 
 
 def fit_command(asked: argparse.Namespace) -> int:
-    """Fit, tell, write; the exit code."""
+    """Fit, report, write; the exit code."""
     from clutchwork.fit.law import fit_csv
 
     result = fit_csv(
@@ -133,7 +133,7 @@ def _pairs(option: str, text: str) -> Iterator[tuple[str, str]]:
     for part in text.split(","):
         name, sign, value = (word.strip() for word in part.partition("="))
         if not (name and sign and value):
-            raise ValueError(f"{option}: {part.strip()!r} is no name=value; write them with commas between")
+            raise ValueError(f"{option}: {part.strip()!r} is not name=value; separate the pairs with commas")
         yield name, value
 
 
@@ -160,7 +160,7 @@ def _number(option: str, text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise ValueError(f"{option}: {text!r} is no number") from None
+        raise ValueError(f"{option}: {text!r} is not a number") from None
 
 
 def _bounds(text: str | None) -> Bounds | None:
@@ -170,7 +170,7 @@ def _bounds(text: str | None) -> Bounds | None:
     for name, value in _pairs("--bounds", text):
         low, colon, high = value.partition(":")
         if not colon:
-            raise ValueError(f"--bounds: {value!r} of {name} is no low:high; leave a side empty where there is none")
+            raise ValueError(f"--bounds: {value!r} of {name} is not low:high; leave a side empty for no bound")
         made[name] = (_number("--bounds", low) if low else None, _number("--bounds", high) if high else None)
     return made
 

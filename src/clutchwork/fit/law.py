@@ -105,7 +105,7 @@ def _fit(
 
 def _check(law: Law, rest: float | None, confidence: float) -> None:
     if not isinstance(law, LawBase):
-        raise FitError("law", f"is {law!r}, no friction law", "give one with its start values")
+        raise FitError("law", f"is {law!r}, which is not a friction law", "give one with its start values")
     found = faults(law)
     if found:
         raise FitError("law", f"has start values that do not fit: {found[0]}", "correct them")

@@ -13,6 +13,7 @@ from clutchwork.fit.failure import FitError
 Array = NDArray[np.float64]
 
 FEWEST = 5
+GIVE_ROW = "give a one-dimensional array of numbers"
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +63,9 @@ def _row(name: str, values: Any) -> Array:
     try:
         row = np.array(values, dtype=float)
     except (TypeError, ValueError):
-        raise FitError(name, "holds something that is no number", "give a row of numbers") from None
+        raise FitError(name, "contains something that is not a number", GIVE_ROW) from None
     if row.ndim != 1:
-        raise FitError(name, f"has {row.ndim} dimensions", "give a row of numbers")
+        raise FitError(name, f"has {row.ndim} dimensions", GIVE_ROW)
     return row
 
 
@@ -78,7 +79,7 @@ def _number(name: str, value: Any, unit: str) -> float:
 def _finite(name: str, row: Array) -> None:
     bad = np.flatnonzero(~np.isfinite(row))
     if len(bad):
-        raise FitError(name, f"is {row[bad[0]]} at sample {bad[0]}", "leave out samples that were not measured")
+        raise FitError(name, f"is {row[bad[0]]} at sample {bad[0]}", "remove samples that were not measured")
 
 
 def _sensible(rows: dict[str, Array]) -> None:
@@ -95,7 +96,7 @@ def _sensible(rows: dict[str, Array]) -> None:
         raise FitError("time", f"does not rise at sample {at} ({time[at]:g} s)", "sort the samples by time")
     if np.any(load < 0.0):
         at = int(np.argmin(load))
-        raise FitError("load", f"is {load[at]:g} N m at sample {at}", "give the load as a size, >= 0")
+        raise FitError("load", f"is {load[at]:g} N m at sample {at}", "give the load as a magnitude, >= 0")
     if not np.any(load):
         raise FitError("load", "is always zero", "give the load that presses the contact together")
     if not np.any(slip):

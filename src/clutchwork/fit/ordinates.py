@@ -98,5 +98,5 @@ def check_inside(samples: Measurement, law: Law) -> None:
             shown = "m/s" if samples.translation and name == "slip" else unit
             known, ends = axis(law, unit), (float(np.min(values)), float(np.max(values)))
             fault = f"is {ends[0]:g} to {ends[1]:g} {shown}, the table of the law {known[0]:g} to {known[-1]:g}"
-            remedy = 'leave out samples beyond it, or set extrapolation to "linear" or "nearest"'
+            remedy = 'remove samples beyond it, or set extrapolation to "linear" or "nearest"'
             raise FitError(name, fault, remedy)

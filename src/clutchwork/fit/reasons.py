@@ -33,7 +33,7 @@ def causes(known: Information, spread: Array, items: Items) -> list[str]:
         involved = part > INVOLVED * float(np.max(part))
         names = [item.name for item, is_in in zip(items, involved, strict=True) if is_in]
         for place in np.flatnonzero(involved) if len(names) > 1 else ():
-            made[place] = f"the samples tell only a combination of {', '.join(names)}"
+            made[place] = f"the samples determine only a combination of {', '.join(names)}"
     for place in np.flatnonzero(known.silent):
         for row in np.flatnonzero(np.abs(spread[:, place]) > 0.5):
             made[row] = "no sample depends on it"
@@ -44,10 +44,10 @@ def at_end(item: Unknown, value: float, ends: tuple[float, float]) -> str:
     """Whether a parameter went as far as it could."""
     reach = 1e-6 * max(abs(item.start), abs(value))
     if item.over and value - ends[0] <= reach:
-        return "it rests on its bound, the kinetic coefficient"
+        return "it lies on its bound, the kinetic coefficient"
     if any(abs(value - end) <= reach for end in ends):
-        return f"it rests on its bound {item.bound}"
-    return f"it ran away to {value:.3g}" if any(abs(value - end) <= reach for end in (item.lower, item.upper)) else ""
+        return f"it lies on its bound {item.bound}"
+    return f"it diverged to {value:.3g}" if any(abs(value - end) <= reach for end in (item.lower, item.upper)) else ""
 
 
 def wide(item: Unknown, code: float, half: float, confidence: float) -> str:
@@ -60,7 +60,7 @@ def wide(item: Unknown, code: float, half: float, confidence: float) -> str:
     if half <= WIDE_SHARE * abs(code):
         return ""
     if abs(code) < half:
-        return f"it cannot be told from zero, its {share} is +- {half:.3g}"
+        return f"it cannot be distinguished from zero, its {share} is +- {half:.3g}"
     return f"its {share} is +- {100 * half / abs(code):.3g} %"
 
 

@@ -43,7 +43,11 @@ class Parameter:
         return not self.reason
 
     def __str__(self) -> str:
-        open_ends = [self.reason, self.direction and f"hardly seen: {self.direction}", self.experiment]
+        open_ends = [
+            self.reason,
+            self.direction and f"the samples hardly see {self.direction}",
+            self.experiment,
+        ]
         return f"{self.name} is not determined: " + "; ".join(part for part in open_ends if part)
 
 
@@ -85,10 +89,8 @@ class FitResult(Fitted):
     @property
     def message(self) -> str:
         """What stands in the way of using the values, one line each; empty when nothing does."""
-        lines = (
-            [] if self.converged else ["the search did not end: start nearer to the solution or free fewer parameters"]
-        )
-        lines += [f"the fitted values break a rule: {fault}" for fault in self.faults]
+        lines = [] if self.converged else ["the search did not converge: start closer to it or free fewer parameters"]
+        lines += [f"the fitted values are not valid: {fault}" for fault in self.faults]
         return "\n".join(lines + [str(parameter) for parameter in self.undetermined])
 
     @property
@@ -99,12 +101,12 @@ class FitResult(Fitted):
             lines.append("the torque was given against the slip, as it acts on the follower; its sign was turned")
         if self.against > AGAINST:
             lines.append(
-                f"in {100 * self.against:.2g} % of the samples that slide the torque drives in place of braking: give"
-                f" `rest` above the noise of the slip, or take out an offset; now it is {self.rest:.3g}"
+                f"in {100 * self.against:.2g} % of the samples that slide the torque drives instead of braking: give"
+                f" `rest` above the noise of the slip, or remove an offset; now it is {self.rest:.3g}"
             )
         if self.alike:
             lines.append(
-                f"neighbouring residuals are alike (correlation {self.alike:.2f}): the law misses something or the"
+                f"neighbouring residuals are correlated ( {self.alike:.2f}): the law misses something or the"
                 " samples were filtered; the intervals are widened for it"
             )
         return "\n".join(lines)

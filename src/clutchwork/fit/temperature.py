@@ -25,10 +25,12 @@ def at_temperature(samples: Measurement, law: Law) -> Measurement:
     needed = [name for names, _ in inputs(type(law)) for name in names[:1]]
     for name in needed:
         if name != TEMPERATURE:
-            raise FitError(name, f"drives {kind}, and a fit knows no signals but the temperature", "fit another law")
+            raise FitError(
+                name, f"drives {kind}, and a fit supports no signal other than the temperature", "fit another law"
+            )
     if samples.temperature is not None:
         if not needed:
-            raise FitError(TEMPERATURE, f"is given, and {kind} does not depend on it", "leave it out")
+            raise FitError(TEMPERATURE, f"is given, and {kind} does not depend on it", "remove it")
         return samples
     if not needed:
         return samples

@@ -123,10 +123,10 @@ def _unknowns(law: Law, name: str, bounds: Bounds, translation: bool) -> list[Un
     known = adjustable(type(law))
     if name not in known:
         remedy = f"parameters are {', '.join(known)}{near(name, known)}"
-        raise FitError("free", f"names {name!r}, which {type(law).__name__} has not", remedy)
+        raise FitError("free", f"names {name!r}, which is not a fittable parameter of {type(law).__name__}", remedy)
     fault = fixed(law, name)
     if fault:
-        raise FitError("free", f"names {name!r}, which this law does not let vary: {fault}", "leave it out")
+        raise FitError("free", f"names {name!r}, which this law does not let vary: {fault}", "remove it")
     spec = known[name]
     unit = spec.units[0] if translation and spec.units else spec.unit
     return unknowns_of(law, name, spec, unit, bounds)

@@ -29,7 +29,7 @@ class CoefficientTable(Law):
         if self.extrapolation == "error":
             return slip_axis("kinetic", self.kinetic[0][0], "rad/s")
         if self.sliding() < 0.0:
-            fault = f"continued linearly is {self.sliding():g} at 0 rad/s, must be >= 0"
+            fault = f"is {self.sliding():g} at 0 rad/s when it is extrapolated linearly, must be >= 0"
             return [("kinetic", fault, 'give a point at 0 rad/s, or extrapolation "nearest"')]
         return []
 

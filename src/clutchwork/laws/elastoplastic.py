@@ -47,7 +47,7 @@ class ElastoPlastic(StribeckCurve):
             return [("elastic", f"is {self.elastic:g}, not below {upper}", "lower it; 0.7 kinetic/stiffness is common")]
         if self.plastic > steady * (1 + ROUND_OFF):
             fault = f"is {self.plastic:g}, above the steady deflection kinetic/stiffness = {steady:g}"
-            return [("plastic", fault, "lower it, or leave it out")]
+            return [("plastic", fault, "lower it, or remove it")]
         return []
 
     def advice(self) -> Found:

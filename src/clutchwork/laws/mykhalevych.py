@@ -48,8 +48,8 @@ class Mykhalevych(Law):
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = static_problems(self.static, self.kinetic)
         if self.reset != "saturate" and self.range != 3.0:
-            fault = f"is {self.range:g} with reset {self.reset!r}, which has none"
-            found.append(("range", fault, 'leave it out, or give reset "saturate"'))
+            fault = f"is {self.range:g}, but reset {self.reset!r} has no range"
+            found.append(("range", fault, 'remove it, or give reset "saturate"'))
         return found
 
     def advice(self) -> Found:

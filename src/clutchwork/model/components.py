@@ -14,7 +14,8 @@ from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.declare.speech import path_of
 from clutchwork.model.fields import object_problems
-from clutchwork.model.numbers import At
+from clutchwork.model.numbers import At, as_float
+from clutchwork.signals.constant import Constant
 
 
 def component_problems(component: Component) -> Iterator[Problem]:
@@ -44,7 +45,9 @@ def _beyond_numbers(component: Any, at: At) -> Iterator[Problem]:
             if not all(map(isfinite, (*starts, *scales))) or 0.0 in scales:
                 raise OverflowError
     except ArithmeticError:
-        yield at.problem("has values from which no number can be computed", remedy="correct those of unusual size")
+        yield at.problem(
+            "has values too large or too small to compute with", remedy="correct the values of unusual magnitude"
+        )
 
 
 def locked_problems(contact: Any, at: At) -> Iterator[Problem]:
@@ -53,11 +56,28 @@ def locked_problems(contact: Any, at: At) -> Iterator[Problem]:
     if isinstance(law, Law) and not law.sticks and not contact.one_way and contact.locked:
         known: Any = REGISTRY[Role.LAW]
         sticking = ", ".join(kind for kind in known if known[kind].sticks)
-        remedy = f"leave it out, or take a law that sticks: {sticking}"
+        remedy = f"remove it, or use a law that sticks: {sticking}"
         yield at.inner("locked").problem("cannot hold with a law that never locks", value="True", remedy=remedy)
 
 
 def component_advice(component: Component) -> Iterator[Problem]:
+    """What an element and its friction law allow and is rarely wanted."""
+    yield from _never_presses(component)
+    yield from _law_advice(component)
+
+
+def _never_presses(component: Component) -> Iterator[Problem]:
+    """A constant load below zero: a table may dip below zero by an offset, a constant can only have a wrong sign."""
+    for item, spec in specs(type(component), "signal", "alternative"):
+        given = getattr(component, item.name)
+        load = given.value if isinstance(given, Constant) else given
+        if spec.presses and isinstance(load, Real) and load < 0.0:
+            message = "never presses: a load below zero counts as zero"
+            remedy = "give zero or a positive value"
+            yield Problem(path_of(component), item.name, message, f"{as_float(load):g} {spec.unit}", remedy)
+
+
+def _law_advice(component: Component) -> Iterator[Problem]:
     """What the friction law of an element allows and is rarely wanted; nothing where the law has mistakes."""
     law, place = getattr(component, "friction", None), At(path_of(component), "friction")
     if not isinstance(law, Law) or any(object_problems(law, place)):
@@ -66,7 +86,9 @@ def component_advice(component: Component) -> Iterator[Problem]:
     try:
         found = law.advice()
     except ArithmeticError:
-        yield place.problem("has values from which no number can be computed", remedy="correct those of unusual size")
+        yield place.problem(
+            "has values too large or too small to compute with", remedy="correct the values of unusual magnitude"
+        )
         return
     for name, message, remedy in found:
         given = getattr(law, name)
@@ -84,16 +106,17 @@ def connection_problems(component: Component, nodes: Sequence[Node]) -> Iterator
     for name, node in joined.items():
         if not node.fixed and id(node) not in known:
             found = near(node.name, [n.name for n in nodes if n.name != node.name])
-            yield at.inner(name).problem("is of another driveline", shown(node.name), f"create it in this one{found}")
+            yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
     moving = {name: node for name, node in joined.items() if not node.fixed}
     if not moving:
-        yield at.problem("joins nothing but the housing", remedy="attach a port to a shaft")
+        yield at.problem("is attached to the housing alone", remedy="attach a port to a shaft")
     elif len(joined) == 2 and len({id(node) for node in joined.values()}) == 1:
         names = " and ".join(joined)
         yield at.problem(
-            f"{names} are both on {shown(next(iter(joined.values())).name)}", remedy="attach them to two shafts"
+            f"{names} are both attached to {shown(next(iter(joined.values())).name)}",
+            remedy="attach them to two shafts",
         )
     free = [name for _item, spec in specs(type(component), "port") if not spec.domain for name in [_item.name]]
     if len({moving[name].domain for name in free if name in moving}) > 1:
         kinds = ", ".join(f"{name} is in {moving[name].domain.value}" for name in free if name in moving)
-        yield at.problem(f"joins a shaft and a mass: {kinds}", remedy="put a `RollingWheel` between them")
+        yield at.problem(f"connects a shaft and a mass: {kinds}", remedy="put a `RollingWheel` between them")

@@ -10,6 +10,7 @@ from typing import Any
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import shown
 from clutchwork.declare.node import Component, Domain, Law, Node, Signal, ThermalNode, is_reference
+from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Role, Spec, inputs, specs
 from clutchwork.declare.speech import kinds_of, say
 from clutchwork.declare.wanted import wanted
@@ -38,7 +39,9 @@ def object_problems(thing: Any, at: At) -> Iterator[Problem]:
             for name, message, remedy in rules():
                 yield at.inner(name).problem(message, remedy=remedy)
         except ArithmeticError:
-            yield at.problem("has values from which no number can be computed", remedy="correct those of unusual size")
+            yield at.problem(
+                "has values too large or too small to compute with", remedy="correct the values of unusual magnitude"
+            )
 
 
 def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
@@ -58,17 +61,19 @@ def _choice_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[P
     for names, spec in inputs(cls):
         given = [name for name in names if values.get(name) is not None]
         if len(names) > 1 and len(given) > 1:
-            yield at.inner(given[1]).problem(f"is given beside {given[0]!r}", remedy="give only one of them")
+            yield at.inner(given[1]).problem(
+                f"cannot be given together with {given[0]!r}", remedy="give only one of them"
+            )
         if len(names) > 1 and not given and spec.otherwise is None:
             choice = " or ".join(names)
-            yield at.inner(names[0]).problem("is missing", remedy=f"give {choice}: {spec.doc} [{spec.unit}]")
+            yield at.inner(names[0]).problem("is missing", remedy=f"give {choice}: {spec.doc}{within(spec.unit)}")
 
 
 def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if spec.choices:
         if value not in spec.choices:
-            message = "is not known" + near(value, spec.choices)
-            yield at.problem(message, value=shown(value), remedy=f"known are {', '.join(spec.choices)}")
+            message = "is an unknown choice" + near(value, spec.choices)
+            yield at.problem(message, value=shown(value), remedy=f"choose one of {', '.join(spec.choices)}")
     elif not spec.flag:
         yield from number_problems(value, spec, at)
     elif not isinstance(value, bool) and value not in (0, 1):
@@ -111,7 +116,7 @@ def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
             remedy = say('write {type = "table", points = [[time, value], ...]}', "wrap it: cw.Table([...])")
         if callable(value):
             remedy = "a function is a controller: give cw.Sampled(function, period), with the period in s"
-        yield at.problem(f"must be a number in [{at.unit}] or a signal", value=shown(value), remedy=remedy)
+        yield at.problem(f"must be a number{within(at.unit)} or a signal", value=shown(value), remedy=remedy)
 
 
 def _law(value: Any, _: Spec, at: At) -> Iterator[Problem]:
@@ -146,7 +151,7 @@ def _peak(law: Any, at: At) -> Iterator[Problem]:
 
 def _text(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not isinstance(value, str) or not value:
-        yield at.problem("must be a text", value=shown(value), remedy=spec.doc)
+        yield at.problem("must be a string", value=shown(value), remedy=spec.doc)
 
 
 def _function(value: Any, spec: Spec, at: At) -> Iterator[Problem]:

@@ -89,7 +89,7 @@ def _contradictions(model: Mechanism, rows: list[RigidRow], echelon: Echelon) ->
             continue
         verb = "contradict each other: they hold" if len(guilty) > 1 else "holds"
         remedy = "remove one of them or correct a ratio" if len(guilty) > 1 else "use the housing in place of the shaft"
-        message = f"{verb} {' and '.join(names)} still for ever"
+        message = f"{verb} {' and '.join(names)} at rest permanently"
         yield Problem(_owners(rows, guilty), "", message, remedy=remedy)
     for _, left in echelon.spare:
         if left:
@@ -104,7 +104,7 @@ def _owners(rows: list[RigidRow], places: Sequence[int]) -> str:
 def _redundant(rows: list[RigidRow], echelon: Echelon) -> list[str]:
     """Sums of rows that came out as zero."""
     sums = [_owners(rows, sorted(origin)) for origin, left in echelon.spare if not left]
-    return [f"{owners}: one of them repeats what the others say" for owners in sums]
+    return [f"{owners}: one of them is redundant" for owners in sums]
 
 
 def _choice_problems(model: Mechanism, made: Kinematics, wanted: Sequence[str]) -> Iterator[Problem]:
@@ -117,7 +117,7 @@ def _choice_problems(model: Mechanism, made: Kinematics, wanted: Sequence[str]) 
         if name not in free:
             others = [names[column] for column in made.speeds[names.index(name)] if column < len(names)]
             message = f"follows from {', '.join(others) or 'the prescribed speeds'}"
-            yield Problem("independent", "", message, shown(name), "leave it out")
+            yield Problem("independent", "", message, shown(name), "remove it")
     missing = [name for name in free if name not in wanted]
     if missing:
         yield Problem("independent", "", f"misses {', '.join(missing)}", remedy=f"{len(free)} speeds are independent")

@@ -78,6 +78,6 @@ def problems(model: Mechanism, made: Kinematics, incomplete: frozenset[str]) -> 
             message = f"is missing at {' and '.join(contacts)}, whose torque jumps"
             yield Problem(model.node_label(speed), quantity, message, remedy=f"give it {more}")
         elif speed not in damped:
-            remedy = f"give it {more}, or join it by a gear or a spring with damping to one that has some"
+            remedy = f"give it {more}, or connect it by a gear or a damped spring to a shaft that has some"
             message = "is missing, and nothing else determines its motion"
             yield Problem(model.node_label(speed), quantity, message, remedy=remedy)

@@ -10,6 +10,7 @@ from typing import Any
 
 from clutchwork.base.errors import Problem
 from clutchwork.base.shown import listed, shown
+from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Spec
 
 
@@ -34,18 +35,17 @@ class At:
 def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A finite number within its bounds."""
     if isinstance(value, bool) or not isinstance(value, Real):
-        remedy = f"write the number alone, in {at.unit}" if at.unit not in ("", "1") else "write the number alone"
-        yield at.problem(f"must be a number in [{at.unit}]", value=shown(value), remedy=remedy)
+        yield at.problem(f"must be a number{within(at.unit)}", value=shown(value), remedy="write a plain number")
         return
-    # the unit of a bare number says nothing beside it
+    # the unit 1 of a bare number adds nothing
     unit = "" if at.unit == "1" else at.unit
     number, given = as_float(value), f"{shown(value) if isinstance(value, int) else as_float(value)} {unit}".strip()
     if not isfinite(number):
-        yield at.problem("must be finite", value=given, remedy="give a number")
+        yield at.problem("must be finite", value=given, remedy="give a finite number")
     elif not spec.allows(number):
-        yield at.problem(f"must be {spec.bound} {unit}".rstrip(), value=given, remedy=_meaning(spec))
+        yield at.problem(f"must be {spec.bound} {unit}".rstrip(), value=given, remedy=_instead(number, spec))
     elif spec.whole and number != int(number):
-        yield at.problem("must be a whole number", value=given, remedy=_meaning(spec))
+        yield at.problem("must be a whole number", value=given, remedy=_for("round it", spec))
 
 
 def as_float(value: Real) -> float:
@@ -56,8 +56,18 @@ def as_float(value: Real) -> float:
         return inf
 
 
-def _meaning(spec: Spec) -> str:
-    return f"it is the {spec.doc}" if spec.doc else "correct it"
+def _instead(number: float, spec: Spec) -> str:
+    """What to give in place of a number beyond a bound."""
+    if spec.above == 0.0 and number <= 0.0:
+        return _for("give a positive value", spec)
+    if spec.at_least == 0.0 and number < 0.0:
+        return _for("give zero or a positive value", spec)
+    low = spec.above if spec.at_least is None else spec.at_least
+    return _for("raise it" if low is not None and number <= low else "lower it", spec)
+
+
+def _for(remedy: str, spec: Spec) -> str:
+    return f"{remedy}: {spec.doc}" if spec.doc else remedy
 
 
 def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
@@ -75,9 +85,9 @@ def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         place = At(at.path, f"{at.quantity}, number {number}", at.unit)
         found = list(number_problems(item, spec, place))
         if not found and spec.rising == "strictly" and before is not None and float(item) <= before:
-            fault = "comes after" if float(item) < before else "stands twice, after"
-            message, given = f"{fault} {before:g} {at.unit}", f"{float(item):g} {at.unit}"
-            found = [place.problem(message, value=given, remedy="sort the numbers; each must be above the one before")]
+            message = f"comes after {before:g} {at.unit}" if float(item) < before else "appears twice"
+            given, remedy = f"{float(item):g} {at.unit}", "sort the numbers; each must be above the one before"
+            found = [place.problem(message, value=given, remedy=remedy)]
         if found:
             yield from found
             return
@@ -120,7 +130,7 @@ def _order(before: Any, point: Any, spec: Spec, at: At) -> Iterator[Problem]:
     (x, y), (x_next, y_next) = ((float(a), float(b)) for a, b in (before, point))
     given = f"{x_next:g} {spec.unit_x}"
     if x_next < x or (x_next == x and spec.rising == "strictly"):
-        fault = "comes after" if x_next < x else "stands twice, after"
-        yield at.problem(f"{fault} {x:g} {spec.unit_x}", value=given, remedy="sort the points; x must increase")
+        message = f"comes after {x:g} {spec.unit_x}" if x_next < x else "appears twice"
+        yield at.problem(message, value=given, remedy="sort the points; x must increase")
     elif x_next > x and not isfinite((y_next - y) / (x_next - x)):
-        yield at.problem(f"is too close to {x:g} {spec.unit_x}", value=given, remedy="leave one of the points out")
+        yield at.problem(f"is too close to {x:g} {spec.unit_x}", value=given, remedy="remove one of the points")

@@ -101,10 +101,13 @@ def node_problems(node: Node) -> list[Problem]:
 TOO_FAR_APART = Problem(
     "driveline",
     "",
-    "has numbers too far apart to compute with",
-    remedy="correct inertias, ratios, speeds and signals of unusual size",
+    "has values that differ too much in magnitude to compute with",
+    remedy="correct inertias, ratios, speeds and signals of unusual magnitude",
 )
-NO_NAME, GIVE_NAME = "must be a text", "give a text that can be printed, on one line and without blanks at its ends"
+NO_NAME, GIVE_NAME = (
+    "must be a printable string",
+    "give a name of printable characters on one line, without blanks at its ends",
+)
 LONGEST_NAME = 200
 
 
@@ -128,8 +131,8 @@ def name_problems(nodes: Sequence[Node], elements: Sequence[Component], parts: P
         if not is_name(name):
             problems.append(Problem(path, "name", NO_NAME, shown(name), GIVE_NAME))
         elif name in seen:
-            remedy = "choose another name: results are found by it"
-            problems.append(Problem(path, "name", f"is taken by {seen[name]}", shown(name), remedy))
+            remedy = "choose another name: results are looked up by name"
+            problems.append(Problem(path, "name", f"is already the name of {seen[name]}", shown(name), remedy))
         else:
             seen[name] = path
     return problems

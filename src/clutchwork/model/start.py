@@ -35,7 +35,7 @@ def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], list[tupl
             try:
                 signal = low_pass(signal, motion.cutoff)
             except ValueError as error:
-                remedy = "leave cutoff out, or give the speed as a table"
+                remedy = "remove cutoff, or give the speed as a table"
                 problems.append(Problem(path_of(motion), "cutoff", str(error), f"{motion.cutoff:g} Hz", remedy))
         motions.append((motion, signal))
     speeds, wrong = initial_speeds(model, made, [value(signal, 0.0) for _, signal in motions])
@@ -85,5 +85,5 @@ def _problem(model: Mechanism, used: dict[int, Row], node: int, row: Row, excess
         if guilty
         else f"contradicts the prescribed speeds, which give {float(speed - excess):.9g} {unit}"
     )
-    remedy = "correct one of them, or leave this one out and it follows from the others"
+    remedy = "correct one of them, or remove this one: it then follows from the others"
     return Problem(model.node_label(node), "speed", message, f"{float(speed):g} {unit}", remedy)

@@ -11,6 +11,7 @@ from clutchwork.base.shown import listed, shown
 from clutchwork.declare import units
 from clutchwork.declare.node import Component, Domain, HeatFlow, Law, Node, Rate, ThermalNode, is_reference
 from clutchwork.declare.ports import thermal_ports
+from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Role, Spec, specs
 from clutchwork.declare.speech import path_of
 from clutchwork.model.fields import CHECKS
@@ -66,10 +67,10 @@ def port_problems(component: Component, thermal: Sequence[ThermalNode], within: 
         foreign = node.name in {other.name for other in thermal} and id(node) not in own
         if foreign or (id(node) not in own and not within.holds(node)):
             found = near(node.name, [other.name for other in thermal])
-            yield at.inner(name).problem("is of another driveline", shown(node.name), f"create it in this one{found}")
+            yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
     if role(component) is Role.FLOW and len({node.name for node in joined.values()}) < len(joined):
-        message = f"{' and '.join(joined)} are both on {shown(next(iter(joined.values())).name)}"
-        yield at.problem(message, remedy="attach them to two thermal nodes")
+        message = f"{' and '.join(joined)} are both attached to {shown(next(iter(joined.values())).name)}"
+        yield at.problem(message, remedy="attach them to two different thermal nodes")
 
 
 @dataclass(frozen=True)
@@ -126,13 +127,13 @@ def reference_problems(component: Component, known: Known) -> Iterator[Problem]:
 def _temperature(component: Any, at: At) -> Iterator[Problem]:
     """A friction law without a temperature takes that of the thermal node of its contact."""
     if getattr(component, "heat", None) is None and role(component) is Role.CONTACT:
-        yield at.problem("is missing", remedy="give a temperature [K], or join `heat` of the contact to a thermal node")
+        yield at.problem("is missing", remedy="give a temperature [K], or connect the contact by `heat` to a node")
 
 
 def _reference(value: Any, spec: Spec, at: At, component: Component, known: Known) -> Iterator[Problem]:
     direct = isinstance(value, Rate | HeatFlow | Node)
     if role(component) is Role.MOTION or (direct and role(component) not in (Role.FLOW, Role.PROCESS, Role.COMPOSITE)):
-        yield at.problem(f"must be a number in [{at.unit}] or a signal", _words(value), "give one of these")
+        yield at.problem(f"must be a number{within(at.unit)} or a signal", _words(value), "give one of them")
         return
     missing = _missing(value, known)
     if missing:
@@ -140,7 +141,7 @@ def _reference(value: Any, spec: Spec, at: At, component: Component, known: Know
         return
     given = _unit(value, known)
     if all(units.parse(given).powers != units.parse(unit).powers for unit in (spec.unit, *spec.units)):
-        yield at.problem(f"is in [{at.unit}], and {_words(value)} gives [{given}]", remedy=spec.doc)
+        yield at.problem(f"must be in [{at.unit}], but {_words(value)} gives [{given}]", remedy=spec.doc)
 
 
 def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:
@@ -153,25 +154,29 @@ def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:
         return None
     if direct:
         found = target.name in known.acting
-        return None if found else ("is no torque element or contact", _words(value), "give one of these")
+        return None if found else ("is not a torque element or contact", _words(value), "give one of them")
     if isinstance(target, Component) and role(target) is not Role.PROCESS:
         names = "a signal, a thermal node or a process"
-        return "is an element without output", _words(value), f"give {names}, or its Rate or HeatFlow"
+        return "has no output", _words(value), f"give {names}, or its Rate or HeatFlow"
     if state_name(value) in known.states:
         return None
     own = [name for name in known.states if name.startswith(f"{target.name}.")]
-    return f"is not known{near(state_name(value), own)}", shown(state_name(value)), f"known are {listed(own)}"
+    return (
+        f"is an unknown state{near(state_name(value), own)}",
+        shown(state_name(value)),
+        f"known states: {listed(own)}",
+    )
 
 
 def _foreign(target: Any, value: Any, known: Known) -> tuple[str, str, str]:
     """A shaft, node or element that is referred to and was not added."""
     if target.name in known.parts or any(thing.name == target.name for thing in known.added.values()):
-        remedy = "give the one that was added, or add this one under a name of its own"
+        remedy = "use the one that was added, or add this one under another name"
         return "is not the one that was added to this driveline under this name", _words(value), remedy
     remedy = (
-        "add it: d.add(...), and keep what that hands back"
+        "add it with d.add(...) and use the object that this returns"
         if isinstance(target, Component)
-        else "create it in this one"
+        else "create it here"
     )
     return "was not added to this driveline", _words(value), remedy
 

@@ -8,7 +8,7 @@ element counts as the element, such as the drag of a clutch, its torque, power, 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -40,6 +40,17 @@ class Channel:
 
     unit: str
     evaluate: Form
+
+
+def _unknown(name: object, known: Iterable[str]) -> str:
+    return f"no signal {shown(name)}{near(name, known, '`names` lists all signals')}"
+
+
+class Units(dict[str, str]):
+    """Unit of every signal by name; a misspelt name is answered with near ones."""
+
+    def __missing__(self, name: str) -> str:
+        raise UnknownName(_unknown(name, self))
 
 
 class Channels(Mapping[str, Channel]):
@@ -75,7 +86,7 @@ class Channels(Mapping[str, Channel]):
         for ending, option in self._left_out.items():
             if isinstance(name, str) and name.endswith(ending):
                 return f"{name} was not computed: run with {option}=True"
-        return f"no signal {shown(name)}{near(name, self._channels)}; `names` lists all of them"
+        return _unknown(name, self._channels)
 
     def _all(self) -> Iterator[tuple[str, Channel]]:
         yield from self._nodes()

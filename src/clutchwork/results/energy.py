@@ -1,7 +1,7 @@
 """Where the energy of a run went.
 
     work of the sources = change of kinetic + change of elastic energy + heat + residual
-    heat = heat in thermal nodes + heat that nobody follows
+    heat = heat in thermal nodes + heat that goes to no thermal node
 
 The work integrals come from the solver itself, so the residual measures what the integration lost or made.
 
@@ -78,16 +78,19 @@ class EnergyBalance:
 
     def __str__(self) -> str:
         """A table for reading."""
-        lines = [(f"  {name}", f"{work:.3f}") for name, work in self.sources.items() if work]
-        lines.insert(0, ("work of sources", f"{self.input:.3f}"))
-        lines += [("kinetic energy, change", f"{self.kinetic:.3f}"), ("elastic energy, change", f"{self.elastic:.3f}")]
-        lines += [("heat", f"{sum(self.heat.values()):.3f}")]
-        lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.heat.items() if heat]
-        lines += [("thereof in impulses", f"{self.impulses:.3f}")] if self.impulses else []
+        lines = [(f"  {name}", f"{work:z.3f}") for name, work in self.sources.items() if work]
+        lines.insert(0, ("work of sources", f"{self.input:z.3f}"))
+        lines += [
+            ("kinetic energy, change", f"{self.kinetic:z.3f}"),
+            ("elastic energy, change", f"{self.elastic:z.3f}"),
+        ]
+        lines += [("heat", f"{sum(self.heat.values()):z.3f}")]
+        lines += [(f"  {name}", f"{heat:z.3f}") for name, heat in self.heat.items() if heat]
+        lines += [("of which in impulses", f"{self.impulses:z.3f}")] if self.impulses else []
         if self.thermal:
-            lines += [("in thermal nodes", f"{sum(self.thermal.values()):.3f}")]
-            lines += [(f"  {name}", f"{heat:.3f}") for name, heat in self.thermal.items() if heat]
-            lines += [("heat not assigned to a thermal node", f"{self.untracked:.3f}")]
+            lines += [("in thermal nodes", f"{sum(self.thermal.values()):z.3f}")]
+            lines += [(f"  {name}", f"{heat:z.3f}") for name, heat in self.thermal.items() if heat]
+            lines += [("heat not assigned to a thermal node", f"{self.untracked:z.3f}")]
         share = self.residual / self.turnover if self.turnover else 0.0
         lines += [("residual", f"{self.residual:.3e}"), ("residual / turnover", f"{share:.1e}")]
         return columns([("energy", "J"), *lines], right={1})

@@ -73,8 +73,8 @@ class Events(Sequence[Event]):
         """The events of one contact; UnknownName, a KeyError, with near names when there is none of that name."""
         known = [event.element for event in self] if self._contacts is None else self._contacts
         if element not in known and element != "":
-            remedy = f"contacts are {listed(dict.fromkeys(known))}" if known else "there is no contact"
-            raise UnknownName(f"no contact {shown(element)}{near(element, known)}; {remedy}")
+            remedy = f"contacts are {listed(dict.fromkeys(known))}" if known else "the model has no contacts"
+            raise UnknownName(f"no contact {shown(element)}{near(element, known, remedy)}")
         return Events([event for event in self if event.element == element], self._contacts)
 
     def changes(self) -> Events:
@@ -102,7 +102,7 @@ class Events(Sequence[Event]):
     __repr__ = __str__
 
     def to_csv(self, path: str | Path) -> None:
-        """Write every field of every event; the unit stands in the head of each column."""
+        """Write every field of every event; the head of each column has its unit."""
         units = {"time": "s", "slip_acceleration": "rad/s2", "torque_before": "N m", "torque_after": "N m"}
         units |= {"energy_before": "J", "energy_after": "J"}
         names = [item.name for item in fields(Event)]
@@ -139,7 +139,7 @@ def _event(row: NDArray[np.float64], at: dict[str, int], contacts: Sequence[str]
 def _cells(event: Event) -> list[str]:
     numbers = (event.slip_acceleration, event.torque_before, event.torque_after)
     words = [f"{event.time:.9f}", event.element, event.before, event.after, event.cause]
-    return words + [f"{number:.4g}" if abs(number) < 1e5 else f"{number:.3e}" for number in numbers]
+    return words + [f"{number:z.4g}" if abs(number) < 1e5 else f"{number:.3e}" for number in numbers]
 
 
 def _exact(value: object) -> object:

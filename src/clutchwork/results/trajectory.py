@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base.errors import ClutchworkError
+from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, NAMES
-from clutchwork.results.channels import Channels
+from clutchwork.results.channels import Channels, Units
 from clutchwork.results.energy import EnergyBalance, balance
 from clutchwork.results.events import Events
 
@@ -45,7 +46,7 @@ class SimulationError(ClutchworkError, RuntimeError):
 class Trajectory:
     """The result of a run.
 
-    `run.time` [s] and `run["engine.speed"]` are arrays over the same instants; an instant that stands twice gives
+    `run.time` [s] and `run["engine.speed"]` are arrays over the same instants; an instant that appears twice gives
     the left and the right limit at an event. `run.names` lists all signals, `run.units` their units,
     `run.events`, `run.energy` and `run.statistics` what else is known.
     """
@@ -89,8 +90,8 @@ class Trajectory:
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """Unit of every signal."""
-        return {name: channel.unit for name, channel in self.channels.items()}
+        """Unit of every signal; KeyError with near names, as for a signal."""
+        return Units((name, channel.unit) for name, channel in self.channels.items())
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """A signal over `time`; KeyError with near names when there is none of that name."""
@@ -168,6 +169,6 @@ class Trajectory:
 
     def __repr__(self) -> str:
         return (
-            f"<Trajectory {self.status}, 0 to {self.time[-1] if len(self) else 0:g} s, {len(self)} instants, "
-            f"{len(self.names)} signals, {len(self.events)} events>"
+            f"<Trajectory {self.status}, 0 to {self.time[-1] if len(self) else 0:g} s, {counted(len(self), 'instants')}"
+            f", {counted(len(self.names), 'signals')}, {counted(len(self.events), 'events')}>"
         )

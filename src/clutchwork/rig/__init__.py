@@ -1,4 +1,4 @@
-"""The rig: experiments that tell friction laws apart.
+"""The rig: experiments that distinguish friction laws.
 
     from clutchwork import rig
 

@@ -39,8 +39,8 @@ def kind_of(name: str, preset: Preset) -> str:
     """The kind that a name means; ValueError with a near match when there is none."""
     known = {_plain(kind): kind for kind in preset.laws}
     if _plain(name) not in known:
-        hint = near(name.strip().lower(), preset.laws)
-        raise ValueError(f"no friction law {name!r}{hint}; the rig knows {', '.join(preset.laws)}")
+        hint = near(name.strip().lower(), preset.laws, f"known laws: {', '.join(preset.laws)}")
+        raise ValueError(f"unknown friction law {name!r}{hint}")
     return known[_plain(name)]
 
 
@@ -48,7 +48,7 @@ def _law(wanted: Any, preset: Preset) -> Law:
     if isinstance(wanted, str):
         return preset.law(kind_of(wanted, preset))
     if not isinstance(wanted, Law):
-        raise TypeError(f"{wanted!r} is no friction law: give a name or a law such as clutchwork.Coulomb(...)")
+        raise TypeError(f"{wanted!r} is not a friction law: give a name or a law such as clutchwork.Coulomb(...)")
     return wanted
 
 

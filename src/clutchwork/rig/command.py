@@ -1,4 +1,4 @@
-"""`clutchwork rig`: arguments, and what is told and written."""
+"""`clutchwork rig`: arguments, report and files."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def add_command(subparsers: Any) -> None:
     """Add `rig` to the commands of the command line."""
     rig = subparsers.add_parser(
         "rig",
-        help="experiments that tell friction laws apart",
+        help="experiments that distinguish friction laws",
         epilog="Exit code 1: a run stopped early, other than by the chatter of a law that cannot rest.",
     )
     rig.set_defaults(command=rig_command)
@@ -37,7 +37,7 @@ def add_command(subparsers: Any) -> None:
 
 
 def rig_command(asked: argparse.Namespace) -> int:
-    """Perform, tell, write; the exit code."""
+    """Perform, report, write; the exit code."""
     if asked.experiment == LIST:
         sys.stdout.write(listing() + "\n")
         return DONE
@@ -61,7 +61,7 @@ class Outcome:
 
     @property
     def text(self) -> str:
-        """What is told about it."""
+        """The report."""
         return "\n".join([str(self.result), "", *(f"wrote {path}" for path in self.files), ""])
 
     @property
@@ -113,11 +113,12 @@ def _experiments(name: str, settings: Sequence[str]) -> list[Experiment]:
 
     if name == EVERY:
         if settings:
-            raise ValueError("settings belong to one experiment: name it in place of all")
+            raise ValueError("settings belong to one experiment: give its name in place of all")
         return [cls() for cls in EXPERIMENTS.values()]
     if name not in EXPERIMENTS:
         known = [*EXPERIMENTS, EVERY, LIST]
-        raise ValueError(f"no experiment {name!r}{near(name, known)}; there are {', '.join(known)}")
+        rest = f"known experiments: {', '.join(known)}"
+        raise ValueError(f"unknown experiment {name!r}{near(name, known, rest)}")
     return [made(name, dict(map(_setting, settings)))]
 
 

@@ -166,9 +166,11 @@ def runner(name: str) -> Callable[..., Result]:
 def made(name: str, changes: Mapping[str, Any]) -> Experiment:
     """An experiment by name with some fields changed; ValueError with a near match for unknown names."""
     if name not in EXPERIMENTS:
-        raise ValueError(f"no experiment {name!r}{near(name, EXPERIMENTS)}; experiments are {', '.join(EXPERIMENTS)}")
+        rest = f"known experiments: {', '.join(EXPERIMENTS)}"
+        raise ValueError(f"unknown experiment {name!r}{near(name, EXPERIMENTS, rest)}")
     known = [item.name for item in fields(EXPERIMENTS[name])]
     for field in changes:
         if field not in known:
-            raise ValueError(f"{name} has no setting {field!r}{near(field, known)}; settings are {', '.join(known)}")
+            rest = f"known settings: {', '.join(known)}"
+            raise ValueError(f"{name} has no setting {field!r}{near(field, known, rest)}")
     return EXPERIMENTS[name](**changes)

@@ -164,5 +164,6 @@ def preset_of(wanted: str | Preset) -> Preset:
     if isinstance(wanted, Preset):
         return wanted
     if wanted not in PRESETS:
-        raise ValueError(f"no preset {wanted!r}{near(wanted, PRESETS)}; presets are {', '.join(PRESETS)}")
+        rest = f"known presets: {', '.join(PRESETS)}"
+        raise ValueError(f"unknown preset {wanted!r}{near(wanted, PRESETS, rest)}")
     return PRESETS[wanted]

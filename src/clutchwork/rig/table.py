@@ -62,7 +62,8 @@ class Table:
     def _place(self, name: str) -> int:
         names = [column.name for column in self.columns]
         if name not in names:
-            raise KeyError(f"no column {name!r}{near(name, names)}; columns are {', '.join(names)}")
+            rest = f"columns: {', '.join(names)}"
+            raise KeyError(f"no column {name!r}{near(name, names, rest)}")
         return names.index(name)
 
     def __str__(self) -> str:

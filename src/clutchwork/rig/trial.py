@@ -48,5 +48,6 @@ class Trial:
 def found(mapping: Mapping[str, V], key: str, what: str) -> V:
     """What a mapping holds under a name; KeyError with a near match when it holds none."""
     if key not in mapping:
-        raise KeyError(f"no {what} {key!r}{near(key, mapping)}; there are {', '.join(mapping)}")
+        rest = f"there are {', '.join(mapping)}"
+        raise KeyError(f"no {what} {key!r}{near(key, mapping, rest)}")
     return mapping[key]

@@ -25,7 +25,7 @@ def _uniform(dt: float, t_end: float) -> NDArray[np.float64]:
     instants = t_end / dt * (1.0 + 1e-12)
     count = math.floor(instants) if math.isfinite(instants) else MOST_COUNTED
     if count > MOST_ROWS:
-        fault = f"dt is {dt:g} s: {count:.6g} instants up to {t_end:g} s do not fit into memory; take a larger dt"
+        fault = f"dt is {dt:g} s: {count:.6g} instants up to {t_end:g} s do not fit into memory; use a larger dt"
         raise OptionError([fault])
     grid: NDArray[np.float64] = np.minimum(np.arange(count + 1) * dt, t_end)
     if t_end - grid[-1] > 1e-9 * dt:
@@ -38,9 +38,9 @@ def _given(times: Sequence[float] | NDArray[np.float64], t_end: float) -> NDArra
     try:
         grid = np.array(times, dtype=float)
     except (TypeError, ValueError):
-        raise OptionError([f"times are {shown(times)}: they must be a row of numbers [s]"]) from None
+        raise OptionError([f"times are {shown(times)}: they must be a sequence of numbers [s]"]) from None
     if grid.ndim != 1 or grid.size == 0:
-        raise OptionError(["times must be a row of at least one instant"])
+        raise OptionError(["times must hold at least one instant"])
     if not np.all(np.isfinite(grid)) or np.any(np.diff(grid) < 0.0):
         raise OptionError(["times must be finite and must not decrease; an instant given twice gets both limits there"])
     if grid[0] < 0.0 or grid[-1] > t_end:

@@ -89,7 +89,7 @@ def simulate(
 def _no_model(given: object) -> str:
     remedy = "give a Driveline or a System"
     if isinstance(given, str | os.PathLike):
-        remedy = f"a file is read by cw.Driveline.load({os.fspath(given)!r})"
+        remedy = f"load a file with cw.Driveline.load({os.fspath(given)!r})"
     return f"{shown(given)} is not a model; {remedy}"
 
 

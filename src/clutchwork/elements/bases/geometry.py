@@ -30,7 +30,7 @@ def derating_when_worn(outer: float | None, inner: float | None) -> float:
 def ring_problems(radius: float | None, outer: float | None, inner: float | None) -> Found:
     """A radius that is given twice, not at all, or by a ring that is none."""
     if radius is not None and (outer, inner) != (None, None):
-        return [("radius", "is given beside a diameter", "give the radius, or both diameters")]
+        return [("radius", "cannot be given together with a diameter", "give the radius, or both diameters")]
     if radius is not None:
         return []
     for name, value in (("outer_diameter", outer), ("inner_diameter", inner)):

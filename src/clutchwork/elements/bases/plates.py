@@ -23,7 +23,7 @@ def fault_problems(fault: str, time: float | None, signal: SignalLike | None) ->
     """A fault without a trigger, or a trigger without a fault."""
     given = [name for name, value in (("fault_time", time), ("fault_signal", signal)) if value is not None]
     if fault != "none" and not given:
-        return [("fault", f"is {fault} and nothing triggers it", "give fault_time, fault_signal, or both")]
+        return [("fault", f"is {fault}, but nothing triggers it", "give fault_time, fault_signal, or both")]
     if fault == "none" and given:
         return [(given[0], "triggers no fault", 'give fault "cannot_transmit" or "cannot_unlock"')]
     return []

@@ -44,8 +44,8 @@ class StribeckCurve(Law):
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = static_problems(self.static, self.kinetic)
         if self.shape != "power" and self.exponent != 2.0:
-            fault = f"is {self.exponent:g} with shape {self.shape!r}, which has none"
-            found.append(("exponent", fault, 'leave it out, or give shape "power"'))
+            fault = f"is {self.exponent:g}, but shape {self.shape!r} has no exponent"
+            found.append(("exponent", fault, 'remove it, or give shape "power"'))
         return found
 
 

@@ -59,7 +59,7 @@ def not_positive(field: str, values: Sequence[float], unit: str, places: Sequenc
     """A coefficient that is not above zero."""
     for value, place in zip(values, places, strict=True):
         if not value > 0.0:
-            return [(field, f"is {value:g} at {place:g} {unit}, must be > 0", "every coefficient is above zero")]
+            return [(field, f"is {value:g} at {place:g} {unit}, must be > 0", "give coefficients above zero")]
     return []
 
 
@@ -100,7 +100,7 @@ def continued(field: str, tables: Sequence[Points], unit: str, extrapolation: st
         # the same from the other end
         lower = max(-vanishing([(-x, y) for x, y in reversed(points)], smooth) for points in tables)
         ends += [lower] if lower >= 0.0 else []
-    fault = "continued linearly falls to zero at {:g} {}, where the contact transmits nothing"
+    fault = "falls to zero at {:g} {} when it is extrapolated linearly; beyond that the contact transmits nothing"
     return [(field, fault.format(end, unit), KEEP) for end in ends]
 
 

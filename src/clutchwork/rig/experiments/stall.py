@@ -66,7 +66,7 @@ class Stall(Experiment):
     def driveline(self, bench: Bench) -> Driveline:
         """The driveline with the clutch of a bench; ValueError for a preset that is not one of shafts."""
         if bench.preset.domain is not Domain.ROTATION:
-            raise ValueError(f'a clutch joins shafts, preset {bench.preset.name!r} is for masses: take preset "clutch"')
+            raise ValueError(f'a clutch joins shafts, preset {bench.preset.name!r} is for masses: use preset "clutch"')
         d = Driveline("launch")
         engine = d.shaft("engine", inertia=self.engine, speed=self.speed)
         gearbox = d.shaft("gearbox", inertia=self.gearbox)

@@ -68,9 +68,9 @@ def read(path: Path, wanted: Wanted) -> Values:
     except FileNotFoundError:
         raise wanted.error("path", "does not exist", f"put the file into {_folder(path)}") from None
     except OSError as error:
-        raise wanted.error("path", f"cannot be read: {reason(error)}", "give a CSV text file") from None
+        raise wanted.error("path", f"cannot be read: {reason(error)}", "give a CSV file") from None
     except (UnicodeDecodeError, csv.Error):
-        raise wanted.error("path", "cannot be read: it is not text in UTF-8", "give a CSV text file") from None
+        raise wanted.error("path", "cannot be read: it is not UTF-8 text", "give a CSV file") from None
 
 
 def _folder(path: Path) -> str:
@@ -86,7 +86,7 @@ def _scaled(table: Array, factors: tuple[float, float], wanted: Wanted) -> Array
         slopes = np.divide(step[:, 1], step[:, 0], out=np.zeros(len(step)), where=step[:, 0] > 0.0)
     if not np.all(np.isfinite(slopes)) or not np.all(np.isfinite(made)):
         raise wanted.error(
-            "path", "has values that are too large, or change too fast", "leave out times that nearly coincide"
+            "path", "has values that are too large, or change too fast", "remove times that nearly coincide"
         )
     return made
 
@@ -96,7 +96,7 @@ def _read(file: BinaryIO, wanted: Wanted) -> Values:
     with io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
         header, lines = _opened(text)
         if not header:
-            raise wanted.error("path", "is empty", "give a header line and at least one line of numbers")
+            raise wanted.error("path", "is empty", "give a header line and at least one row of numbers")
         time, column = _heads(header, wanted)
         factors = _factors(time, column, wanted)
         places = header.index(time.text), header.index(column.text)
@@ -121,7 +121,7 @@ def _scan(file: BinaryIO, wanted: Wanted) -> bool:
         starts = np.concatenate([[0], ends[:-1] + 1])
         count += len(ends)
         if b"\0" in block:
-            raise wanted.error("path", "cannot be read: it is not text", "give a CSV text file")
+            raise wanted.error("path", "cannot be read: it is not text", "give a CSV file")
         if count > MOST_LINES + 1:
             raise wanted.error("path", f"has more than {MOST_LINES} lines", "give fewer samples")
         commas = np.add.reduceat((codes == COMMA).astype(np.intp), starts)
@@ -150,7 +150,7 @@ def _blocks(file: BinaryIO, wanted: Wanted) -> Iterator[bytes]:
         else:
             left += rest
         if len(left) > LONGEST_LINE:
-            raise wanted.error("path", f"has a line of more than {LONGEST_LINE} bytes", "give a CSV text file")
+            raise wanted.error("path", f"has a line of more than {LONGEST_LINE} bytes", "give a CSV file")
     if left:
         yield left + b"\n"
 
@@ -172,7 +172,7 @@ def _name_fault(
     if len(texts) > 1:
         return quantity, f"{path} has {len(found)} columns {shown(name)}", f"name one of them: {listed(texts)}"
     if found:
-        return quantity, f"{path} has {len(found)} columns {shown(name)}", "give every column a name of its own"
+        return quantity, f"{path} has {len(found)} columns {shown(name)}", "give every column a different name"
     remedy = "the first line names the columns, with commas between them"
     if len(header) == 1 and ";" in header[0]:
         remedy = "separate the columns with commas, not with semicolons"
@@ -195,7 +195,7 @@ def _factors(time: Head, column: Head, wanted: Wanted) -> tuple[float, float]:
         raise FileError(faults)
     if factors[1] != 1.0 and isclose(factors[1], wanted.scale):
         fault = f"repeats the unit of column {shown(column.text)} of {shown(wanted.path)}"
-        raise FileError([("scale", fault, "leave out scale: the values are converted by the unit of the column")])
+        raise FileError([("scale", fault, "remove scale: the values are already converted by the unit of the column")])
     return factors[0], factors[1] * wanted.scale
 
 
@@ -225,7 +225,7 @@ def _by_cells(lines: Iterator[list[str]], header: list[str], places: tuple[int, 
             break
     table = np.array(numbers).reshape(-1, 2)
     if not faults and not len(table):
-        raise wanted.error("path", "has no line of numbers", "give at least one line below the header")
+        raise wanted.error("path", "has no row of numbers", "give at least one row below the header")
     for place in np.flatnonzero(np.diff(table[:, 0]) < 0.0)[:MOST_FAULTS] if not faults else ():
         where = f"line {kept[place + 1]} of {shown(wanted.path)}"
         faults.append(("time", f"{where}: its time is before that of line {kept[place]}", "sort the file by time"))
@@ -255,10 +255,10 @@ def _line_faults(
         return
     if any(cells[len(header) :]):
         message = f"{where} has {len(line)} cells, the first line names {len(header)} columns"
-        yield "path", message, "give one cell for each column; a decimal comma makes two of one"
+        yield "path", message, "give one cell per column; a decimal comma splits a number in two"
     for place, quantity in zip(places, ("time", "column"), strict=True):
         cell = cells[place] if place < len(cells) else ""
         if _pair([cell], 1, (0, 0)) is None:
             fault = "is not a finite number" if cell else "is empty, not a finite number"
             message = f"{where}: the cell in column {shown(header[place])} {fault}"
-            yield quantity, message, "write a number, with a point for the decimals"
+            yield quantity, message, "write a number with a decimal point"

@@ -33,7 +33,7 @@ class Head:
             try:
                 return factor_to_si(self.unit, "K", (), self.text)
             except QuantityError as bad:
-                zero = "whose zero is another" in bad.message
+                zero = "which has another zero" in bad.message
                 raise QuantityError(bad.message, bad.value, bad.remedy if zero else remedy) from None
 
 

@@ -1,0 +1,105 @@
+"""What messages and tables say: bounds with a remedy, near names, counts, signs, and what `print` shows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import clutchwork as cw
+from clutchwork.base.errors import UnknownName
+from clutchwork.base.text import counted
+from clutchwork.declare.schema import REGISTRY, Role, specs
+from clutchwork.model.components import component_advice
+from clutchwork.results.energy import EnergyBalance
+from clutchwork.results.events import Event, Events
+from support import samples
+
+
+def _driveline(**changes: object) -> cw.Driveline:
+    d = cw.Driveline("two discs")
+    engine, load = d.shaft("engine", inertia=0.2, speed=10.0), d.shaft("load", inertia=0.8)
+    given = {"friction": cw.Coulomb(static=0.12, kinetic=0.1), "gain": 0.1, "pressure": 1e3}
+    d.add(cw.Clutch("c1", base=engine, follower=load, **given | changes))
+    return d
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "words"),
+    [
+        ("gain", -0.1, "gain = -0.1 m3: must be > 0 m3; give a positive value: torque per unit of pressure"),
+        ("tolerance", -1.0, "must be >= 0 rad/s; give zero or a positive value: slip below which"),
+        ("heat_share", 2.0, "must be >= 0 and <= 1; lower it: share"),
+        ("gain", "3", "gain = '3': must be a number in [m3]; write a plain number"),
+    ],
+)
+def test_a_bound_comes_with_what_to_do(field: str, value: object, words: str) -> None:
+    (problem,) = _driveline(**{field: value}).check()
+    assert words in str(problem)
+
+
+def test_what_print_shows() -> None:
+    d = _driveline(gain=-0.1)
+    assert repr(d) == "<Driveline 'two discs': 2 shafts and masses, 0 thermal nodes, 1 element>"
+    assert repr(d.check()).startswith('[<Problem cw.Clutch("c1"): gain = -0.1 m3: must be > 0 m3; ')
+
+
+def test_units_answer_a_misspelt_signal_with_near_ones() -> None:
+    units = _driveline().simulate(0.1).units
+    assert units["c1.torque"] == "N m"
+    with pytest.raises(UnknownName, match=r"^no signal 'c1.torqe'; did you mean 'c1.torque'\? `names` lists all"):
+        units["c1.torqe"]
+    with pytest.raises(UnknownName, match=r"^no signal 'zzz'; `names` lists all"):
+        units["zzz"]
+
+
+@pytest.mark.parametrize(
+    ("count", "plural", "said"),
+    [
+        (1, "events", "1 event"),
+        (0, "events", "0 events"),
+        (1, "shafts and masses", "1 shaft or mass"),
+        (1, "processes", "1 process"),
+        (2, "processes", "2 processes"),
+        (1, "gear rows", "1 gear row"),
+    ],
+)
+def test_one_is_singular(count: int, plural: str, said: str) -> None:
+    assert counted(count, plural) == said
+
+
+def test_no_table_shows_minus_zero() -> None:
+    event = Event(0.0, "c1", "forward", "locked", "slip zero", -0.0, -0.0, 0.0, 1.0, 1.0)
+    assert "-0" not in str(Events([event]))
+    assert "-0.000" not in str(EnergyBalance({"t": -1e-9}, -1e-9, -1e-9, {"c1": -1e-9}, 0.0))
+
+
+def test_a_model_file_that_is_missing(tmp_path: Path) -> None:
+    (tmp_path / "gearbox.toml").write_text("")
+    for path, words in (
+        ("gearbx.toml", "file: does not exist; did you mean 'gearbox.toml'?"),
+        ("other.toml", "file: does not exist; check the path; in its folder: gearbox.toml"),
+        ("none/gearbox.toml", "file: does not exist; check the path: there is no folder"),
+    ):
+        with pytest.raises(cw.ModelError) as caught:
+            cw.Driveline.load(tmp_path / path)
+        assert words in str(caught.value)
+
+
+PRESSED = [
+    (cls, item.name)
+    for role in (Role.CONTACT, Role.COMPOSITE)
+    for cls in REGISTRY[role].values()
+    for item, spec in specs(cls, "signal", "alternative")
+    if spec.presses
+]
+
+
+@pytest.mark.parametrize(("cls", "name"), PRESSED)
+def test_a_constant_load_below_zero_is_warned_of(cls: type, name: str) -> None:
+    element = samples.driveline(cls).elements[0]
+    dips = cw.Table([(0.0, -1.0), (1.0, 1.0)])
+    for load, warned in ((-1.0, True), (cw.Constant(-1.0), True), (0.0, False), (None, False), (dips, False)):
+        advice = [str(one) for one in component_advice(replace(element, **{name: load}))]
+        assert any(f": {name} = -1" in one and "never presses" in one for one in advice) == warned, (load, advice)
