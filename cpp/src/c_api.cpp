@@ -27,13 +27,13 @@ void reset(cw_run* run) {
   bind(ws.sys, run->system, run->system_bytes);
   ws.row = RowLayout(ws.sys);
   carve(ws, run->arrays);
-  for (std::int64_t i = 0; i < ws.sys.n_input_refs; ++i) ws.ref_signal[i] = ws.sys.input_refs[i];
+  for (std::int64_t i = 0; i < ws.sys.n_input_refs; ++i) ws.in.ref_signal[i] = ws.sys.input_refs[i];
   for (std::int64_t p = 0; p < ws.sys.prescribed; ++p)
-    ws.ref_signal[ws.sys.n_input_refs + p] = ws.sys.prescribed_input[p];
+    ws.in.ref_signal[ws.sys.n_input_refs + p] = ws.sys.prescribed_input[p];
   for (std::int64_t i = 0; i < ws.sys.n_params; ++i) ws.params[i] = ws.sys.params[i];
   for (std::int64_t i = 0; i < ws.sys.inputs; ++i) {
-    ws.signal[i] = Signal{};
-    ws.signal[i].held = ws.sys.input_value[i];
+    ws.in.signal[i] = Signal{};
+    ws.in.signal[i].held = ws.sys.input_value[i];
   }
 }
 
@@ -93,7 +93,7 @@ int cw_set_option(cw_run* run, const char* name, double value) {
              positive = value >= 1e-300 && value <= 1e300;
   if (same(name, "rtol") && positive) return o.rtol = value, 1;
   if (same(name, "atol") && positive) return o.atol = value, 1;
-  if (same(name, "method") && whole && value <= 2) return o.method = Method(int(value)), 1;
+  if (same(name, "method") && whole && value <= method_count) return o.method = Method(int(value)), 1;
   if (same(name, "first_step")) return o.first_step = value, 1;
   if (same(name, "max_step") && value >= 1e-300) return o.max_step = value, 1;
   if (same(name, "max_steps") && whole) return o.max_steps = std::int64_t(value), 1;
@@ -108,10 +108,10 @@ int cw_set_input(cw_run* run, std::int64_t input, double value) {
   Workspace<double>& ws = run->ws;
   if (input < 0 || input >= ws.sys.inputs || ws.sys.input_count[input] != 0) return 0;
   // what the other signals do at this instant has waited for it
-  if (ws.signal[input].held == value && ws.next_knot > ws.time) return 1;
-  ws.signal[input].held = value;
+  if (ws.in.signal[input].held == value && ws.in.next_knot > ws.time) return 1;
+  ws.in.signal[input].held = value;
   // a step is a knot
-  ws.next_knot = -infinity;
+  ws.in.next_knot = -infinity;
   // before the first step the value belongs to the start, which is decided anew
   if (ws.statistics.steps + ws.statistics.rejected == 0) ws.started = false;
   return 1;
@@ -122,14 +122,13 @@ int cw_set_param(cw_run* run, std::int64_t offset, double value) {
   Workspace<double>& ws = run->ws;
   if (offset < 0 || offset >= ws.sys.n_params || is_fixed(ws.sys, offset)) return 0;
   ws.params[offset] = value;
-  ws.input_changed = true;
+  ws.params_changed = true;
   return 1;
 }
 
 int cw_set_poll(cw_run* run, int (*poll)(void*), void* context) {
   if (run == nullptr) return 0;
-  run->ws.poll = poll;
-  run->ws.poll_context = context;
+  run->ws.poll = {poll, context};
   return 1;
 }
 
@@ -141,7 +140,7 @@ int cw_advance(cw_run* run, double t_end, double* times, double* rows, std::int6
   // a step fills up to three rows
   if (steps != 0 && n < 3) return int(Status::rows_full);
   Sink sink{times, rows, n, 0, steps != 0};
-  run->ws.detail_row = -1;
+  run->ws.detail.row = -1;
   const Status status = advance(run->ws, t_end, sink);
   if (filled != nullptr) *filled = sink.at;
   return int(status);
@@ -162,11 +161,12 @@ std::int64_t cw_event_size(void) { return event_size; }
 std::int64_t cw_take_events(cw_run* run, double* events, std::int64_t room) {
   if (run == nullptr || room < 0 || (events == nullptr && room > 0)) return -1;
   Workspace<double>& ws = run->ws;
-  const std::int64_t n = ws.n_events < room ? ws.n_events : room;
+  const std::int64_t n = ws.events.n < room ? ws.events.n : room;
   if (n == 0) return 0;
-  std::memcpy(events, ws.events, std::size_t(n * event_size) * sizeof(double));
-  std::memmove(ws.events, ws.events + n * event_size, std::size_t((ws.n_events - n) * event_size) * sizeof(double));
-  ws.n_events -= int(n);
+  std::memcpy(events, ws.events.at, std::size_t(n * event_size) * sizeof(double));
+  std::memmove(ws.events.at, ws.events.at + n * event_size,
+               std::size_t((ws.events.n - n) * event_size) * sizeof(double));
+  ws.events.n -= int(n);
   return n;
 }
 
@@ -179,11 +179,11 @@ void cw_statistics(const cw_run* run, std::int64_t counts[7]) {
 
 std::int64_t cw_detail(const cw_run* run, double* value) {
   if (run == nullptr) return -1;
-  if (value != nullptr) *value = run->ws.detail_value;
-  return run->ws.detail_component;
+  if (value != nullptr) *value = run->ws.detail.value;
+  return run->ws.detail.component;
 }
 
-std::int64_t cw_detail_row(const cw_run* run) { return run == nullptr ? -1 : run->ws.detail_row; }
+std::int64_t cw_detail_row(const cw_run* run) { return run == nullptr ? -1 : run->ws.detail.row; }
 
 std::int64_t cw_state_size(const cw_run* run) { return run == nullptr ? -1 : state_head::bytes + measured(run).size; }
 
@@ -213,10 +213,9 @@ int cw_restore(cw_run* run, const void* bytes, std::int64_t n) {
   saved::Check check(run->ws, from + state_head::bytes);
   saved::describe(run->ws, check);
   if (!check.good) return 0;
-  int (*const poll)(void*) = run->ws.poll;
-  void* const context = run->ws.poll_context;
+  const Poll poll = run->ws.poll;
   reset(run);
-  cw_set_poll(run, poll, context);
+  run->ws.poll = poll;
   saved::resume(run->ws, from + state_head::bytes);
   return 1;
 }

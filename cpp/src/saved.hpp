@@ -15,7 +15,7 @@ void describe(W& ws, A& a) {
   const System& s = ws.sys;
   const std::int64_t nc = s.contacts, nd = s.elements + nc;
   auto& o = ws.options;
-  a.number(o.rtol, 1e-300, 1e300), a.number(o.atol, 1e-300, 1e300), a.whole(o.method, 0, 2);
+  a.number(o.rtol, 1e-300, 1e300), a.number(o.atol, 1e-300, 1e300), a.whole(o.method, 0, method_count);
   a.number(o.first_step, 0, infinity), a.number(o.max_step, 1e-300, infinity);
   a.whole(o.max_steps, 0, most), a.whole(o.max_events, 0, most), a.whole(o.angles, 0, 1), a.whole(o.work, 0, 1);
   auto& n = ws.statistics;
@@ -23,17 +23,17 @@ void describe(W& ws, A& a) {
   a.whole(n.jacobians, 0, most), a.whole(n.events, 0, most), a.whole(n.phases, 0, most), a.whole(n.locations, 0, most);
 
   a.time(ws.time), a.number(ws.last_step, 0, 1e300);
-  a.whole(ws.started, 0, 1), a.whole(ws.fresh_phase, 0, 1), a.whole(ws.input_changed, 0, 1);
-  a.whole(ws.is_explicit, 0, 1), a.number(ws.crowd_time), a.number(ws.forced_time), a.number(ws.next_knot);
-  a.whole(ws.n_faulty, 0, nc), a.whole(ws.failed, -1, nc - 1), a.whole(ws.n_watch, 0, nc);
-  a.whole(ws.reversals, 0, 1 << 30), a.whole(ws.reversals_since, 0, most);
-  a.number(ws.input_time), a.whole(ws.n_events, 0, ws.event_room + 2 * nc);
-  a.whole(ws.located, -1, nc - 1), a.number(ws.effort), a.whole(ws.cause, 0, int(Cause::fault));
-  a.whole(ws.detail_component, -1, nd - 1), a.number(ws.detail_value), a.whole(ws.detail_row, -1, ws.row.size - 1);
+  a.whole(ws.started, 0, 1), a.whole(ws.fresh_phase, 0, 1), a.whole(ws.params_changed, 0, 1);
+  a.whole(ws.reduced.method, 1, method_count), a.number(ws.events.crowd_time), a.number(ws.contact.forced_time),
+      a.number(ws.in.next_knot);
+  a.whole(ws.guard.n_faulty, 0, nc), a.whole(ws.contact.failed, -1, nc - 1), a.whole(ws.guard.n_loads, 0, nc);
+  a.whole(ws.guard.reversals, 0, 1 << 30), a.whole(ws.guard.reversals_since, 0, most);
+  a.number(ws.in.time), a.whole(ws.events.n, 0, EventBuffer::room + 2 * nc);
+  a.whole(ws.detail.component, -1, nd - 1), a.number(ws.detail.value), a.whole(ws.detail.row, -1, ws.row.size - 1);
 
-  for (std::int64_t i = 0; i < s.inputs; ++i) a.cursor(int(i), ws.signal[i]);
+  for (std::int64_t i = 0; i < s.inputs; ++i) a.cursor(int(i), ws.in.signal[i]);
   lay_out(ws, a);
-  for (std::int64_t i = 0; i < 3 * nd + nc; ++i) a.number(ws.line[i].level);
+  for (std::int64_t i = 0; i < 3 * nd + nc; ++i) a.number(ws.guard.line[i].level);
 }
 
 /// What the visitors share: arrays and cursors as single words, of which Self takes `number` and `whole`.
@@ -147,14 +147,14 @@ class Check : public Visitor<Check> {
     good = good && x >= low && x <= high;
     const void* place = &at;
     if (place == &ws_.started) started_ = x != 0;
-    if (place == &ws_.n_events) events_ = x;
+    if (place == &ws_.events.n) events_ = x;
   }
   template <class P>
   void take(P* const& p, std::int64_t n) {
     if constexpr (!std::is_same_v<P, double>) return;
     const void* place = &p;
     if (place == &ws_.params) return params(n);
-    if (place == &ws_.events) return events(n);
+    if (place == &ws_.events.at) return events(n);
     for (std::int64_t i = 0; i < n; ++i) words_.next<double>();
   }
   void keep(int* const& p, std::int64_t n, std::int64_t low, std::int64_t high) {
@@ -229,7 +229,7 @@ inline void place_cursors(Workspace<double>& ws) {
   // any instant at which all of them were there; one before its first segment is not passed
   double t = -infinity;
   for (int i = 0; i < ws.sys.inputs; ++i) {
-    const Signal& signal = ws.signal[i];
+    const Signal& signal = ws.in.signal[i];
     const bool begun = signal.segment > 0 || (ws.sys.input_period[i] > 0 && !signal.idle);
     if (ws.sys.input_count[i] > 0 && begun) t = larger(t, segment_start(ws.sys, i, signal.segment));
   }
@@ -250,11 +250,11 @@ inline void resume(Workspace<double>& ws, const unsigned char* bytes) {
     ws.started = false;
     return;
   }
-  for (int c = 0; c < sys.contacts; ++c) ws.compliant[c] = is_compliant_law(sys.contact_law[c]);
+  for (int c = 0; c < sys.contacts; ++c) ws.contact.compliant[c] = is_compliant_law(sys.contact_law[c]);
   for (int d = 0; d < ws.n_directions; ++d) ws.branch_of[d] = -1;
   place_cursors(ws);
   // so was the choice of the method
-  ws.options.method = ws.is_explicit ? Method::dopri5 : Method::rodas5p;
+  ws.options.method = ws.reduced.method;
   const bool entered = enter_mode(ws);
   read();
   ws.fresh_phase = ws.fresh_phase || !entered;

@@ -56,7 +56,7 @@ void carries(const Model& model, int k, int l, int method) {
   settings(r.ws.options, method);
   r.ws.params[k].d[0] = 1, r.ws.params[l].d[1] = 1;
   CHECK(r.advance(0.6) == Status::done);
-  CHECK(r.ws.n_events == 0);
+  CHECK(r.ws.events.n == 0);
   for (int j = 0; j < 2; ++j) {
     const int number = j == 0 ? k : l;
     const double h = 1e-5 * (1 + std::fabs(r.ws.sys.params[number]));

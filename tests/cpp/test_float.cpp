@@ -17,11 +17,11 @@ void lock_and_break(int method) {
   r.ws.options.rtol = 1e-4, r.ws.options.atol = 1e-4;
   r.ws.options.method = Method(method);
   CHECK(r.advance(6.0) == Status::done);
-  if (!CHECK(r.ws.n_events >= 2)) return;
-  CHECK_NEAR(r.ws.events[0], 1.6, 1.6e-5);
+  if (!CHECK(r.ws.events.n >= 2)) return;
+  CHECK_NEAR(r.ws.events.at[0], 1.6, 1.6e-5);
   // 50 (t - 2) * 3 / 5 = 90
-  CHECK_NEAR(r.ws.events[event_size], 5.0, 5e-5);
-  CHECK(r.ws.mode[0] == backward);
+  CHECK_NEAR(r.ws.events.at[event_size], 5.0, 5e-5);
+  CHECK(r.ws.contact.mode[0] == backward);
   CHECK_NEAR(r.ws.v[1], 40 + 50 * 4.5 / 5 + 25, 1e-2);
 }
 

@@ -340,7 +340,7 @@ struct Probe {
       b.inputs = contact_inputs(b.kind), b.law_inputs = law_inputs_of(b.law), b.shaped = is_shaped(b.kind);
     }
     // a driveline of this contact alone
-    ws.sys.points = points, ws.params = params, ws.u = input;
+    ws.sys.points = points, ws.params = params, ws.in.u = input;
     ws.sys.contact_param = ws.sys.contact_input = &zero, ws.sys.contact_law_input = &law_input;
     ws.sys.contact_kind = &contact_kind, ws.sys.contact_law = &contact_law, ws.sys.contact_law_param = &law_at;
     contact_kind = b.kind, contact_law = b.law;

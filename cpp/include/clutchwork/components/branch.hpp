@@ -91,7 +91,7 @@ T contact_limit(const System& sys, int c, const T* params, const T* input, const
 
 template <class T>
 CLUTCHWORK_INLINE bool contact_one_way(const Workspace<T>& ws, int c) {
-  if (ws.fault[c] == cannot_transmit) return false;
+  if (ws.contact.fault[c] == cannot_transmit) return false;
   return visit_contact(ws.sys.contact_kind[c], [](auto tag) { return decltype(tag)::type::one_way; });
 }
 
@@ -195,6 +195,14 @@ template <class T>
 struct StatePartials {
   T *f_state, *g_rate, *g_time, *g_state;
 };
+
+/// Where those of branch k go.
+template <class T>
+CLUTCHWORK_INLINE StatePartials<T> state_partials(const Workspace<T>& ws, int k) {
+  const Jacobian<T>& j = ws.jacobian;
+  const int at = ws.branch[k].state;
+  return {j.f_state + at, j.g_rate + at, j.g_time + at, j.g_state + j.block[k]};
+}
 
 /// Derivatives from duals over (rate, own states, time) to where they are wanted.
 template <class S, class T>
@@ -387,7 +395,7 @@ T table_room(const Workspace<T>& ws, int c, T slip, T& seen) {
     if constexpr (BoundedLaw<L>) {
       const T* params = ws.params + sys.contact_law_param[c];
       const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
-      return L::outside(p, At<T>{abs(slip), nullptr, ws.u + sys.contact_law_input[c], 0, sys.points}, seen);
+      return L::outside(p, At<T>{abs(slip), nullptr, ws.in.u + sys.contact_law_input[c], 0, sys.points}, seen);
     }
     return T(1);
   });

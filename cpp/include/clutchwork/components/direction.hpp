@@ -5,18 +5,10 @@
 /// Directions of the motion: the rate of each, and the branch that works along it.
 namespace clutchwork {
 
-/// Rate of a direction at the present speeds.
-template <class T>
-T rate_of(const Workspace<T>& ws, int d) {
-  const System& sys = ws.sys;
-  const bool element = d < sys.elements;
-  const std::int64_t k = element ? d : d - sys.elements;
-  const double* row = (element ? sys.element_rate : sys.contact_rate) + k * sys.speeds;
-  const double* given = (element ? sys.element_rate_prescribed : sys.contact_rate_prescribed) + k * sys.prescribed;
-  T r = T(0);
-  for (int i = 0; i < sys.speeds; ++i) r += T(row[i]) * ws.v[i];
-  for (int p = 0; p < sys.prescribed; ++p) r += T(given[p]) * ws.prescribed[p];
-  return r;
+/// Shares of the speeds in the rate of a direction.
+inline const double* rate_row(const System& sys, int d) {
+  if (d < sys.elements) return sys.element_rate + d * sys.speeds;
+  return sys.contact_rate + (d - sys.elements) * sys.speeds;
 }
 
 /// Share of prescribed speed p in the rate of a direction.
@@ -25,6 +17,17 @@ T prescribed_share(const Workspace<T>& ws, int d, int p) {
   const System& sys = ws.sys;
   if (d < sys.elements) return T(sys.element_rate_prescribed[d * sys.prescribed + p]);
   return T(sys.contact_rate_prescribed[(d - sys.elements) * sys.prescribed + p]);
+}
+
+/// Rate of a direction at the present speeds.
+template <class T>
+T rate_of(const Workspace<T>& ws, int d) {
+  const System& sys = ws.sys;
+  const double* row = rate_row(sys, d);
+  T r = T(0);
+  for (int i = 0; i < sys.speeds; ++i) r += T(row[i]) * ws.v[i];
+  for (int p = 0; p < sys.prescribed; ++p) r += prescribed_share(ws, d, p) * ws.in.prescribed[p];
+  return r;
 }
 
 /// The branch of an element, or of a contact that slips with the given sign.
@@ -42,8 +45,8 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
     b.law = -1;
     b.params = ws.params + sys.element_param[d];
     b.state = sys.element_state[d];
-    b.input = ws.u + sys.element_input[d];
-    b.input_slope = ws.du + sys.element_input[d];
+    b.input = ws.in.u + sys.element_input[d];
+    b.input_slope = ws.in.du + sys.element_input[d];
   } else {
     const int c = d - int(sys.elements);
     b.kind = sys.contact_kind[c];
@@ -51,15 +54,15 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
     b.params = ws.params + sys.contact_param[c];
     b.law_params = ws.params + sys.contact_law_param[c];
     b.state = sys.contact_state[c];
-    b.input = ws.u + sys.contact_input[c];
-    b.input_slope = ws.du + sys.contact_input[c];
+    b.input = ws.in.u + sys.contact_input[c];
+    b.input_slope = ws.in.du + sys.contact_input[c];
     b.inputs = contact_inputs(b.kind);
     b.law_inputs = law_inputs_of(b.law);
-    b.law_input = ws.u + sys.contact_law_input[c];
-    b.law_input_slope = ws.du + sys.contact_law_input[c];
+    b.law_input = ws.in.u + sys.contact_law_input[c];
+    b.law_input_slope = ws.in.du + sys.contact_law_input[c];
     b.shaped = is_shaped(b.kind);
-    b.pressed = ws.pressed[c] != 0;
-    b.compliant = ws.compliant[c] != 0;
+    b.pressed = ws.contact.pressed[c] != 0;
+    b.compliant = ws.contact.compliant[c] != 0;
     if (b.compliant) b.sign = forward;
   }
   b.states = states_of(b.kind, b.law, b.law_params);

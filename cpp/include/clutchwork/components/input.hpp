@@ -79,7 +79,7 @@ inline bool segment_exists(const System& sys, int i, std::int64_t k) {
 template <class T>
 void seek(Workspace<T>& ws, int i, double t) {
   const System& sys = ws.sys;
-  Signal& signal = ws.signal[i];
+  Signal& signal = ws.in.signal[i];
   if (sys.input_count[i] == 0) {
     signal.knot = infinity;
     return;
@@ -106,7 +106,7 @@ void seek(Workspace<T>& ws, int i, double t) {
 /// Value of signal i at time t on its present segment.
 template <class T>
 CLUTCHWORK_INLINE double signal_value(const Workspace<T>& ws, int i, double t) {
-  const Signal& signal = ws.signal[i];
+  const Signal& signal = ws.in.signal[i];
   if (signal.coef == nullptr) return signal.held;
   const double s = signal.idle ? 0.0 : t - signal.start;
   if (signal.linear && signal.coef[4] == 0) return signal.coef[0] + signal.coef[1] * s;
@@ -116,14 +116,14 @@ CLUTCHWORK_INLINE double signal_value(const Workspace<T>& ws, int i, double t) {
 /// Time derivative of signal i at time t on its present segment.
 template <class T>
 CLUTCHWORK_INLINE double signal_slope(const Workspace<T>& ws, int i, double t) {
-  const Signal& signal = ws.signal[i];
+  const Signal& signal = ws.in.signal[i];
   return signal.varying ? segment_slope(signal.coef, t - signal.start) : 0.0;
 }
 
 /// Bounds of signal i from time t to its next knot; infinite where they are not plain.
 template <class T>
 void signal_range(const Workspace<T>& ws, int i, double t, double& low, double& high) {
-  const Signal& signal = ws.signal[i];
+  const Signal& signal = ws.in.signal[i];
   // a shared state may go anywhere
   low = -infinity, high = infinity;
   if (i >= ws.sys.inputs) return;
@@ -143,7 +143,7 @@ void signal_range(const Workspace<T>& ws, int i, double t, double& low, double& 
 /// Whether values of signals may come from outside at time t: what the signals do there waits for them.
 template <class T>
 bool awaits_values(const Workspace<T>& ws, double t) {
-  if (ws.next_knot < t) return false;
+  if (ws.in.next_knot < t) return false;
   for (int i = 0; i < ws.sys.inputs; ++i) {
     if (ws.sys.input_count[i] == 0) return true;
   }
@@ -153,48 +153,54 @@ bool awaits_values(const Workspace<T>& ws, double t) {
 /// Values of all references at time t; only the varying ones are computed again.
 template <class T>
 CLUTCHWORK_INLINE void inputs_at(Workspace<T>& ws, double t) {
-  if (t == ws.input_time) return;
-  ws.input_time = t;
-  for (int k = 0; k < ws.n_varying; ++k) {
-    const int ref = ws.varying[k];
-    ws.u[ref] = T(signal_value(ws, ws.ref_signal[ref], t));
+  if (t == ws.in.time) return;
+  ws.in.time = t;
+  for (int k = 0; k < ws.in.n_varying; ++k) {
+    const int ref = ws.in.varying[k];
+    ws.in.u[ref] = T(signal_value(ws, ws.in.ref_signal[ref], t));
   }
 }
 
 /// Time derivatives of all references at time t.
 template <class T>
 CLUTCHWORK_INLINE void input_slopes_at(Workspace<T>& ws, double t) {
-  for (int k = 0; k < ws.n_varying; ++k) {
-    const int ref = ws.varying[k];
-    ws.du[ref] = T(signal_slope(ws, ws.ref_signal[ref], t));
+  for (int k = 0; k < ws.in.n_varying; ++k) {
+    const int ref = ws.in.varying[k];
+    ws.in.du[ref] = T(signal_slope(ws, ws.in.ref_signal[ref], t));
   }
+}
+
+/// The prescribed speeds before they jump.
+template <class T>
+void keep_prescribed(Workspace<T>& ws) {
+  for (int p = 0; p < ws.sys.prescribed; ++p) ws.in.prescribed_before[p] = ws.in.prescribed[p];
 }
 
 /// Take the right limit of every signal at time t: cursors, constants, the list of varying ones, the next knot.
 template <class T>
 void load_inputs(Workspace<T>& ws, double t) {
-  ws.n_varying = 0;
-  ws.next_knot = infinity;
+  ws.in.n_varying = 0;
+  ws.in.next_knot = infinity;
   for (int i = 0; i < ws.sys.inputs; ++i) {
     seek(ws, i, t);
-    if (ws.signal[i].knot < ws.next_knot) ws.next_knot = ws.signal[i].knot;
+    if (ws.in.signal[i].knot < ws.in.next_knot) ws.in.next_knot = ws.in.signal[i].knot;
   }
-  ws.n_shared_refs = ws.n_direction_refs = 0;
-  for (int ref = 0; ref < ws.n_refs; ++ref) {
-    const int i = ws.ref_signal[ref];
+  ws.in.n_shared_refs = ws.in.n_direction_refs = 0;
+  for (int ref = 0; ref < ws.in.n_refs; ++ref) {
+    const int i = ws.in.ref_signal[ref];
     if (i >= ws.sys.inputs) {
       if (i < ws.sys.inputs + ws.sys.shared) {
-        ws.shared_ref[ws.n_shared_refs++] = ref;
+        ws.in.shared_ref[ws.in.n_shared_refs++] = ref;
       } else {
-        ws.direction_ref[ws.n_direction_refs++] = ref;
+        ws.in.direction_ref[ws.in.n_direction_refs++] = ref;
       }
       continue;
     }
-    ws.u[ref] = T(signal_value(ws, i, t));
-    ws.du[ref] = T(signal_slope(ws, i, t));
-    if (ws.signal[i].varying) ws.varying[ws.n_varying++] = ref;
+    ws.in.u[ref] = T(signal_value(ws, i, t));
+    ws.in.du[ref] = T(signal_slope(ws, i, t));
+    if (ws.in.signal[i].varying) ws.in.varying[ws.in.n_varying++] = ref;
   }
-  ws.input_time = t;
+  ws.in.time = t;
 }
 
 }  // namespace clutchwork

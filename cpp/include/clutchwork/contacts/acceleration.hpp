@@ -9,34 +9,33 @@
 namespace clutchwork {
 
 /// Mass-weighted acceleration without contacts that may stick: L^-1 (forces - M_p du/dt).
-/// ws.effort: sum of the sizes of all contributions, what round-off of q is measured against.
+/// ws.decision.effort: sum of the sizes of all contributions, what round-off of q is measured against.
 template <class T>
 void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   const System& sys = ws.sys;
   const int nv = int(sys.speeds);
   for (int i = 0; i < nv; ++i) q[i] = T(0);
-  ws.effort = 0;
+  ws.decision.effort = 0;
   auto add = [&](T size, int d) {
     T square = T(0);
-    for (int e = ws.white_first[d]; e < ws.white_first[d + 1]; ++e) {
-      q[ws.white_col[e]] += size * ws.white[e];
-      square += ws.white[e] * ws.white[e];
-    }
-    ws.effort += abs(value(size)) * sqrt(value(square));
+    const Compressed<T>& white = ws.geometry.white;
+    white.add(d, size, q);
+    for (int e = white.first[d]; e < white.first[d + 1]; ++e) square += white.val[e] * white.val[e];
+    ws.decision.effort += abs(value(size)) * sqrt(value(square));
   };
-  for (int p = 0; p < sys.prescribed; ++p) axpy(nv, -ws.prescribed_slope[p], ws.prescribed_momentum + p * nv, q);
+  for (int p = 0; p < sys.prescribed; ++p)
+    axpy(nv, -ws.in.prescribed_slope[p], ws.geometry.prescribed_momentum + p * nv, q);
   for (int d = 0; d < ws.n_directions; ++d) {
     const int c = d - int(sys.elements);
     int sign = 0;
-    if (c >= 0 && !ws.loaded[c]) continue;
-    if (c >= 0 && !ws.compliant[c]) {
+    if (c >= 0 && !ws.contact.loaded[c]) continue;
+    if (c >= 0 && !ws.contact.compliant[c]) {
       if (candidate[c]) continue;
-      sign = ws.mode[c];
+      sign = ws.contact.mode[c];
       if (sign != forward && sign != backward) continue;
     }
     const Branch<T> b = make_branch(ws, d, sign);
-    T* rates = ws.scratch;
-    add(branch_torque(ws, b, rate_of(ws, d), ws.state, rates), d);
+    add(branch_torque(ws, b, rate_of(ws, d), ws.state, ws.seen.state_rates), d);
   }
 }
 
@@ -44,8 +43,8 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
 template <class T>
 T slip_acceleration(const Workspace<T>& ws, int c, const T* q) {
   const int d = int(ws.sys.elements) + c, nv = int(ws.sys.speeds);
-  T a = dot(nv, ws.direction + d * nv, q);
-  for (int p = 0; p < ws.sys.prescribed; ++p) a += prescribed_share(ws, d, p) * ws.prescribed_slope[p];
+  T a = dot(nv, ws.geometry.direction + d * nv, q);
+  for (int p = 0; p < ws.sys.prescribed; ++p) a += prescribed_share(ws, d, p) * ws.in.prescribed_slope[p];
   return a;
 }
 
@@ -54,7 +53,7 @@ template <class T>
 T slip_slope(const Workspace<T>& ws, int c) {
   T a = T(0);
   for (int p = 0; p < ws.sys.prescribed; ++p) {
-    a += prescribed_share(ws, int(ws.sys.elements) + c, p) * ws.prescribed_slope[p];
+    a += prescribed_share(ws, int(ws.sys.elements) + c, p) * ws.in.prescribed_slope[p];
   }
   return a;
 }
@@ -63,11 +62,11 @@ T slip_slope(const Workspace<T>& ws, int c) {
 template <class T>
 BoundedProblem<T> gather(Workspace<T>& ws, const int* list, int n) {
   const int nc = int(ws.sys.contacts);
+  ProblemMemory<T>& p = ws.problem;
   for (int a = 0; a < n; ++a) {
-    for (int b = 0; b < n; ++b) ws.qp_m[a * n + b] = ws.mobility[list[a] * nc + list[b]];
+    for (int b = 0; b < n; ++b) p.matrix[a * n + b] = ws.geometry.mobility[list[a] * nc + list[b]];
   }
-  return {n,       ws.qp_m,      ws.qp_g,          ws.qp_lo, ws.qp_hi,  ws.qp_w,
-          ws.qp_x, ws.qp_x + nc, ws.qp_x + 2 * nc, ws.qp_f,  ws.qp_fix, ws.qp_fix + nc};
+  return {n, p.matrix, p.gradient, p.lower, p.upper, p.weight, p.x, p.slope, p.trial, p.factor, p.bound, p.free};
 }
 
 }  // namespace clutchwork

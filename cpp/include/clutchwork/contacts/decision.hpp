@@ -16,151 +16,199 @@ void release(Workspace<T>& ws, int c, int sign) {
   const int d = int(ws.sys.elements) + c;
   const double slip = value(rate_of(ws, d));
   const bool moving = abs(slip) > slip_tolerance(ws);
-  ws.mode[c] = !moving ? sign : slip > 0 ? forward : backward;
-  if (moving) ws.forced[c] = ws.mode[c];
-  if (!ws.compliant[c]) ws.piece[d] = piece_of(ws, d, moving ? abs(slip) : 0.0);
-}
-
-/// A contact that was released and then, others having lost torque too, accelerates the other way (-1: none).
-/// It may stick after all; only the first release of a contact is taken back.
-template <class T>
-int turned_back(const Workspace<T>& ws, const int* list, int n, const T* x, const int* released, T* q) {
-  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
-  for (int a = 0; a < n; ++a) axpy(nv, x[a], ws.direction + (ne + list[a]) * nv, q);
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (released[c] != 1) continue;
-    const T* row = ws.direction + (ne + c) * nv;
-    const double noise = 1e-12 * ws.effort * value(sqrt(dot(nv, row, row)));
-    if (ws.mode[c] * value(slip_acceleration(ws, c, q)) < -noise) return c;
-  }
-  return -1;
+  ws.contact.mode[c] = !moving ? sign : slip > 0 ? forward : backward;
+  if (moving) ws.contact.forced[c] = ws.contact.mode[c];
+  if (!ws.contact.compliant[c]) ws.piece[d] = piece_of(ws, d, moving ? abs(slip) : 0.0);
 }
 
 /// How a decision ended: all contacts have their mode, none was found, a freewheel gives way first, or prescribed
 /// speeds turn one backward.
 enum class Settled { yes, no, gives_way, jams };
 
-/// Give every contact at zero slip its torque or its direction of slip. `located`: the contact whose guard was hit, or
-/// the freewheel that gives way.
-template <class T>
-Settled settle_contacts(Workspace<T>& ws, int& located) {
-  const System& sys = ws.sys;
-  const int nc = int(sys.contacts);
-  const double tolerance = slip_tolerance(ws);
-  int* candidate = ws.iscratch;
-  int* list = ws.iscratch + nc;
-  T* q = ws.scratch + ws.sys.states + 1;
-  T* capacity = ws.qp_g + nc;
-  int* released = ws.iscratch + 3 * nc;
+/// An end of a decision, and the contact that gives way or jams (-1: none).
+struct Verdict {
+  Settled how;
+  int contact = -1;
+};
 
-  // who may stick
-  for (int c = 0; c < nc; ++c) {
-    const bool still = ws.mode[c] == locked && !is_rigid(ws, c);
-    const double slip = still ? 0.0 : value(rate_of(ws, int(sys.elements) + c));
-    released[c] = candidate[c] = 0;
+/// What a contact may do before the others are asked.
+enum class Choice { slips, sticks, jams };
+
+/// Choice of a contact that can transmit and whose law sticks; the mode of one that slips. `hit`: its guard was.
+template <class T>
+Choice choice_of(Workspace<T>& ws, int c, double slip, double tolerance, bool hit) {
+  int &mode = ws.contact.mode[c], &forced = ws.contact.forced[c];
+  const bool rigid = is_rigid(ws, c);
+  // prescribed speeds have parted: there is no choice
+  if (hit && ws.happened.cause == Cause::torque_limit && rigid) {
+    const double parting = slip != 0 ? slip : value(slip_slope(ws, c));
+    if (parting < 0 && contact_one_way(ws, c)) return Choice::jams;
+    mode = forced = parting < 0 ? backward : forward;
+    return Choice::slips;
+  }
+  const bool still = mode == locked && !rigid, arrived = hit && ws.happened.cause != Cause::input && !rigid;
+  const bool rests = still || arrived || abs(slip) <= tolerance;
+  if (rests && forced == 0) return Choice::sticks;
+  mode = rests ? forced : slip > 0 ? forward : backward;
+  return Choice::slips;
+}
+
+/// A contact that transmits nothing goes the way it slips.
+template <class T>
+void follow_slip(Workspace<T>& ws, int c, double slip, double tolerance) {
+  int& mode = ws.contact.mode[c];
+  if (abs(slip) > tolerance) {
+    mode = slip > 0 ? forward : backward;
+  } else if (mode == locked) {
+    mode = open;
+  }
+}
+
+/// List who may stick; all others get their mode. A freewheel that prescribed speeds turn backward ends it (-1: none).
+template <class T>
+int choose_candidates(Workspace<T>& ws, int located, double tolerance) {
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int d = int(ws.sys.elements) + c;
+    ws.decision.released[c] = ws.decision.candidate[c] = 0;
     if (!may_stick(ws, c)) {
-      ws.mode[c] = forward;
+      ws.contact.mode[c] = forward;
       continue;
     }
-    const bool arrived = c == located && ws.cause != Cause::input;
-    candidate[c] = ws.loaded[c] && (still || abs(slip) <= tolerance || (arrived && !is_rigid(ws, c)));
-    if (!ws.loaded[c]) {
-      if (abs(slip) > tolerance)
-        ws.mode[c] = slip > 0 ? forward : backward;
-      else if (ws.mode[c] == locked)
-        ws.mode[c] = open;
-    } else if (c == located && ws.cause == Cause::torque_limit && is_rigid(ws, c)) {
-      // prescribed speeds have parted: there is no choice
-      const double parting = slip != 0 ? slip : value(slip_slope(ws, c));
-      if (parting < 0 && contact_one_way(ws, c)) {
-        located = c;
-        return Settled::jams;
-      }
-      candidate[c] = 0;
-      ws.mode[c] = parting < 0 ? backward : forward;
-      ws.forced[c] = ws.mode[c];
-    } else if (candidate[c] && ws.forced[c] != 0) {
-      candidate[c] = 0;
-      ws.mode[c] = ws.forced[c];
-    } else if (!candidate[c]) {
-      ws.mode[c] = slip > 0 ? forward : backward;
+    const bool still = ws.contact.mode[c] == locked && !is_rigid(ws, c);
+    const double slip = still ? 0.0 : value(rate_of(ws, d));
+    if (!ws.contact.loaded[c]) {
+      follow_slip(ws, c, slip, tolerance);
+      continue;
     }
-    if (!candidate[c] && ws.loaded[c] && !ws.compliant[c]) {
-      const int d = int(sys.elements) + c;
-      ws.piece[d] = piece_of(ws, d, abs(slip) > tolerance ? abs(slip) : 0.0);
-    }
+    const Choice choice = choice_of(ws, c, slip, tolerance, c == located);
+    if (choice == Choice::jams) return c;
+    ws.decision.candidate[c] = choice == Choice::sticks;
+    const bool slides = choice == Choice::slips && !ws.contact.compliant[c];
+    if (slides) ws.piece[d] = piece_of(ws, d, abs(slip) > tolerance ? abs(slip) : 0.0);
   }
+  return -1;
+}
 
+/// The problem of the candidates: bounds from their static torques, accelerations from all other torques.
+template <class T>
+BoundedProblem<T> pose_problem(Workspace<T>& ws) {
+  int *list = ws.decision.list, n = 0;
+  T *q = ws.decision.motion, *capacity = ws.problem.capacity;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (ws.decision.candidate[c]) list[n++] = c;
+  }
+  free_motion(ws, ws.decision.candidate, q);
+  BoundedProblem<T> p = gather(ws, list, n);
+  for (int a = 0; a < n; ++a) {
+    const int c = list[a];
+    const T resists_forward = usable_capacity(ws, c, forward), resists_backward = usable_capacity(ws, c, backward);
+    p.gradient[a] = slip_acceleration(ws, c, q);
+    p.lower[a] = -resists_forward;
+    p.upper[a] = contact_one_way(ws, c) ? freewheel_limit(ws, c) : resists_backward;
+    capacity[a] = larger(resists_forward, p.upper[a]);
+    p.x[a] = T(0);
+    if (is_rigid(ws, c)) p.matrix[a * n + a] = T(1e-300);
+  }
+  capacity_weights(p, capacity);
+  for (int a = 0; a < n; ++a) {
+    if (is_rigid(ws, list[a])) p.lower[a] = p.upper[a] = T(0);
+  }
+  return p;
+}
+
+/// Acceleration of the slip of candidate a that counts as none: round-off. Between prescribed speeds only what leaves
+/// zero within a microsecond is a departure; for a contact that has just come to rest, what leaves it within a
+/// millisecond.
+template <class T>
+double slope_noise(const Workspace<T>& ws, const BoundedProblem<T>& p, int a, int located, double tolerance) {
+  const int c = ws.decision.list[a];
+  if (is_rigid(ws, c)) return 1e6 * tolerance;
+  double scale = abs(value(p.gradient[a]));
+  for (int b = 0; b < p.n; ++b) scale = larger(scale, abs(value(p.matrix[a * p.n + b] * p.x[b])));
+  const double mobility = value(sqrt(p.matrix[a * p.n + a]));
+  const double round_off = larger(1e-10 * scale, 1e-12 * ws.decision.effort * mobility);
+  const bool arrived = c == located && ws.happened.cause == Cause::slip_zero;
+  return arrived ? larger(round_off, 1e3 * tolerance) : round_off;
+}
+
+/// Whether candidate a is a freewheel that its torque cannot keep from running backward.
+template <class T>
+bool overruns(const Workspace<T>& ws, const BoundedProblem<T>& p, int a) {
+  return contact_one_way(ws, ws.decision.list[a]) && value(p.slope[a]) < 0;
+}
+
+/// Of the bound torques that cannot hold, the first of a freewheel, else the one that gives way most (-1: all hold).
+/// Candidates on the way are locked.
+template <class T>
+int weakest(Workspace<T>& ws, const BoundedProblem<T>& p, int located, double tolerance) {
+  int first = -1;
+  double most = 0;
+  for (int a = 0; a < p.n; ++a) {
+    ws.contact.mode[ws.decision.list[a]] = locked;
+    const double acceleration = abs(value(p.slope[a]));
+    if (p.bound[a] == 0 || acceleration <= slope_noise(ws, p, a, located, tolerance)) continue;
+    if (overruns(ws, p, a)) return a;
+    const double size = acceleration / value(sqrt(p.matrix[a * p.n + a]));
+    if (size > most) first = a, most = size;
+  }
+  return first;
+}
+
+/// A candidate that no torque holds, for prescribed speeds turn it against freewheels alone (-1: none).
+template <class T>
+int unheld(const Workspace<T>& ws, const BoundedProblem<T>& p, double tolerance) {
+  for (int a = 0; a < p.n; ++a) {
+    const double left = abs(value(p.slope[a])), most = 1e6 * tolerance + 1e-6 * abs(value(p.gradient[a]));
+    if (p.bound[a] == 0 && !is_rigid(ws, ws.decision.list[a]) && left > most) return ws.decision.list[a];
+  }
+  return -1;
+}
+
+/// A contact that was released and then, others having lost torque too, accelerates the other way (-1: none).
+/// It may stick after all; only the first release of a contact is taken back.
+template <class T>
+int turned_back(Workspace<T>& ws, const BoundedProblem<T>& p) {
+  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
+  T* q = ws.decision.motion;
+  for (int a = 0; a < p.n; ++a) axpy(nv, p.x[a], ws.geometry.direction + (ne + ws.decision.list[a]) * nv, q);
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (ws.decision.released[c] != 1) continue;
+    const T* row = ws.geometry.direction + (ne + c) * nv;
+    const double noise = 1e-12 * ws.decision.effort * value(sqrt(dot(nv, row, row)));
+    if (ws.contact.mode[c] * value(slip_acceleration(ws, c, q)) < -noise) return c;
+  }
+  return -1;
+}
+
+/// Give every contact at zero slip its torque or its direction of slip. `located`: the contact whose guard was hit.
+template <class T>
+Verdict settle_contacts(Workspace<T>& ws, int located) {
+  const double tolerance = slip_tolerance(ws);
+  int *candidate = ws.decision.candidate, *released = ws.decision.released;
+  const int jammed = choose_candidates(ws, located, tolerance);
+  if (jammed >= 0) return {Settled::jams, jammed};
   // rounds: those at a bound that accelerate start to slip with their kinetic torque
-  for (int round = 0; round <= 4 * nc + 4; ++round) {
-    int n = 0;
-    for (int c = 0; c < nc; ++c) {
-      if (candidate[c]) list[n++] = c;
-    }
-    free_motion(ws, candidate, q);
-    BoundedProblem<T> p = gather(ws, list, n);
-    for (int a = 0; a < n; ++a) {
-      const int c = list[a];
-      const T resists_forward = usable_capacity(ws, c, forward), resists_backward = usable_capacity(ws, c, backward);
-      const bool one_way = contact_one_way(ws, c);
-      p.gradient[a] = slip_acceleration(ws, c, q);
-      p.lower[a] = -resists_forward;
-      p.upper[a] = one_way ? freewheel_limit(ws, c) : resists_backward;
-      capacity[a] = larger(resists_forward, p.upper[a]);
-      p.x[a] = T(0);
-      if (is_rigid(ws, c)) p.matrix[a * n + a] = T(1e-300);
-    }
-    capacity_weights(p, capacity);
-    for (int a = 0; a < n; ++a) {
-      if (is_rigid(ws, list[a])) p.lower[a] = p.upper[a] = T(0);
-    }
-    if (!solve(p)) return Settled::no;
-
-    // of the bound torques that cannot hold, the one that gives way most starts to slip
-    int first = -1;
-    double most = 0;
-    for (int a = 0; a < n; ++a) {
-      const int c = list[a];
-      ws.mode[c] = locked;
-      const double mobility = value(sqrt(p.matrix[a * n + a]));
-      double scale = abs(value(p.gradient[a]));
-      for (int b = 0; b < n; ++b) scale = larger(scale, abs(value(p.matrix[a * n + b] * p.x[b])));
-      const double acceleration = value(p.slope[a]), size = abs(acceleration) / mobility;
-      // between prescribed speeds only what leaves zero within a microsecond is a departure; for one that has just come
-      // to rest, what leaves it within a millisecond
-      const bool arrived = c == located && ws.cause == Cause::slip_zero;
-      const double round_off = larger(1e-10 * scale, 1e-12 * ws.effort * mobility);
-      const double small = is_rigid(ws, c) ? 1e6 * tolerance : arrived ? larger(round_off, 1e3 * tolerance) : round_off;
-      const bool noise = abs(acceleration) <= small;
-      if (p.bound[a] == 0 || noise) continue;
-      if (contact_one_way(ws, c) && acceleration < 0) {
-        located = c;
-        return is_rigid(ws, c) ? Settled::jams : Settled::gives_way;
-      }
-      if (size > most) first = a, most = size;
-    }
-    if (first >= 0) {
-      const int c = list[first];
-      release(ws, c, value(p.slope[first]) > 0 ? forward : backward);
+  for (int round = 0; round <= 4 * ws.sys.contacts + 4; ++round) {
+    BoundedProblem<T> p = pose_problem(ws);
+    if (!solve(p)) return {Settled::no};
+    const int weak = weakest(ws, p, located, tolerance);
+    if (weak >= 0) {
+      const int c = ws.decision.list[weak];
+      if (overruns(ws, p, weak)) return {is_rigid(ws, c) ? Settled::jams : Settled::gives_way, c};
+      release(ws, c, value(p.slope[weak]) > 0 ? forward : backward);
       candidate[c] = 0;
       released[c] = released[c] == 0 ? 1 : 2;
       continue;
     }
-
-    for (int a = 0; a < n; ++a) {
-      ws.torque[sys.elements + list[a]] = p.x[a];
-      // no torque holds what prescribed speeds turn against freewheels alone
-      const double left = abs(value(p.slope[a])), most = 1e6 * tolerance + 1e-6 * abs(value(p.gradient[a]));
-      if (p.bound[a] != 0 || is_rigid(ws, list[a]) || !(left > most)) continue;
-      located = list[a];
-      return Settled::jams;
-    }
-    const int back = turned_back(ws, list, n, p.x, released, q);
-    if (back < 0) return Settled::yes;
+    for (int a = 0; a < p.n; ++a) ws.decision.torque[ws.decision.list[a]] = p.x[a];
+    const int driven = unheld(ws, p, tolerance);
+    if (driven >= 0) return {Settled::jams, driven};
+    const int back = turned_back(ws, p);
+    if (back < 0) return {Settled::yes};
     released[back] = -1;
     candidate[back] = 1;
   }
-  return Settled::no;
+  return {Settled::no};
 }
 
 }  // namespace clutchwork

@@ -1,6 +1,6 @@
 #pragma once
 #include <clutchwork/components/dense.hpp>
-#include <clutchwork/workspace.hpp>
+#include <clutchwork/workspace/settings.hpp>
 
 /// What contacts whose directions depend on each other hold together, and the share of each: docs/theory/contacts.md.
 namespace clutchwork {

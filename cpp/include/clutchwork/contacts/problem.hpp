@@ -1,6 +1,6 @@
 #pragma once
 #include <clutchwork/components/dense.hpp>
-#include <clutchwork/workspace.hpp>
+#include <clutchwork/workspace/settings.hpp>
 
 /// The bounded convex problem behind sticking: docs/theory/contacts.md.
 namespace clutchwork {

@@ -9,23 +9,24 @@ namespace clutchwork {
 template <class T>
 T load_of(const Workspace<T>& ws, int c) {
   const System& sys = ws.sys;
-  if (ws.fault[c] == cannot_transmit) return T(-1);
-  return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], ws.u + sys.contact_input[c], sys.points);
+  if (ws.contact.fault[c] == cannot_transmit) return T(-1);
+  return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], ws.in.u + sys.contact_input[c],
+                      sys.points);
 }
 
 /// Static torque of a contact now that resists slip in a direction [N m].
 template <class T>
 T static_torque(const Workspace<T>& ws, int c, int direction) {
-  return ws.fault[c] == cannot_transmit ? T(0)
-                                        : contact_limit(ws.sys, c, ws.params, ws.u + ws.sys.contact_input[c],
-                                                        ws.u + ws.sys.contact_law_input[c], direction);
+  return ws.contact.fault[c] == cannot_transmit ? T(0)
+                                                : contact_limit(ws.sys, c, ws.params, ws.in.u + ws.sys.contact_input[c],
+                                                                ws.in.u + ws.sys.contact_law_input[c], direction);
 }
 
 /// What a contact can hold now against slip in a direction [N m]: nothing where its law never sticks.
 template <class T>
 T capacity_of(const Workspace<T>& ws, int c, int direction) {
-  if (ws.fault[c] == cannot_unlock) return T(infinity);
-  return ws.compliant[c] ? T(0) : static_torque(ws, c, direction);
+  if (ws.contact.fault[c] == cannot_unlock) return T(infinity);
+  return ws.contact.compliant[c] ? T(0) : static_torque(ws, c, direction);
 }
 
 /// The capacity that counts while a contact holds a torque: a positive one resists backward slip.
@@ -41,7 +42,7 @@ double fault_trigger(const Workspace<T>& ws, int c) {
     using E = typename decltype(tag)::type;
     if constexpr (FaultyContact<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + ws.sys.contact_param[c]);
-      return value(E::fault(p, At<T>{T(0), nullptr, ws.u + ws.sys.contact_input[c], 0, ws.sys.points}));
+      return value(E::fault(p, At<T>{T(0), nullptr, ws.in.u + ws.sys.contact_input[c], 0, ws.sys.points}));
     }
     return -1.0;
   });
@@ -63,7 +64,7 @@ void fault_of(const Workspace<T>& ws, int c, int& kind, int& report) {
 /// Whether a contact may stick: its law can, or it is a freewheel.
 template <class T>
 bool may_stick(const Workspace<T>& ws, int c) {
-  return !ws.compliant[c] || contact_one_way(ws, c) || ws.fault[c] == cannot_unlock;
+  return !ws.contact.compliant[c] || contact_one_way(ws, c) || ws.contact.fault[c] == cannot_unlock;
 }
 
 /// Time derivative of the load of a contact.
@@ -75,8 +76,8 @@ T load_slope(const Workspace<T>& ws, int c) {
     Dual<T, 1> input[E::inputs > 0 ? E::inputs : 1];
     for (int i = 0; i < E::inputs; ++i) {
       const int ref = sys.contact_input[c] + i;
-      input[i] = Dual<T, 1>(ws.u[ref]);
-      input[i].d[0] = ws.du[ref] + ws.shared_slope[ref];
+      input[i] = Dual<T, 1>(ws.in.u[ref]);
+      input[i].d[0] = ws.in.du[ref] + ws.in.shared_slope[ref];
     }
     return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0], sys.points).d[0];
   });
@@ -89,7 +90,7 @@ bool load_bends(const Workspace<T>& ws, int c) {
   const int first = sys.contact_input[c];
   for (int i = first; i < first + contact_inputs(sys.contact_kind[c]); ++i) {
     const std::int64_t ref = sys.input_refs[i];
-    if (ref >= sys.inputs || !ws.signal[ref].linear) return true;
+    if (ref >= sys.inputs || !ws.in.signal[ref].linear) return true;
   }
   return false;
 }
@@ -104,17 +105,18 @@ bool is_pressed(const Workspace<T>& ws, int c) {
 /// Whether a contact can transmit: it is pressed, blocks one way, or cannot let go.
 template <class T>
 bool is_closed(const Workspace<T>& ws, int c) {
-  return ws.pressed[c] || contact_one_way(ws, c) || (ws.fault[c] == cannot_unlock && ws.mode[c] == locked);
+  return ws.contact.pressed[c] || contact_one_way(ws, c) ||
+         (ws.contact.fault[c] == cannot_unlock && ws.contact.mode[c] == locked);
 }
 
 /// Static torque that a contact can use in a decision: one that rises from zero counts as it is a nanosecond later.
 template <class T>
 T usable_capacity(const Workspace<T>& ws, int c, int direction) {
   const System& sys = ws.sys;
-  if (ws.compliant[c] || ws.fault[c] == cannot_unlock || value(load_of(ws, c)) > 0)
+  if (ws.contact.compliant[c] || ws.contact.fault[c] == cannot_unlock || value(load_of(ws, c)) > 0)
     return capacity_of(ws, c, direction);
   const T rising = larger(load_slope(ws, c), T(0)) * T(1e-9);
-  return rising * law_hold(sys.contact_law[c], ws.params + sys.contact_law_param[c], ws.u + sys.contact_law_input[c],
+  return rising * law_hold(sys.contact_law[c], ws.params + sys.contact_law_param[c], ws.in.u + sys.contact_law_input[c],
                            sys.points);
 }
 
@@ -131,7 +133,7 @@ double slip_tolerance(const Workspace<T>& ws) {
 /// A contact without inertia on either side of its slip: prescribed speeds alone decide it.
 template <class T>
 bool is_rigid(const Workspace<T>& ws, int c) {
-  return value(ws.mobility[c * ws.sys.contacts + c]) == 0;
+  return value(ws.geometry.mobility[c * ws.sys.contacts + c]) == 0;
 }
 
 }  // namespace clutchwork

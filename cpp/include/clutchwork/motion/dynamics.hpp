@@ -22,11 +22,11 @@ CLUTCHWORK_INLINE void evaluate(Form& form, double t, const T* y, T* d) {
   if constexpr (!Form::small) {
     if (ws.sys.shared > 0) {
       for (int k = 0; k < ws.n_branches; ++k) {
-        ws.stage_rate[k] = form.rate(k, y) + offset_rate(ws, k);
-        ws.stage_torque[k] = branch_torque(ws, ws.branch[k], ws.stage_rate[k], y + nz, d + nz);
-        form.push(k, ws.stage_torque[k], d);
+        ws.shared.stage_rate[k] = form.rate(k, y) + offset_rate(ws, k);
+        ws.shared.stage_torque[k] = branch_torque(ws, ws.branch[k], ws.shared.stage_rate[k], y + nz, d + nz);
+        form.push(k, ws.shared.stage_torque[k], d);
       }
-      return shared_rates(ws, ws.stage_rate, ws.stage_torque, y + nz, d + nz);
+      return shared_rates(ws, ws.shared.stage_rate, ws.shared.stage_torque, y + nz, d + nz);
     }
   }
   for (int k = 0; k < ws.n_branches; ++k) {
@@ -35,10 +35,11 @@ CLUTCHWORK_INLINE void evaluate(Form& form, double t, const T* y, T* d) {
   }
 }
 
-/// As evaluate, keeping rates and torques of the branches for output and guards.
+/// As evaluate, keeping rates and torques of the branches in ws.seen, for output and guards.
 template <class Form, class T = typename Form::Scalar>
-void observe(Form& form, double t, const T* y, T* d, T* rate, T* torque) {
+void observe(Form& form, double t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
+  T *rate = ws.seen.rate, *torque = ws.seen.torque;
   const int nz = form.nz(), n = form.n();
   inputs_with(ws, t, y + nz);
   for (int i = 0; i < n; ++i) d[i] = T(0);
@@ -61,10 +62,9 @@ CLUTCHWORK_INLINE void linearize(Form& form, double t, const T* y, T* d, T* dt, 
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
     edge.rate[k] = form.rate(k, y) + offset_rate(ws, k);
-    const StatePartials<T> out{ws.f_state + b.state, ws.g_rate + b.state, ws.g_time + b.state,
-                               ws.g_state + ws.block[k]};
+    const StatePartials<T> out = state_partials(ws, k);
     const Partial<T> p = branch_partial(ws, b, edge.rate[k], offset_slope(ws, k), y + nz, d + nz, out);
-    ws.partial[k] = p;
+    ws.jacobian.partial[k] = p;
     form.push(k, p.torque, d);
     if (value(p.by_time) != 0) form.push(k, p.by_time, dt);
     for (int s = 0; s < b.states; ++s) dt[nz + b.state + s] = out.g_time[s];
@@ -88,19 +88,17 @@ CLUTCHWORK_INLINE void slopes(Form& form, const T* velocity, Edge<T>& edge) {
 template <class T>
 void sparse_multipliers(const Workspace<T>& ws, const T* torque, int np, T* out) {
   const System& sys = ws.sys;
-  const int m = ws.n_locked, nv = int(sys.speeds), ne = int(sys.elements);
-  T *q = ws.dense_v, *b = ws.qp_g + 2 * sys.contacts;
+  const int m = ws.held.n, nv = int(sys.speeds), ne = int(sys.elements);
+  T *q = ws.held.motion, *b = ws.held.rhs;
   for (int i = 0; i < nv; ++i) q[i] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
-    const int d = ws.branch[k].direction;
-    for (int e = ws.white_first[d]; e < ws.white_first[d + 1]; ++e) q[ws.white_col[e]] += torque[k] * ws.white[e];
+    ws.geometry.white.add(ws.branch[k].direction, torque[k], q);
   }
-  for (int p = 0; p < np; ++p) axpy(nv, -ws.prescribed_slope[p], ws.prescribed_momentum + p * nv, q);
+  for (int p = 0; p < np; ++p) axpy(nv, -ws.in.prescribed_slope[p], ws.geometry.prescribed_momentum + p * nv, q);
   for (int a = 0; a < m; ++a) {
-    const int d = ne + ws.locked[a];
-    b[a] = T(0);
-    for (int e = ws.white_first[d]; e < ws.white_first[d + 1]; ++e) b[a] -= q[ws.white_col[e]] * ws.white[e];
-    for (int p = 0; p < np; ++p) b[a] -= prescribed_share(ws, d, p) * ws.prescribed_slope[p];
+    const int d = ne + ws.held.contact[a];
+    b[a] = T(0) - ws.geometry.white.times(d, q);
+    for (int p = 0; p < np; ++p) b[a] -= prescribed_share(ws, d, p) * ws.in.prescribed_slope[p];
   }
   solve_locked(ws, b, out);
 }
@@ -109,11 +107,12 @@ void sparse_multipliers(const Workspace<T>& ws, const T* torque, int np, T* out)
 template <class T>
 CLUTCHWORK_INLINE void multipliers(const Workspace<T>& ws, const T* torque, bool moving, T* out) {
   const System& sys = ws.sys;
-  const int m = ws.n_locked, nb = ws.n_branches, np = moving ? int(sys.prescribed) : 0;
-  if (!ws.sparse) {
+  const int m = ws.held.n, nb = ws.n_branches, np = moving ? int(sys.prescribed) : 0;
+  if (!ws.reduced.is_sparse) {
     for (int a = 0; a < m; ++a) {
-      out[a] = dot(nb, ws.reach + a * nb, torque);
-      for (int p = 0; p < np; ++p) out[a] += ws.reach_prescribed[a * sys.prescribed + p] * ws.prescribed_slope[p];
+      out[a] = dot(nb, ws.held.reach + a * nb, torque);
+      for (int p = 0; p < np; ++p)
+        out[a] += ws.held.reach_prescribed[a * sys.prescribed + p] * ws.in.prescribed_slope[p];
     }
     return;
   }
@@ -131,37 +130,38 @@ T capacity_swing(const Workspace<T>& ws, int c, T capacity) {
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
-  const int m = ws.n_locked, nb = ws.n_branches;
+  const int m = ws.held.n, nb = ws.n_branches;
   if (m == 0) return;
-  T *drift = ws.torque, *torque = ws.output_torque;
+  T *drift = ws.seen.drift, *torque = ws.seen.torque;
   const T* states = d + form.nz();
   T size = T(0);
   for (int k = 0; k < nb; ++k) {
     const Branch<T>& b = ws.branch[k];
-    const Partial<T>& p = ws.partial[k];
+    const Partial<T>& p = ws.jacobian.partial[k];
     torque[k] = p.torque;
     size += abs(p.torque);
     drift[k] = p.by_rate * (edge.slope[k] - offset_slope(ws, k)) + p.by_time;
-    for (int s = 0; s < b.states; ++s) drift[k] += ws.f_state[b.state + s] * states[b.state + s];
+    for (int s = 0; s < b.states; ++s) drift[k] += ws.jacobian.f_state[b.state + s] * states[b.state + s];
     const int nx = int(ws.sys.shared);
-    for (int j = 0; j < nx; ++j) drift[k] += ws.by_shared[k * nx + j] * states[ws.sys.states - nx + j];
+    for (int j = 0; j < nx; ++j) drift[k] += ws.shared.torque_by[k * nx + j] * states[ws.sys.states - nx + j];
   }
   multipliers(ws, torque, true, edge.multiplier);
   multipliers(ws, drift, false, edge.drift);
   for (int a = 0; a < m; ++a) {
     edge.noise[a] = T(1e-12) * size;
-    edge.capacity[a] = capacity_at(ws, ws.locked[a], edge.multiplier[a]);
-    edge.swing[a] = load_bends(ws, ws.locked[a]) ? capacity_swing(ws, ws.locked[a], edge.capacity[a]) : T(0);
+    edge.capacity[a] = capacity_at(ws, ws.held.contact[a], edge.multiplier[a]);
+    edge.swing[a] =
+        load_bends(ws, ws.held.contact[a]) ? capacity_swing(ws, ws.held.contact[a], edge.capacity[a]) : T(0);
   }
-  for (int k = 0; k < ws.n_sets; ++k) [[unlikely]]
+  for (int k = 0; k < ws.held.n_sets; ++k) [[unlikely]]
     edge.room[k] = set_room(ws, k, edge.multiplier, edge.noise[0]);
 }
 
 /// Room of the dependent sets were the torques of their carriers to drift on for a time.
 template <class T>
 double room_ahead(Workspace<T>& ws, int k, const Edge<T>& edge, double time) {
-  T* carried = ws.qp_g + 3 * ws.sys.contacts;
-  for (int a = 0; a < ws.n_locked; ++a) carried[a] = edge.multiplier[a] + T(time) * edge.drift[a];
+  T* carried = ws.held.carried;
+  for (int a = 0; a < ws.held.n; ++a) carried[a] = edge.multiplier[a] + T(time) * edge.drift[a];
   return value(set_room(ws, k, carried, edge.noise[0]));
 }
 
@@ -173,11 +173,11 @@ void expand(Form& form, const T* z, T* v, bool offset = true) {
   for (int i = 0; i < nv; ++i) {
     T s = T(0);
     if constexpr (Form::small) {
-      for (int j = 0; j < nz; ++j) s += ws.z_basis[i * nz + j] * z[j];
+      for (int j = 0; j < nz; ++j) s += ws.reduced.z_basis[i * nz + j] * z[j];
     } else {
-      for (int e = ws.exp_first[i]; e < ws.exp_first[i + 1]; ++e) s += ws.exp_val[e] * z[ws.exp_col[e]];
+      s = ws.rows.expansion.times(i, z);
     }
-    for (int p = 0; p < np && offset; ++p) s += ws.y_basis[i * np + p] * ws.prescribed[p];
+    for (int p = 0; p < np && offset; ++p) s += ws.reduced.y_basis[i * np + p] * ws.in.prescribed[p];
     v[i] = s;
   }
 }
@@ -194,7 +194,7 @@ CLUTCHWORK_INLINE double error_norm(Form& form, const T* error, const T* a, cons
     for (int i = 0; i < nv; ++i) {
       T e = T(0), va = T(0), vb = T(0);
       for (int j = 0; j < nz; ++j) {
-        const T z = ws.z_basis[i * nz + j];
+        const T z = ws.reduced.z_basis[i * nz + j];
         e += z * error[j], va += z * a[j], vb += z * b[j];
       }
       const double x = value(e) / (atol + rtol * larger(abs(value(va)), abs(value(vb))));

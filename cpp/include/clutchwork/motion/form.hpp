@@ -19,13 +19,13 @@ struct SmallForm {
   static constexpr int n() { return NZ + NS; }
 
   CLUTCHWORK_INLINE T rate(int k, const T* z) const {
-    const T* r = ws.row_z + k * NZ;
+    const T* r = ws.reduced.row_z + k * NZ;
     T s = T(0);
     for (int i = 0; i < NZ; ++i) s += r[i] * z[i];
     return s;
   }
   CLUTCHWORK_INLINE void push(int k, T torque, T* q) const {
-    const T* r = ws.row_z + k * NZ;
+    const T* r = ws.reduced.row_z + k * NZ;
     for (int i = 0; i < NZ; ++i) q[i] += r[i] * torque;
   }
   CLUTCHWORK_INLINE void add_mass_times(T factor, const T* x, T* y) const {
@@ -38,7 +38,7 @@ struct SmallForm {
     for (int i = 0; i < NZ * NZ; ++i) w[i] = T(0);
     for (int k = 0; k < ws.n_branches; ++k) {
       if (value(stiff[k]) == 0) continue;
-      const T* r = ws.row_z + k * NZ;
+      const T* r = ws.reduced.row_z + k * NZ;
       for (int i = 0; i < NZ; ++i) {
         const T s = stiff[k] * r[i];
         for (int j = 0; j <= i; ++j) w[i * NZ + j] -= s * r[j];
@@ -88,33 +88,23 @@ struct SparseForm {
   T* w;
   bool mass_factored = false;
 
-  explicit SparseForm(Workspace<T>& workspace) : ws(workspace), w(workspace.envelope) {}
-  int nz() const { return ws.nz; }
+  explicit SparseForm(Workspace<T>& workspace) : ws(workspace), w(workspace.rows.envelope) {}
+  int nz() const { return ws.reduced.nz; }
   int ns() const { return int(ws.sys.states); }
-  int n() const { return ws.nz + int(ws.sys.states); }
+  int n() const { return ws.reduced.nz + int(ws.sys.states); }
 
-  CLUTCHWORK_INLINE T rate(int k, const T* z) const {
-    T s = T(0);
-    for (int e = ws.sp_first[k]; e < ws.sp_first[k + 1]; ++e) s += ws.sp_val[e] * z[ws.sp_col[e]];
-    return s;
-  }
-  CLUTCHWORK_INLINE void push(int k, T torque, T* q) const {
-    for (int e = ws.sp_first[k]; e < ws.sp_first[k + 1]; ++e) q[ws.sp_col[e]] += ws.sp_val[e] * torque;
-  }
+  CLUTCHWORK_INLINE T rate(int k, const T* z) const { return ws.rows.rate.times(k, z); }
+  CLUTCHWORK_INLINE void push(int k, T torque, T* q) const { ws.rows.rate.add(k, torque, q); }
   void add_mass_times(T factor, const T* x, T* y) const {
-    for (int i = 0; i < ws.nz; ++i) {
-      T s = T(0);
-      for (int e = ws.m_first[i]; e < ws.m_first[i + 1]; ++e) s += ws.m_val[e] * x[ws.m_col[e]];
-      y[i] += factor * s;
-    }
+    for (int i = 0; i < ws.reduced.nz; ++i) y[i] += factor * ws.rows.mass.times(i, x);
   }
-  /// b := M^-1 b; needs its own factor, kept behind the one of the step.
+  /// b := M^-1 b, with a factor of its own beside the one of the step.
   void solve_mass(T* b) {
-    T* factor_of_mass = ws.envelope + envelope_size();
+    T* factor_of_mass = ws.rows.mass_envelope;
     if (!mass_factored) {
       assemble(factor_of_mass, T(1), nullptr);
-      for (int i = 0; i < ws.nz; ++i) {
-        if (value(factor_of_mass[ws.sky[i] + i]) == 0) factor_of_mass[ws.sky[i] + i] = T(1);
+      for (int i = 0; i < ws.reduced.nz; ++i) {
+        if (value(factor_of_mass[ws.rows.sky[i] + i]) == 0) factor_of_mass[ws.rows.sky[i] + i] = T(1);
       }
       factor_envelope(factor_of_mass);
       mass_factored = true;
@@ -128,32 +118,34 @@ struct SparseForm {
   void solve(T* b) const { solve_envelope(w, b); }
 
  private:
-  int envelope_size() const { return ws.nz == 0 ? 0 : ws.sky[ws.nz - 1] + ws.nz; }
+  int envelope_size() const { return ws.reduced.nz == 0 ? 0 : ws.rows.sky[ws.reduced.nz - 1] + ws.reduced.nz; }
 
   void assemble(T* a, T scale, const T* stiff) const {
+    const Compressed<T>&mass = ws.rows.mass, &rate = ws.rows.rate;
     const int size = envelope_size();
     for (int i = 0; i < size; ++i) a[i] = T(0);
-    for (int i = 0; i < ws.nz; ++i) {
-      for (int e = ws.m_first[i]; e < ws.m_first[i + 1] && ws.m_col[e] <= i; ++e)
-        a[ws.sky[i] + ws.m_col[e]] = scale * ws.m_val[e];
+    for (int i = 0; i < ws.reduced.nz; ++i) {
+      T* row = a + ws.rows.sky[i];
+      for (int e = mass.first[i]; e < mass.first[i + 1] && mass.col[e] <= i; ++e)
+        row[mass.col[e]] = scale * mass.val[e];
     }
     for (int k = 0; stiff != nullptr && k < ws.n_branches; ++k) {
       if (value(stiff[k]) == 0) continue;
-      for (int e = ws.sp_first[k]; e < ws.sp_first[k + 1]; ++e) {
-        const T s = stiff[k] * ws.sp_val[e];
-        T* row = a + ws.sky[ws.sp_col[e]];
-        for (int f = ws.sp_first[k]; f <= e; ++f) row[ws.sp_col[f]] -= s * ws.sp_val[f];
+      for (int e = rate.first[k]; e < rate.first[k + 1]; ++e) {
+        const T s = stiff[k] * rate.val[e];
+        T* row = a + ws.rows.sky[rate.col[e]];
+        for (int f = rate.first[k]; f <= e; ++f) row[rate.col[f]] -= s * rate.val[f];
       }
     }
   }
 
   // LDL' row by row inside the envelope; the diagonal holds 1/d
   bool factor_envelope(T* a) const {
-    const int* low = ws.pivot_of;
-    for (int i = 0; i < ws.nz; ++i) {
-      T* row = a + ws.sky[i];
+    const int* low = ws.rows.low;
+    for (int i = 0; i < ws.reduced.nz; ++i) {
+      T* row = a + ws.rows.sky[i];
       for (int j = low[i]; j < i; ++j) {
-        const T* other = a + ws.sky[j];
+        const T* other = a + ws.rows.sky[j];
         const int start = larger(low[i], low[j]);
         T s = row[j];
         for (int k = start; k < j; ++k) s -= row[k] * other[k];
@@ -161,7 +153,7 @@ struct SparseForm {
       }
       T d = row[i];
       for (int j = low[i]; j < i; ++j) {
-        const T l = row[j] * a[ws.sky[j] + j];
+        const T l = row[j] * a[ws.rows.sky[j] + j];
         d -= l * row[j];
         row[j] = l;
       }
@@ -172,16 +164,16 @@ struct SparseForm {
   }
 
   void solve_envelope(const T* a, T* b) const {
-    const int* low = ws.pivot_of;
-    for (int i = 0; i < ws.nz; ++i) {
-      const T* row = a + ws.sky[i];
+    const int* low = ws.rows.low;
+    for (int i = 0; i < ws.reduced.nz; ++i) {
+      const T* row = a + ws.rows.sky[i];
       T s = b[i];
       for (int j = low[i]; j < i; ++j) s -= row[j] * b[j];
       b[i] = s;
     }
-    for (int i = 0; i < ws.nz; ++i) b[i] *= a[ws.sky[i] + i];
-    for (int i = ws.nz - 1; i >= 0; --i) {
-      const T* row = a + ws.sky[i];
+    for (int i = 0; i < ws.reduced.nz; ++i) b[i] *= a[ws.rows.sky[i] + i];
+    for (int i = ws.reduced.nz - 1; i >= 0; --i) {
+      const T* row = a + ws.rows.sky[i];
       const T s = b[i];
       for (int j = low[i]; j < i; ++j) b[j] -= row[j] * s;
     }

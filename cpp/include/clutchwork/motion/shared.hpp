@@ -5,28 +5,28 @@
 #include <clutchwork/workspace.hpp>
 
 /// States that any component may read (temperatures, pressures, wear): flows between them, heat into them, processes of
-/// their own. docs/theory/thermal.md, and docs/theory/integrators.md for the border that they put around the motion.
+/// their own. docs/theory/thermal.md.
 namespace clutchwork {
 
 /// Part of the rate of a branch that the prescribed speeds give, and its time derivative.
 template <class T>
 CLUTCHWORK_INLINE T offset_rate(const Workspace<T>& ws, int k) {
   const int np = int(ws.sys.prescribed);
-  return np == 0 ? T(0) : dot(np, ws.offset + k * np, ws.prescribed);
+  return np == 0 ? T(0) : dot(np, ws.reduced.offset + k * np, ws.in.prescribed);
 }
 template <class T>
 CLUTCHWORK_INLINE T offset_slope(const Workspace<T>& ws, int k) {
   const int np = int(ws.sys.prescribed);
-  return np == 0 ? T(0) : dot(np, ws.offset + k * np, ws.prescribed_slope);
+  return np == 0 ? T(0) : dot(np, ws.reduced.offset + k * np, ws.in.prescribed_slope);
 }
 
 /// Values of the references to shared states; `state` are all states.
 template <class T>
 CLUTCHWORK_INLINE void shared_inputs(Workspace<T>& ws, const T* state) {
   const System& sys = ws.sys;
-  for (int k = 0; k < ws.n_shared_refs; ++k) {
-    const int ref = ws.shared_ref[k], j = sys.input_refs[ref] - int(sys.inputs);
-    ws.u[ref] = T(sys.shared_offset[j]) + T(sys.shared_scale[j]) * state[sys.states - sys.shared + j];
+  for (int k = 0; k < ws.in.n_shared_refs; ++k) {
+    const int ref = ws.in.shared_ref[k], j = sys.input_refs[ref] - int(sys.inputs);
+    ws.in.u[ref] = T(sys.shared_offset[j]) + T(sys.shared_scale[j]) * state[sys.states - sys.shared + j];
   }
 }
 
@@ -34,7 +34,7 @@ CLUTCHWORK_INLINE void shared_inputs(Workspace<T>& ws, const T* state) {
 template <class T>
 CLUTCHWORK_INLINE void inputs_with(Workspace<T>& ws, double t, const T* state) {
   inputs_at(ws, t);
-  if (ws.n_shared_refs > 0) shared_inputs(ws, state);
+  if (ws.in.n_shared_refs > 0) shared_inputs(ws, state);
 }
 
 /// Where a reference to a rate or a heat points: its branch, -1 while that is locked; `heat` tells which.
@@ -51,11 +51,11 @@ int branch_behind(const Workspace<T>& ws, int ref, bool& heat) {
 /// Rates and heats of directions as inputs of flows and processes.
 template <class T>
 void direction_inputs(Workspace<T>& ws, const T* rate) {
-  for (int i = 0; i < ws.n_direction_refs; ++i) {
-    const int ref = ws.direction_ref[i];
+  for (int i = 0; i < ws.in.n_direction_refs; ++i) {
+    const int ref = ws.in.direction_ref[i];
     bool heat;
     const int k = branch_behind(ws, ref, heat);
-    ws.u[ref] = k < 0 ? T(0) : heat ? ws.heat[k] : rate[k];
+    ws.in.u[ref] = k < 0 ? T(0) : heat ? ws.shared.heat[k] : rate[k];
   }
 }
 
@@ -65,7 +65,7 @@ T flow_value(const Workspace<T>& ws, int f) {
   return visit_flow(sys.flow_kind[f], [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.flow_param[f]);
-    return E::flow(p, At<T>{T(0), nullptr, ws.u + sys.flow_input[f], 0, sys.points});
+    return E::flow(p, At<T>{T(0), nullptr, ws.in.u + sys.flow_input[f], 0, sys.points});
   });
 }
 
@@ -76,12 +76,12 @@ template <class T>
   T* x = d + sys.states - sys.shared;
   for (int j = 0; j < sys.shared; ++j) x[j] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
-    ws.heat[k] = branch_heat(ws, ws.branch[k], rate[k], state, Dual<T, 1>(torque[k])).v;
+    ws.shared.heat[k] = branch_heat(ws, ws.branch[k], rate[k], state, Dual<T, 1>(torque[k])).v;
   }
   direction_inputs(ws, rate);
   for (int h = 0; h < sys.heats; ++h) {
     const int k = ws.branch_of[sys.heat_direction[h]];
-    if (k >= 0 && k < ws.n_branches) x[sys.heat_to[h]] += T(sys.heat_share[h]) * ws.heat[k];
+    if (k >= 0 && k < ws.n_branches) x[sys.heat_to[h]] += T(sys.heat_share[h]) * ws.shared.heat[k];
   }
   for (int f = 0; f < sys.flows; ++f) {
     const T q = flow_value(ws, f);
@@ -92,7 +92,7 @@ template <class T>
     visit_process(sys.process_kind[i], [&](auto tag) {
       using E = typename decltype(tag)::type;
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.process_param[i]);
-      const At<T> at{T(0), state + sys.process_state[i], ws.u + sys.process_input[i], 0, sys.points};
+      const At<T> at{T(0), state + sys.process_state[i], ws.in.u + sys.process_input[i], 0, sys.points};
       E::state_rates(p, at, d + sys.process_state[i]);
     });
   }
@@ -105,12 +105,12 @@ void torques_by_shared(Workspace<T>& ws, const T* rate, const T* state) {
   const int nx = int(sys.shared);
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
-    T* row = ws.by_shared + k * nx;
+    T* row = ws.shared.torque_by + k * nx;
     for (int j = 0; j < nx; ++j) row[j] = T(0);
     const int n = b.inputs + b.law_inputs;
     auto source = [&](int i) {
       const T* at = i < b.inputs ? b.input + i : b.law_input + (i - b.inputs);
-      return sys.input_refs[at - ws.u] - int(sys.inputs);
+      return sys.input_refs[at - ws.in.u] - int(sys.inputs);
     };
     bool any = false;
     for (int i = 0; i < n; ++i) any = any || source(i) >= 0;
@@ -142,12 +142,12 @@ struct SharedRow {
   /// factor times the heat of branch k.
   void add_heat(int i, T factor, int k) {
     const Branch<T>& b = ws.branch[k];
-    ws.shared_by_rate[i * nd + k] += factor * ws.heat_rate[k];
+    ws.shared.by_rate[i * nd + k] += factor * ws.shared.heat_rate[k];
     for (int s = 0; s < b.states; ++s)
-      ws.shared_by_state[i * ns + b.state + s] += factor * ws.heat_share[k] * ws.f_state[b.state + s];
+      ws.shared.by_state[i * ns + b.state + s] += factor * ws.shared.heat_share[k] * ws.jacobian.f_state[b.state + s];
     for (int j = 0; j < nx; ++j)
-      ws.shared_by_shared[i * nx + j] += factor * ws.heat_share[k] * ws.by_shared[k * nx + j];
-    dt[first + i] += factor * ws.heat_time[k];
+      ws.shared.by_shared[i * nx + j] += factor * ws.shared.heat_share[k] * ws.shared.torque_by[k * nx + j];
+    dt[first + i] += factor * ws.shared.heat_time[k];
   }
   /// factor times the input that stands at a reference.
   void add_input(int i, T factor, int ref) {
@@ -155,16 +155,16 @@ struct SharedRow {
     const int code = sys.input_refs[ref];
     if (value(factor) == 0) return;
     if (code < sys.inputs) {
-      dt[first + i] += factor * ws.du[ref];
+      dt[first + i] += factor * ws.in.du[ref];
     } else if (code < sys.inputs + sys.shared) {
       const int j = code - int(sys.inputs);
-      ws.shared_by_shared[i * nx + j] += factor * T(sys.shared_scale[j]);
+      ws.shared.by_shared[i * nx + j] += factor * T(sys.shared_scale[j]);
     } else {
       bool heat;
       const int k = branch_behind(ws, ref, heat);
       if (k < 0) return;
       if (heat) return add_heat(i, factor, k);
-      ws.shared_by_rate[i * nd + k] += factor;
+      ws.shared.by_rate[i * nd + k] += factor;
       dt[first + i] += factor * offset_slope(ws, k);
     }
   }
@@ -174,126 +174,85 @@ struct SharedRow {
 template <class T>
 void linearize_heats(Workspace<T>& ws, const T* rate, const T* state) {
   for (int k = 0; k < ws.n_branches; ++k) {
-    const Partial<T>& p = ws.partial[k];
+    const Partial<T>& p = ws.jacobian.partial[k];
     Dual<T, 1> torque(p.torque), still(p.torque);
     torque.d[0] = p.by_rate;
     const Dual<T, 1> heat = branch_heat(ws, ws.branch[k], rate[k], state, torque);
     // by the torque itself: -rate where heat is the whole work, else nothing
     Dual<T, 1> unit(T(1));
     const T base = branch_heat(ws, ws.branch[k], rate[k], state, Dual<T, 1>(T(0))).v;
-    ws.heat_share[k] = branch_heat(ws, ws.branch[k], rate[k], state, unit).v - base;
-    ws.heat[k] = heat.v;
-    ws.heat_rate[k] = heat.d[0];
+    ws.shared.heat_share[k] = branch_heat(ws, ws.branch[k], rate[k], state, unit).v - base;
+    ws.shared.heat[k] = heat.v;
+    ws.shared.heat_rate[k] = heat.d[0];
     // the prescribed part of the rate changes the heat like any other, except through the torque, whose by_time has it
-    const T by_rate_alone = heat.d[0] - ws.heat_share[k] * p.by_rate;
-    ws.heat_time[k] = by_rate_alone * offset_slope(ws, k) + ws.heat_share[k] * p.by_time;
+    const T by_rate_alone = heat.d[0] - ws.shared.heat_share[k] * p.by_rate;
+    ws.shared.heat_time[k] = by_rate_alone * offset_slope(ws, k) + ws.shared.heat_share[k] * p.by_time;
   }
+}
+
+/// Derivatives of the flows between shared states.
+template <class T>
+void linearize_flow(Workspace<T>& ws, SharedRow<T>& row, int f) {
+  const System& sys = ws.sys;
+  visit_flow(sys.flow_kind[f], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    using S = Dual<T, most_inputs>;
+    S input[most_inputs];
+    for (int i = 0; i < E::inputs; ++i) input[i] = S::variable(ws.in.u[sys.flow_input[f] + i], i);
+    const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.flow_param[f]);
+    const S q = E::flow(p, At<S>{S(0), nullptr, input, 0, sys.points});
+    for (int i = 0; i < E::inputs; ++i) {
+      if (sys.flow_from[f] >= 0) row.add_input(sys.flow_from[f], -q.d[i], sys.flow_input[f] + i);
+      if (sys.flow_to[f] >= 0) row.add_input(sys.flow_to[f], q.d[i], sys.flow_input[f] + i);
+    }
+  });
+}
+
+/// Derivatives of a process by its own states and its inputs; `state` are all states.
+template <class T>
+void linearize_process(Workspace<T>& ws, SharedRow<T>& row, int c, const T* state) {
+  const System& sys = ws.sys;
+  const int nx = int(sys.shared);
+  visit_process(sys.process_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    using S = Dual<T, E::states + most_inputs>;
+    S input[most_inputs], own[E::states], rates[E::states];
+    for (int i = 0; i < E::inputs; ++i) input[i] = S::variable(ws.in.u[sys.process_input[c] + i], E::states + i);
+    for (int i = 0; i < E::states; ++i) own[i] = S::variable(state[sys.process_state[c] + i], i);
+    const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.process_param[c]);
+    E::state_rates(p, At<S>{S(0), own, input, 0, sys.points}, rates);
+    const int at = sys.process_state[c] - row.first;
+    for (int s = 0; s < E::states; ++s) {
+      for (int j = 0; j < E::states; ++j) ws.shared.by_shared[(at + s) * nx + at + j] += rates[s].d[j];
+      for (int i = 0; i < E::inputs; ++i) row.add_input(at + s, rates[s].d[E::states + i], sys.process_input[c] + i);
+    }
+  });
 }
 
 /// Rates of the shared states and all their derivatives, after the branches have been linearized.
 template <class T>
 [[gnu::noinline]] void linearize_shared(Workspace<T>& ws, const T* rate, const T* state, T* d, T* dt) {
   const System& sys = ws.sys;
-  const int nx = int(sys.shared), ns = int(sys.states), nd = ws.n_directions, first = ns - nx;
+  const int nx = int(sys.shared), ns = int(sys.states), nd = ws.n_directions;
   torques_by_shared(ws, rate, state);
-  T* torque = ws.torque;
-  for (int k = 0; k < ws.n_branches; ++k) torque[k] = ws.partial[k].torque;
+  T* torque = ws.seen.torque;
+  for (int k = 0; k < ws.n_branches; ++k) torque[k] = ws.jacobian.partial[k].torque;
   shared_rates(ws, rate, torque, state, d);
   linearize_heats(ws, rate, state);
-  for (int i = 0; i < nx * nd; ++i) ws.shared_by_rate[i] = T(0);
-  for (int i = 0; i < nx * ns; ++i) ws.shared_by_state[i] = T(0);
-  for (int i = 0; i < nx * nx; ++i) ws.shared_by_shared[i] = T(0);
+  for (int i = 0; i < nx * nd; ++i) ws.shared.by_rate[i] = T(0);
+  for (int i = 0; i < nx * ns; ++i) ws.shared.by_state[i] = T(0);
+  for (int i = 0; i < nx * nx; ++i) ws.shared.by_shared[i] = T(0);
   SharedRow<T> row(ws, dt);
   for (int h = 0; h < sys.heats; ++h) {
     const int k = ws.branch_of[sys.heat_direction[h]];
     if (k >= 0 && k < ws.n_branches) row.add_heat(sys.heat_to[h], T(sys.heat_share[h]), k);
   }
-  for (int f = 0; f < sys.flows; ++f) {
-    visit_flow(sys.flow_kind[f], [&](auto tag) {
-      using E = typename decltype(tag)::type;
-      using S = Dual<T, most_inputs>;
-      S input[most_inputs];
-      for (int i = 0; i < E::inputs; ++i) input[i] = S::variable(ws.u[sys.flow_input[f] + i], i);
-      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.flow_param[f]);
-      const S q = E::flow(p, At<S>{S(0), nullptr, input, 0, sys.points});
-      for (int i = 0; i < E::inputs; ++i) {
-        if (sys.flow_from[f] >= 0) row.add_input(sys.flow_from[f], -q.d[i], sys.flow_input[f] + i);
-        if (sys.flow_to[f] >= 0) row.add_input(sys.flow_to[f], q.d[i], sys.flow_input[f] + i);
-      }
-    });
+  for (int f = 0; f < sys.flows; ++f) linearize_flow(ws, row, f);
+  for (int c = 0; c < sys.processes; ++c) linearize_process(ws, row, c, state);
+  for (int k = 0; k < ws.in.n_shared_refs; ++k) {
+    const int ref = ws.in.shared_ref[k], j = sys.input_refs[ref] - int(sys.inputs);
+    ws.in.shared_slope[ref] = T(sys.shared_scale[j]) * d[row.first + j];
   }
-  for (int c = 0; c < sys.processes; ++c) {
-    visit_process(sys.process_kind[c], [&](auto tag) {
-      using E = typename decltype(tag)::type;
-      using S = Dual<T, E::states + most_inputs>;
-      S input[most_inputs], own[E::states], rates[E::states];
-      for (int i = 0; i < E::inputs; ++i) input[i] = S::variable(ws.u[sys.process_input[c] + i], E::states + i);
-      for (int i = 0; i < E::states; ++i) own[i] = S::variable(state[sys.process_state[c] + i], i);
-      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.process_param[c]);
-      E::state_rates(p, At<S>{S(0), own, input, 0, sys.points}, rates);
-      const int at = sys.process_state[c] - first;
-      for (int s = 0; s < E::states; ++s) {
-        for (int j = 0; j < E::states; ++j) ws.shared_by_shared[(at + s) * nx + at + j] += rates[s].d[j];
-        for (int i = 0; i < E::inputs; ++i) row.add_input(at + s, rates[s].d[E::states + i], sys.process_input[c] + i);
-      }
-    });
-  }
-  for (int k = 0; k < ws.n_shared_refs; ++k) {
-    const int ref = ws.shared_ref[k], j = sys.input_refs[ref] - int(sys.inputs);
-    ws.shared_slope[ref] = T(sys.shared_scale[j]) * d[first + j];
-  }
-}
-
-/// Product of row i of the border with a vector of speeds and states.
-template <class Form, class T = typename Form::Scalar>
-T border_times(const Form& form, int i, const T* x) {
-  const Workspace<T>& ws = form.ws;
-  const int ns = int(ws.sys.states), own = ns - int(ws.sys.shared), nz = form.nz();
-  T sum = T(0);
-  for (int k = 0; k < ws.n_branches; ++k) {
-    const T c = ws.shared_by_rate[i * ws.n_directions + k];
-    if (value(c) != 0) sum += c * form.rate(k, x);
-  }
-  for (int s = 0; s < own; ++s) sum += ws.shared_by_state[i * ns + s] * x[nz + s];
-  return sum;
-}
-
-/// Answers of the motion to each shared state and the inverse of the Schur complement; `solve` solves the motion alone.
-template <class Form, class Solve, class T = typename Form::Scalar>
-bool factor_border(Form& form, T scale, Solve&& solve) {
-  Workspace<T>& ws = form.ws;
-  const int nx = int(ws.sys.shared), nz = form.nz(), n = nz + int(ws.sys.states),
-            stride = int(ws.sys.speeds + ws.sys.states);
-  for (int j = 0; j < nx; ++j) {
-    T* b = ws.shared_reach + j * stride;
-    for (int i = 0; i < n; ++i) b[i] = T(0);
-    bool any = false;
-    for (int k = 0; k < ws.n_branches; ++k) {
-      const T c = ws.by_shared[k * nx + j];
-      if (value(c) != 0) form.push(k, c, b), any = true;
-    }
-    if (any) solve(b);
-  }
-  T* s = ws.shared_inverse;
-  for (int i = 0; i < nx; ++i) {
-    for (int j = 0; j < nx; ++j) {
-      s[i * nx + j] = (i == j ? scale : T(0)) - ws.shared_by_shared[i * nx + j] -
-                      border_times(form, i, ws.shared_reach + j * stride);
-    }
-  }
-  return invert(nx, s, ws.iscratch);
-}
-
-/// Complete a solution of the motion alone: the shared part of b becomes theirs, the rest takes its answer to it.
-template <class Form, class T = typename Form::Scalar>
-void solve_border(const Form& form, T* b) {
-  const Workspace<T>& ws = form.ws;
-  const int nx = int(ws.sys.shared), own = int(ws.sys.states) - nx, nz = form.nz();
-  const int stride = int(ws.sys.speeds + ws.sys.states);
-  T *x = b + nz + own, *rhs = ws.shared_inverse + nx * nx;
-  for (int i = 0; i < nx; ++i) rhs[i] = x[i] + border_times(form, i, b);
-  for (int i = 0; i < nx; ++i) x[i] = dot(nx, ws.shared_inverse + i * nx, rhs);
-  for (int j = 0; j < nx; ++j) axpy(nz + own, x[j], ws.shared_reach + j * stride, b);
 }
 
 }  // namespace clutchwork

@@ -5,13 +5,15 @@
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/form.hpp>
+#include <clutchwork/motion/geometry.hpp>
 #include <clutchwork/motion/reduce.hpp>
 #include <clutchwork/motion/shared.hpp>
-#include <clutchwork/run/event.hpp>
-#include <clutchwork/run/integrator/dopri5.hpp>
-#include <clutchwork/run/integrator/rodas5p.hpp>
+#include <clutchwork/run/enter.hpp>
+#include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/methods.hpp>
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/phase.hpp>
+#include <clutchwork/run/switch.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// The whole run: modes, smooth phase, switch, until the end time.
@@ -19,83 +21,101 @@ namespace clutchwork {
 
 template <class Form>
 Status run_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink) {
-  // the explicit method serves soft models of any size; only the sparse form carries it
-  if constexpr (!Form::small) {
-    if (ws.is_explicit) return Phase<Form, Dopri5>(ws, t_end, sink).run();
-  }
-  return Phase<Form, Rodas5P>(ws, t_end, sink).run();
+  Status status = Status::no_mode;
+  visit_method(ws.reduced.method, [&](auto tag) {
+    using Integrator = typename decltype(tag)::type;
+    if constexpr (Integrator::small || !Form::small) status = Phase<Form, Integrator>(ws, t_end, sink).run();
+  });
+  return status;
 }
 
 /// Exact sizes for small systems, one sparse form for the rest.
 template <class T, int NZ = 0, int NS = 0>
 Status dispatch(Workspace<T>& ws, double t_end, Sink& sink) {
-  if (ws.sparse) return run_phase<SparseForm<T>>(ws, t_end, sink);
+  if (ws.reduced.is_sparse) return run_phase<SparseForm<T>>(ws, t_end, sink);
   if constexpr (NZ > small_speeds) {
     return Status::no_mode;
   } else if constexpr (NS > small_states) {
     return dispatch<T, NZ + 1, 0>(ws, t_end, sink);
   } else {
-    if (ws.nz == NZ && ws.sys.states == NS) return run_phase<SmallForm<T, NZ, NS>>(ws, t_end, sink);
+    if (ws.reduced.nz == NZ && ws.sys.states == NS) return run_phase<SmallForm<T, NZ, NS>>(ws, t_end, sink);
     return dispatch<T, NZ, NS + 1>(ws, t_end, sink);
   }
 }
 
-/// State at time zero. False when the mass matrix is not positive definite.
+/// Speeds, states, angles and work as they start.
 template <class T>
-bool start(Workspace<T>& ws) {
+void take_initial(Workspace<T>& ws) {
   const System& sys = ws.sys;
-  if (!prepare_geometry(ws)) return false;
-  ws.statistics = {};
-  ws.n_events = 0;
-  ws.failed = -1;
-  ws.input_changed = false;
   for (int i = 0; i < sys.speeds; ++i) ws.v[i] = T(sys.initial_speed[i]);
   for (int i = 0; i < sys.states; ++i) ws.state[i] = T(sys.initial_state[i]);
   for (int i = 0; i < sys.nodes; ++i) ws.angle[i] = T(sys.initial_angle[i]);
   for (int d = 0; d < ws.n_directions; ++d) ws.work[d] = T(0), ws.piece[d] = 0;
   for (int d = 0; d < ws.n_directions; ++d) ws.heading[d] = forward, ws.branch_of[d] = -1;
   for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_work[p] = T(0);
+}
+
+/// Every contact before the first decision: it slips, or is open.
+template <class T>
+void start_contacts(Workspace<T>& ws) {
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    ws.contact.compliant[c] = is_compliant_law(ws.sys.contact_law[c]);
+    ws.contact.fault[c] = sound;
+    ws.contact.forced[c] = ws.contact.loaded[c] = ws.contact.pressed[c] = 0;
+    ws.guard.turned_at[c] = -infinity;
+    const double slip = value(rate_of(ws, int(ws.sys.elements) + c));
+    ws.contact.mode[c] = abs(slip) <= slip_tolerance(ws) ? open : slip > 0 ? forward : backward;
+    ws.happened.mode[c] = ws.contact.mode[c];
+  }
+}
+
+/// State at time zero. False when the mass matrix is not positive definite.
+template <class T>
+bool start(Workspace<T>& ws) {
+  if (!prepare_geometry(ws)) return false;
+  ws.statistics = {};
+  ws.events.n = 0;
+  ws.contact.failed = -1;
+  ws.params_changed = false;
+  take_initial(ws);
   load_inputs(ws, ws.time);
   shared_inputs(ws, ws.state);
-  for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];
+  keep_prescribed(ws);
   input_slopes_at(ws, ws.time);
-  for (int c = 0; c < sys.contacts; ++c) {
-    ws.compliant[c] = is_compliant_law(sys.contact_law[c]);
-    ws.fault[c] = sound;
-    ws.forced[c] = ws.loaded[c] = ws.pressed[c] = 0;
-    ws.turned_at[c] = -infinity;
-    const double slip = value(rate_of(ws, int(sys.elements) + c));
-    ws.mode[c] = abs(slip) <= slip_tolerance(ws) ? open : slip > 0 ? forward : backward;
-    ws.mode_before[c] = ws.mode[c];
-  }
-  for (int d = 0; d < sys.elements; ++d) {
-    if (edge_count(ws, d) > 0) ws.piece[d] = piece_of(ws, d, value(rate_of(ws, d)));
-  }
+  start_contacts(ws);
+  find_pieces(ws);
   refresh_loads(ws);
-  ws.located = -1;
-  ws.cause = Cause::initial;
+  ws.happened.cause = Cause::initial;
+  ws.happened.contact = -1;
   ws.started = true;
   return true;
+}
+
+/// Torques of all contacts in the present modes.
+template <class T>
+void note_torques(Workspace<T>& ws) {
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int k = ws.branch_of[ws.sys.elements + c];
+    ws.happened.mode[c] = ws.contact.mode[c];
+    ws.happened.torque[c] = ws.happened.slope[c] = T(0);
+    if (k < 0 || k >= ws.n_branches) continue;
+    const Branch<T>& b = ws.branch[k];
+    ws.happened.torque[c] = contact_torque(ws, b, rate_of(ws, b.direction), ws.state, ws.seen.state_rates);
+  }
+  locked_torques(ws, ws.here.multiplier, [&](int c, T x) { ws.happened.torque[c] += x; });
 }
 
 /// Parameters were set from outside: decide the modes anew.
 template <class T>
 Status take_outside(Workspace<T>& ws) {
-  ws.input_changed = false;
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    const int k = ws.branch_of[ws.sys.elements + c];
-    ws.mode_before[c] = ws.mode[c];
-    ws.torque_before[c] = ws.slip_slope[c] = T(0);
-    if (k >= 0 && k < ws.n_branches)
-      ws.torque_before[c] = contact_torque(ws, ws.branch[k], rate_of(ws, ws.branch[k].direction), ws.state, ws.scratch);
-  }
-  locked_torques(ws, ws.here.multiplier, [&](int c, T x) { ws.torque_before[c] += x; });
-  for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_before[p] = ws.prescribed[p];
+  ws.params_changed = false;
+  note_torques(ws);
+  keep_prescribed(ws);
   load_inputs(ws, ws.time);
   input_slopes_at(ws, ws.time);
   refresh_loads(ws);
-  ws.located = -1;
-  ws.cause = Cause::input;
+  ws.happened.cause = Cause::input;
+  ws.happened.contact = -1;
   return switch_modes(ws);
 }
 
@@ -109,8 +129,8 @@ Status advance(Workspace<T>& ws, double t_end, Sink& sink) {
     if (!ws.started) return status;
   }
   while (true) {
-    if (ws.n_events >= Workspace<T>::event_room) return Status::events_full;
-    if (ws.input_changed) {
+    if (ws.events.n >= EventBuffer::room) return Status::events_full;
+    if (ws.params_changed) {
       // the torques before are those of the present modes
       if (ws.fresh_phase && !enter_mode(ws)) return Status::no_mode;
       const Status status = take_outside(ws);

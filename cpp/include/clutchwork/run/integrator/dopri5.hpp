@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/scalar.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 
@@ -8,6 +9,7 @@
 namespace clutchwork {
 
 struct Dopri5 {
+  static constexpr bool stiff = false, small = false;
   static constexpr double a[7][6] = {{0},
                                      {1. / 5},
                                      {3. / 40, 9. / 40},

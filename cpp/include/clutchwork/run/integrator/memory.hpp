@@ -15,7 +15,7 @@ template <class T>
 struct StepRows<T, 0> {
   T* data;
   int n;
-  StepRows(Workspace<T>& ws, int size) : data(ws.stages), n(size) {}
+  StepRows(Workspace<T>& ws, int size) : data(ws.stages.rows), n(size) {}
   CLUTCHWORK_INLINE T* row(int i) { return data + i * n; }
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <clutchwork/components/dense.hpp>
+#include <clutchwork/motion/border.hpp>
 #include <clutchwork/motion/dynamics.hpp>
-#include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -10,6 +10,7 @@
 namespace clutchwork {
 
 struct Rodas5P {
+  static constexpr bool stiff = true, small = true;
   static constexpr double gamma = 0.21193756319429014;
   static constexpr double a[6][5] = {
       {0},
@@ -64,23 +65,24 @@ struct Rodas5P {
   template <class Form, class T = typename Form::Scalar>
   static CLUTCHWORK_INLINE bool factor_motion(Form& form, T scale) {
     Workspace<T>& ws = form.ws;
-    T* stiff = ws.scratch;
+    T* stiff = ws.stages.stiff;
     for (int k = 0; k < ws.n_branches; ++k) {
       const Branch<T>& b = ws.branch[k];
-      stiff[k] = ws.partial[k].by_rate;
+      stiff[k] = ws.jacobian.partial[k].by_rate;
       if (b.states == 0) continue;
-      T* inverse = ws.a_state + ws.block[k];
-      const T* g = ws.g_state + ws.block[k];
+      T* inverse = ws.stages.inverse + ws.jacobian.block[k];
+      const T* g = ws.jacobian.g_state + ws.jacobian.block[k];
       if (b.states == 1) {
         inverse[0] = T(1) / (scale - g[0]);
-        stiff[k] += ws.f_state[b.state] * inverse[0] * ws.g_rate[b.state];
+        stiff[k] += ws.jacobian.f_state[b.state] * inverse[0] * ws.jacobian.g_rate[b.state];
         continue;
       }
       const int m = b.states;
       for (int i = 0; i < m * m; ++i) inverse[i] = -g[i];
       for (int i = 0; i < m; ++i) inverse[i * m + i] += scale;
-      if (!invert(m, inverse, ws.iscratch)) return false;
-      for (int i = 0; i < m; ++i) stiff[k] += ws.f_state[b.state + i] * dot(m, inverse + i * m, ws.g_rate + b.state);
+      if (!invert(m, inverse, ws.stages.pivot)) return false;
+      for (int i = 0; i < m; ++i)
+        stiff[k] += ws.jacobian.f_state[b.state + i] * dot(m, inverse + i * m, ws.jacobian.g_rate + b.state);
     }
     return form.factor(scale, stiff);
   }
@@ -98,16 +100,16 @@ struct Rodas5P {
     for (int k = 0; k < ws.n_branches; ++k) {
       const Branch<T>& br = ws.branch[k];
       if (br.states == 0) continue;
-      const T* inverse = ws.a_state + ws.block[k];
+      const T* inverse = ws.stages.inverse + ws.jacobian.block[k];
       T push = T(0);
       if (br.states == 1) {
         own[br.state] *= inverse[0];
-        push = ws.f_state[br.state] * own[br.state];
+        push = ws.jacobian.f_state[br.state] * own[br.state];
       } else {
-        T* tmp = ws.scratch + ws.n_directions;
+        T* tmp = ws.stages.own;
         for (int i = 0; i < br.states; ++i) tmp[i] = dot(br.states, inverse + i * br.states, own + br.state);
         for (int i = 0; i < br.states; ++i) own[br.state + i] = tmp[i];
-        push = dot(br.states, ws.f_state + br.state, tmp);
+        push = dot(br.states, ws.jacobian.f_state + br.state, tmp);
       }
       form.push(k, push, b);
     }
@@ -115,10 +117,10 @@ struct Rodas5P {
     for (int k = 0; k < ws.n_branches; ++k) {
       const Branch<T>& br = ws.branch[k];
       if (br.states == 0) continue;
-      const T* inverse = ws.a_state + ws.block[k];
+      const T* inverse = ws.stages.inverse + ws.jacobian.block[k];
       const T rate = form.rate(k, b);
       for (int i = 0; i < br.states; ++i)
-        own[br.state + i] += dot(br.states, inverse + i * br.states, ws.g_rate + br.state) * rate;
+        own[br.state + i] += dot(br.states, inverse + i * br.states, ws.jacobian.g_rate + br.state) * rate;
     }
   }
 

@@ -1,0 +1,40 @@
+#pragma once
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// The active components of the present modes.
+namespace clutchwork {
+
+/// Add a branch to the list.
+template <class T>
+void pack(Workspace<T>& ws, int d, int sign, int& block) {
+  const Branch<T> b = make_branch(ws, d, sign);
+  ws.branch_of[d] = ws.n_rates;
+  ws.jacobian.block[ws.n_rates] = block;
+  block += b.states * b.states;
+  ws.branch[ws.n_rates++] = b;
+}
+
+/// Active components: all elements and slipping contacts.
+/// Behind them, without torque, the open contacts: only their rates are followed.
+template <class T>
+void pack_branches(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  const int ne = int(sys.elements), nc = int(sys.contacts);
+  ws.n_rates = 0;
+  int block = 0;
+  for (int d = 0; d < ne; ++d) pack(ws, d, 0, block);
+  for (int c = 0; c < nc; ++c) {
+    ws.branch_of[ne + c] = -1;
+    // a law that never sticks works beside a freewheel that is locked
+    if (ws.contact.loaded[c] && (ws.contact.mode[c] != locked || ws.contact.compliant[c]))
+      pack(ws, ne + c, ws.contact.mode[c], block);
+  }
+  ws.n_branches = ws.n_rates;
+  for (int c = 0; c < nc; ++c) {
+    if (ws.contact.loaded[c] || ws.contact.compliant[c]) continue;
+    pack(ws, ne + c, ws.contact.mode[c] == open ? 0 : ws.contact.mode[c], block);
+  }
+}
+
+}  // namespace clutchwork

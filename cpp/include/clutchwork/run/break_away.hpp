@@ -1,0 +1,156 @@
+#pragma once
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/run/hit.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/locate.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// Where in a step locked contacts let go, alone, as a set, or where prescribed speeds part them:
+/// docs/theory/events.md.
+namespace clutchwork {
+
+/// Margin of a locked contact: how much torque is left before it slips, round-off conceded.
+template <class T>
+CLUTCHWORK_INLINE double margin(const Workspace<T>& ws, int a, T torque, T capacity) {
+  capacity += ws.here.noise[a];
+  if (!contact_one_way(ws, ws.held.contact[a])) return value(capacity) - abs(value(torque));
+  return smaller(value(torque + capacity), value(freewheel_limit(ws, ws.held.contact[a]) - torque));
+}
+
+/// Whether a freewheel was hit at the torque at which it gives way, and not where its torque ends.
+template <class T>
+bool rolls_over(const Workspace<T>& ws, int c) {
+  return contact_one_way(ws, c) && value(freewheel_limit(ws, c)) < infinity && value(ws.happened.torque[c]) > 0;
+}
+
+/// Torques of the carriers at s, into ws.seen.carried.
+template <class Form>
+void torques_at(Form& form, Step<Form>& step, double s) {
+  auto& ws = form.ws;
+  interpolate(form, step, s, step.point());
+  const double t = step.t + s * step.h;
+  inputs_at(ws, t);
+  if (ws.sys.prescribed > 0) input_slopes_at(ws, t);
+  observe(form, t, step.point(), step.slope());
+  multipliers(ws, ws.seen.torque, true, ws.seen.carried);
+  ++ws.statistics.locations;
+}
+
+/// Smallest margin of the watched locked contacts at s, and whose it is.
+template <class Form>
+double least_margin(Form& form, Step<Form>& step, double s, const int* watched, int n, int& who) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  torques_at(form, step, s);
+  double least = infinity;
+  for (int i = 0; i < n; ++i) {
+    const int a = watched[i];
+    const T torque = ws.seen.carried[a];
+    const double m = margin(ws, a, torque, capacity_at(ws, ws.held.contact[a], torque));
+    if (m < least) least = m, who = a;
+  }
+  return least;
+}
+
+/// Where the prescribed speeds on both sides of a held contact part; -1: not before `limit`.
+template <class Form>
+double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
+  auto& ws = form.ws;
+  const int d = int(ws.sys.elements) + ws.held.contact[a];
+  const double zero = slip_tolerance(ws);
+  auto f = [&](double s) {
+    double slip = 0;
+    for (int p = 0; p < ws.sys.prescribed; ++p) {
+      slip += value(prescribed_share(ws, d, p)) * signal_value(ws, ws.sys.prescribed_input[p], step.t + s * step.h);
+    }
+    return zero - abs(slip);
+  };
+  return first_crossing(f, f(0), f(1), limit);
+}
+
+/// Torques of locked contacts: skipped while the margin exceeds what can change in the step.
+template <class Form, class Integrator>
+CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
+  auto& ws = form.ws;
+  const auto &e0 = ws.here, &e1 = ws.there;
+  int* watched = ws.guard.limit;
+  int n = 0;
+  double m0 = infinity, m1 = infinity;
+  for (int a = 0; a < ws.held.n; ++a) {
+    if (is_rigid(ws, ws.held.contact[a])) {
+      const double s = rigid_departure(form, step, a, hit.s);
+      if (!is_first(hit, s)) continue;
+      if (!step.dense) Integrator::prepare_dense(form, step);
+      hit = {Hit::multiplier, a, s, -1};
+      continue;
+    }
+    if (ws.held.in_set[a] != 0) continue;
+    const double before = margin(ws, a, e0.multiplier[a], e0.capacity[a]),
+                 after = margin(ws, a, e1.multiplier[a], e1.capacity[a]);
+    const double change = abs(value(e1.multiplier[a] - e0.multiplier[a])) + abs(value(e1.capacity[a] - e0.capacity[a]));
+    const double drift = step.h * larger(abs(value(e0.drift[a])), abs(value(e1.drift[a])));
+    const double swing = step.h * value(larger(e0.swing[a], e1.swing[a]));
+    if (smaller(before, after) > larger(change, drift + swing)) continue;
+    watched[n++] = a;
+    m0 = smaller(m0, before), m1 = smaller(m1, after);
+  }
+  if (n == 0) return;
+  if (!step.dense) Integrator::prepare_dense(form, step);
+  int who = watched[0];
+  auto f = [&](double s) { return least_margin(form, step, s, watched, n, who); };
+  const double s = first_crossing(f, m0, m1, hit.s);
+  if (!is_first(hit, s)) return;
+  f(s);
+  hit = {Hit::multiplier, who, s, -1};
+}
+
+/// Where a dependent set of locked contacts reaches its limit load.
+template <class Form, class Integrator>
+[[gnu::noinline]] void find_set_limit(Form& form, Step<Form>& step, Hit& hit) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  for (int k = 0; k < ws.held.n_sets; ++k) {
+    const double before = value(ws.here.room[k]), after = value(ws.there.room[k]);
+    const double coming = room_ahead(ws, k, ws.here, step.h), gone = room_ahead(ws, k, ws.there, -step.h);
+    const double change = larger(abs(after - before), larger(before - coming, after - gone));
+    bool bends = false;
+    for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
+      bends = bends || load_bends(ws, ws.held.set_member[i]);
+    if (!bends && smaller(before, after) > change) continue;
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    auto f = [&](double s) {
+      torques_at(form, step, s);
+      return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0]));
+    };
+    const double s = first_crossing(f, before, after, hit.s);
+    if (is_first(hit, s)) hit = {Hit::set, k, s, -1};
+  }
+}
+
+/// Where prescribed speeds part what locked contacts hold together.
+template <class Form, class Integrator>
+void find_parting(Form& form, Step<Form>& step, Hit& hit) {
+  auto& ws = form.ws;
+  const double zero = slip_tolerance(ws);
+  for (int i = 0; i < ws.held.n_driven; ++i) {
+    auto f = [&](double s) {
+      double slip = 0;
+      for (int p = 0; p < ws.sys.prescribed; ++p) {
+        slip +=
+            driven_share(ws, ws.held.driven[i], p) * signal_value(ws, ws.sys.prescribed_input[p], step.t + s * step.h);
+      }
+      return zero - abs(slip);
+    };
+    const double s = first_crossing(f, f(0), f(1), hit.s);
+    if (!is_first(hit, s)) continue;
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    hit = {Hit::parting, ws.held.driven[i], s, -1};
+  }
+}
+
+}  // namespace clutchwork

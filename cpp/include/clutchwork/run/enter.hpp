@@ -1,0 +1,124 @@
+#pragma once
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/branches.hpp>
+#include <clutchwork/motion/reduce.hpp>
+#include <clutchwork/motion/sparse.hpp>
+#include <clutchwork/run/methods.hpp>
+#include <clutchwork/run/watch.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// The motion of the present modes, made ready for a phase.
+namespace clutchwork {
+
+/// Whether some speed has no inertia and is algebraic.
+template <class T>
+bool has_massless(const Workspace<T>& ws) {
+  for (int i = 0; i < ws.sys.speeds; ++i) {
+    if (ws.sys.massless[i] != 0) return true;
+  }
+  return false;
+}
+
+/// Whether an explicit step is limited by accuracy and not by stability in the present phase.
+template <class T>
+bool is_soft(Workspace<T>& ws) {
+  const int nv = int(ws.sys.speeds);
+  double damping = 0, stiffness = 0;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const Branch<T>& b = ws.branch[k];
+    const StatePartials<T> out = state_partials(ws, k);
+    const Partial<T> p = branch_partial(ws, b, rate_of(ws, b.direction), T(0), ws.state, ws.seen.state_rates, out);
+    const T* row = ws.geometry.direction + b.direction * nv;
+    const double mobility = value(dot(nv, row, row));
+    damping += mobility * abs(value(p.by_rate));
+    for (int s = 0; s < b.states; ++s) {
+      stiffness += mobility * abs(value(out.f_state[s] * out.g_rate[s]));
+      damping += abs(value(out.g_state[s * b.states + s]));
+    }
+  }
+  const double fastest = damping + sqrt(stiffness), h = ws.last_step > 0 ? ws.last_step : 1e-3;
+  return fastest * h < 1.0;
+}
+
+/// The method of the present phase: the one that is wanted, else the first of those that are made for such a motion.
+template <class T>
+Method choose_method(Workspace<T>& ws) {
+  const Method wanted = ws.options.method;
+  // speeds without inertia are algebraic: only a method for stiff motion carries them
+  if (has_massless(ws)) return is_for_stiff(wanted) ? wanted : first_method(true);
+  if (wanted != Method::automatic) return wanted;
+  // shared states may be stiff
+  return first_method(ws.sys.shared > 0 || !is_soft(ws));
+}
+
+/// Contacts without load forget: the bristles of their laws are straight when they close again.
+template <class T>
+void relax_open(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  for (int c = 0; c < sys.contacts; ++c) {
+    if (!ws.contact.compliant[c] || ws.contact.pressed[c]) continue;
+    const int n = states_of(sys.contact_kind[c], sys.contact_law[c], ws.params + sys.contact_law_param[c]);
+    for (int i = 0; i < n; ++i) ws.state[sys.contact_state[c] + i] = T(0);
+    ws.piece[sys.elements + c] = 0;
+  }
+}
+
+/// Laws whose slip has jumped to the other sign notice it.
+template <class T>
+void turn_jumped(Workspace<T>& ws) {
+  for (int i = 0; i < ws.guard.n_switching; ++i) {
+    Branch<T>& b = ws.branch[ws.guard.switching[i]];
+    const T rate = rate_of(ws, b.direction);
+    const int heading = value(rate) > 0 ? forward : backward;
+    if (abs(value(rate)) <= slip_tolerance(ws) || heading == ws.heading[b.direction] || !law_turns(b)) continue;
+    ws.piece[b.direction] = b.piece = law_cross(ws, b, rate, turned, ws.state);
+    ws.heading[b.direction] = heading;
+  }
+}
+
+/// Reduced coordinates: dense up to a handful of speeds and states, else sparse.
+template <class T>
+void reduce_motion(Workspace<T>& ws, bool eliminated) {
+  map_prescribed(ws);
+  if (ws.reduced.is_sparse) {
+    if (!eliminated) eliminate_locked(ws);
+    reduce_rates(ws);
+    reduce_sparse(ws);
+  } else {
+    map_multipliers(ws);
+    reduce_dense(ws);
+    reduce_rates(ws);
+  }
+  for (int i = 0; i < ws.sys.states; ++i) ws.reduced.y[ws.reduced.nz + i] = ws.state[i];
+}
+
+/// Reduced motion of the present modes; the state goes to ws.reduced.y. False: the inertias differ too much to tell
+/// them apart.
+template <class T>
+bool enter_mode(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  relax_open(ws);
+  list_locked(ws);
+  pack_branches(ws);
+  list_laws(ws);
+  turn_jumped(ws);
+  // many speeds: the rank from sparse elimination, the dense basis only where it is used
+  const bool many = sys.speeds > 3 * small_speeds;
+  ws.reduced.rank = many ? eliminate_locked(ws) : split_locked(ws);
+  ws.reduced.nz = int(sys.speeds) - ws.reduced.rank;
+  ws.reduced.method = choose_method(ws);
+  ws.reduced.is_sparse = !is_small(ws.reduced.method) || sys.shared > 0 || ws.reduced.nz > small_speeds ||
+                         sys.states > small_states || has_massless(ws);
+  if (many && (!ws.reduced.is_sparse || sys.prescribed > 0)) split_locked(ws);
+  if (!factor_mobility(ws)) return false;
+  reduce_motion(ws, many);
+  list_lines(ws);
+  ++ws.statistics.phases;
+  return true;
+}
+
+}  // namespace clutchwork

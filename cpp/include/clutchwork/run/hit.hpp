@@ -1,0 +1,21 @@
+#pragma once
+#include <clutchwork/components/scalar.hpp>
+
+/// What is found first inside a step.
+namespace clutchwork {
+
+/// The first thing that happens inside a step.
+struct Hit {
+  enum What : int { nothing, line, multiplier, set, parting, load, law, fault, exit } what = nothing;
+  int index = -1;  ///< guard, locked contact, dependent set, spare, contact, or branch
+  double s = 1;    ///< where in the step, 0 to 1
+  int who = -1;    ///< what of a law leaves its piece
+};
+
+/// Round-off of a load over its largest size: a load that has passed zero passes it again only from farther away.
+inline constexpr double load_noise = 1e-11;
+
+/// Whether a zero at s comes before what has been found.
+CLUTCHWORK_INLINE bool is_first(const Hit& hit, double s) { return s >= 0 && (hit.what == Hit::nothing || s < hit.s); }
+
+}  // namespace clutchwork

@@ -1,0 +1,48 @@
+#pragma once
+#include <clutchwork/components/component.hpp>
+#include <clutchwork/run/integrator/dopri5.hpp>
+#include <clutchwork/run/integrator/rodas5p.hpp>
+#include <clutchwork/workspace/settings.hpp>
+
+/// The integrators. Each tells whether it is made for stiff motion, algebraic speeds included, and whether it is
+/// compiled for the small dense forms too. docs/theory/integrators.md
+namespace clutchwork {
+
+template <class... Integrators>
+struct MethodList {
+  static constexpr int count = sizeof...(Integrators);
+};
+
+/// In the order of Method, after `automatic`: a new integrator is its header and a line here.
+using Methods = MethodList<Rodas5P, Dopri5>;
+static_assert(Methods::count == method_count, "run/methods.hpp: as many integrators as Method names");
+
+/// Call f with the tag of the integrator behind a method; nothing for `automatic`.
+template <class F>
+void visit_method(Method method, F&& f) {
+  auto visit = [&]<class... Integrators>(MethodList<Integrators...>) {
+    int number = int(Method::automatic);
+    ((int(method) == ++number ? f(Tag<Integrators>{}) : void()), ...);
+  };
+  visit(Methods{});
+}
+
+inline bool is_for_stiff(Method method) {
+  bool stiff = false;
+  visit_method(method, [&](auto tag) { stiff = decltype(tag)::type::stiff; });
+  return stiff;
+}
+inline bool is_small(Method method) {
+  bool small = false;
+  visit_method(method, [&](auto tag) { small = decltype(tag)::type::small; });
+  return small;
+}
+
+/// The first method that is made for stiff motion, or for soft motion.
+inline Method first_method(bool stiff) {
+  int number = 1;
+  while (number < Methods::count && is_for_stiff(Method(number)) != stiff) ++number;
+  return Method(number);
+}
+
+}  // namespace clutchwork

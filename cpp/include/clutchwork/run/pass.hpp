@@ -1,0 +1,129 @@
+#pragma once
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/break_away.hpp>
+#include <clutchwork/run/event.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/snapshot.hpp>
+#include <clutchwork/run/step.hpp>
+#include <clutchwork/run/watch.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// What a phase passes without a decision: knots, pieces of laws and tables, open contacts at zero; and where it ends
+/// in chatter.
+namespace clutchwork {
+
+/// Present state from reduced coordinates to the workspace.
+template <class Form, class T = typename Form::Scalar>
+void export_state(Form& form, const T* y) {
+  Workspace<T>& ws = form.ws;
+  for (int i = 0; i < form.n(); ++i) ws.reduced.y[i] = y[i];
+  for (int i = 0; i < form.ns(); ++i) ws.state[i] = y[form.nz() + i];
+  inputs_with(ws, ws.time, ws.state);
+  expand(form, y, ws.v);
+}
+
+/// After a knot: right limits of the signals; true when the modes must be decided again.
+template <class Form>
+bool pass_knot(Form& form, Step<Form>& step) {
+  auto& ws = form.ws;
+  using T = typename Form::Scalar;
+  keep_prescribed(ws);
+  load_inputs(ws, ws.time);
+  bool decide = refresh_loads(ws);
+  for (int p = 0; p < ws.sys.prescribed; ++p)
+    decide = decide || value(ws.in.prescribed[p] - ws.in.prescribed_before[p]) != 0;
+  if (decide) return true;
+  look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
+  for (int a = 0; a < ws.held.n; ++a) {
+    if (is_rigid(ws, ws.held.contact[a])) return true;
+    const T torque = ws.here.multiplier[a], capacity = ws.here.capacity[a];
+    if (ws.held.in_set[a] == 0 && margin(ws, a, torque, capacity) < 0) return true;
+  }
+  for (int k = 0; k < ws.held.n_sets; ++k) {
+    if (value(ws.here.room[k]) < 0) return true;
+  }
+  return ws.held.n_driven > 0;
+}
+
+/// The law of a contact goes to its next piece; it may move its states. False: it does so without end.
+template <class Form>
+bool pass_law(Form& form, Step<Form>& step, int k, int who) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  Branch<T>& b = ws.branch[k];
+  T* state = step.y0() + form.nz();
+  int& heading = ws.heading[b.direction];
+  b.piece = law_cross(ws, b, rate_of(ws, b.direction), who, state);
+  // a state that starts to slide does so the way the contact slips, however small the slip
+  if (who == turned) {
+    heading = -heading;
+  } else if (b.law >= 0 && law_runs_on(b, who)) {
+    heading = value(state[b.state + who]) < 0 ? backward : forward;
+  }
+  ws.piece[b.direction] = b.piece;
+  for (int i = 0; i < b.states; ++i) ws.state[b.state + i] = state[b.state + i];
+  list_lines(ws);
+  return !events_crowd(ws, b.direction);
+}
+
+/// Whether a contact whose torque jumps with the sign of its slip reverses again and again within a few steps: it
+/// cannot come to rest.
+template <class T>
+bool chatters(Workspace<T>& ws) {
+  constexpr int window = 800, most = 40;
+  const std::int64_t steps = ws.statistics.steps + ws.statistics.rejected;
+  if (steps - ws.guard.reversals_since > window) ws.guard.reversals_since = steps, ws.guard.reversals = 0;
+  for (int i = 0; i < ws.guard.n_chattering; ++i) {
+    const int k = ws.guard.chattering[i];
+    // a slip that was driven through zero goes on; one that chatters is pushed back
+    const double rate = value(ws.here.rate[k]);
+    if (rate * value(ws.there.rate[k]) >= 0 || rate * value(ws.here.slope[k]) >= 0) continue;
+    ws.detail.component = ws.branch[k].direction;
+    ws.detail.value = rate;
+    if (++ws.guard.reversals > most) return true;
+  }
+  return false;
+}
+
+/// Move the state to where a harmless guard was hit: next piece of a table, or an open contact passing zero.
+template <class Form>
+void pass_line(Form& form, const LineGuard& guard) {
+  auto& ws = form.ws;
+  auto& b = ws.branch[guard.branch];
+  if (guard.kind == LineGuard::edge) {
+    const int inner = b.law >= 0 ? b.sign : 1;
+    ws.piece[b.direction] += guard.sign == -inner ? 1 : -1;
+    b.piece = ws.piece[b.direction];
+  } else {
+    const int c = b.direction - int(ws.sys.elements), from = ws.contact.mode[c];
+    ws.contact.mode[c] = b.sign = -from;
+    const double e = kinetic_energy(ws);
+    record(ws, {c, from, ws.contact.mode[c], Cause::passing, value(ws.here.slope[guard.branch]), 0.0, 0.0, e, e});
+  }
+  list_lines(ws);
+}
+
+/// Open contacts that were at rest and have started to move get their direction.
+template <class Form>
+void direct_open(Form& form, const Edge<typename Form::Scalar>& edge) {
+  auto& ws = form.ws;
+  bool changed = false;
+  for (int k = ws.n_branches; k < ws.n_rates; ++k) {
+    auto& b = ws.branch[k];
+    const double rate = value(edge.rate[k]);
+    if (b.sign != 0 || abs(rate) <= 1e-10) continue;
+    b.sign = rate > 0 ? forward : backward;
+    ws.contact.mode[b.direction - int(ws.sys.elements)] = b.sign;
+    --ws.guard.n_undirected;
+    changed = true;
+  }
+  if (changed) list_lines(ws);
+}
+
+}  // namespace clutchwork

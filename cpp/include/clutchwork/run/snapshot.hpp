@@ -1,0 +1,99 @@
+#pragma once
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// Everything at one point of a step.
+namespace clutchwork {
+
+/// Kinetic energy [J].
+template <class T>
+double kinetic_energy(const Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  double e = 0;
+  for (int n = 0; n < sys.nodes; ++n) {
+    double w = 0;
+    for (int i = 0; i < sys.speeds; ++i) w += sys.basis[n * sys.speeds + i] * value(ws.v[i]);
+    for (int p = 0; p < sys.prescribed; ++p)
+      w += sys.basis_prescribed[n * sys.prescribed + p] * value(ws.in.prescribed[p]);
+    e += 0.5 * sys.inertia[n] * w * w;
+  }
+  return e;
+}
+
+/// Everything at one point of a step.
+template <class T>
+struct Snapshot {
+  T *y, *d, *rate, *v, *dv;
+};
+
+/// State, torques of all directions and accelerations at s; output torques go to ws.out.torque.
+template <class Form, class T = typename Form::Scalar>
+Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
+  Workspace<T>& ws = form.ws;
+  const System& sys = ws.sys;
+  const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
+  const double t = step.t + s * step.h;
+  Snapshot<T> shot{step.point(), step.slope(), ws.seen.rate, ws.out.v, ws.out.dv};
+  interpolate(form, step, s, shot.y);
+  inputs_at(ws, t);
+  input_slopes_at(ws, t);
+  observe(form, t, shot.y, shot.d);
+  for (int k = ws.n_branches; k < ws.n_rates; ++k) shot.rate[k] = form.rate(k, shot.y) + offset_rate(ws, k);
+  for (int d = 0; d < ne + nc; ++d) {
+    const int k = ws.branch_of[d];
+    ws.out.torque[d] = k >= 0 && k < ws.n_branches ? ws.seen.torque[k] : T(0);
+  }
+  multipliers(ws, ws.seen.torque, true, ws.seen.carried);
+  locked_torques(ws, ws.seen.carried, [&](int c, T x) { ws.out.torque[ne + c] += x; });
+  expand(form, shot.y, shot.v);
+  bool algebraic = false;
+  for (int i = 0; i < nv; ++i) algebraic = algebraic || sys.massless[i] != 0;
+  if (algebraic && step.h > 0) {
+    interpolate_slope(form, step, s, shot.d);
+  } else {
+    form.solve_mass(shot.d);
+  }
+  expand(form, shot.d, shot.dv, false);
+  for (int i = 0; i < nv; ++i) {
+    for (int p = 0; p < sys.prescribed; ++p)
+      shot.dv[i] += ws.reduced.y_basis[i * sys.prescribed + p] * ws.in.prescribed_slope[p];
+  }
+  return shot;
+}
+
+/// Torque of the source behind prescribed speed p.
+template <class T>
+T source_torque(const Workspace<T>& ws, const Snapshot<T>& shot, int p) {
+  const System& sys = ws.sys;
+  const int np = int(sys.prescribed), nv = int(sys.speeds);
+  T torque = T(0);
+  for (int i = 0; i < nv; ++i) torque += T(sys.mass_prescribed[i * np + p]) * shot.dv[i];
+  for (int n = 0; n < sys.nodes; ++n) {
+    for (int o = 0; o < np; ++o) {
+      torque += T(sys.basis_prescribed[n * np + p] * sys.inertia[n] * sys.basis_prescribed[n * np + o]) *
+                ws.in.prescribed_slope[o];
+    }
+  }
+  for (int d = 0; d < ws.n_directions; ++d) torque -= ws.out.torque[d] * prescribed_share(ws, d, p);
+  return torque;
+}
+
+/// How all contacts are at s, right before an event.
+template <class Form>
+void note_before(Form& form, Step<Form>& step, double s) {
+  auto& ws = form.ws;
+  const auto shot = take_snapshot(form, step, s);
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int d = int(ws.sys.elements) + c, k = ws.branch_of[d];
+    ws.happened.torque[c] = ws.out.torque[d];
+    ws.happened.slope[c] = k >= 0 ? form.rate(k, shot.d) + offset_slope(ws, k) : 0.0;
+    ws.happened.mode[c] = ws.contact.mode[c];
+  }
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,161 @@
+#pragma once
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/motion/form.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/power.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// What one step needs besides its integrator: both ends, its length, its errors.
+namespace clutchwork {
+
+/// Speeds without inertia: Newton on their balance of torques. docs/theory/reduction.md
+template <class T>
+void balance_massless(SparseForm<T>& form, Step<SparseForm<T>>& step) {
+  Workspace<T>& ws = form.ws;
+  const int nz = form.nz();
+  bool any = false;
+  for (int i = 0; i < nz; ++i) any = any || ws.rows.mass.first[i] == ws.rows.mass.first[i + 1];
+  for (int round = 0; any && round < 8; ++round) {
+    linearize(form, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
+    T* stiff = ws.stages.stiff;
+    for (int k = 0; k < ws.n_branches; ++k) stiff[k] = ws.jacobian.partial[k].by_rate;
+    // a huge inertia holds all other speeds
+    if (!form.factor(T(1e30), stiff)) return;
+    T* b = step.slope();
+    for (int i = 0; i < nz; ++i) b[i] = ws.rows.mass.first[i] == ws.rows.mass.first[i + 1] ? step.f0()[i] : T(0);
+    form.solve(b);
+    for (int i = 0; i < nz; ++i) step.y0()[i] += b[i];
+  }
+}
+
+/// Derivatives, rates, slopes, multipliers at one end of the step.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void look(Form& form, Step<Form>& step, double t, const T* y, T* d, T* dt, Edge<T>& edge) {
+  linearize(form, t, y, d, dt, edge);
+  if constexpr (Form::small) {
+    slopes(form, d, edge);
+  } else {
+    T* velocity = step.slope();
+    for (int i = 0; i < form.nz(); ++i) velocity[i] = d[i];
+    form.solve_mass(velocity);
+    slopes(form, velocity, edge);
+  }
+  sense(form, d, edge);
+}
+
+/// A first step from the sizes of state and slope (E. Hairer, G. Wanner, Solving ODEs I, section II.4, shortened).
+template <class Form>
+double first_step(Form& form, Step<Form>& step, double span) {
+  auto& ws = form.ws;
+  if (ws.options.first_step > 0) return ws.options.first_step;
+  auto* velocity = step.slope();
+  for (int i = 0; i < form.n(); ++i) velocity[i] = step.f0()[i];
+  form.solve_mass(velocity);
+  const double size = error_norm(form, step.y0(), step.y0(), step.y0());
+  const double speed = error_norm(form, velocity, step.y0(), step.y0());
+  const double h = size < 1e-5 || speed < 1e-5 ? 1e-5 : 0.01 * size / speed;
+  return smaller(larger(h, 1e-9), 0.1 * span);
+}
+
+/// Longest first step after an element has met another piece: half a radian of the swing of what it joins on its own
+/// stiffness. An implicit step much longer would damp a whole collision away unseen.
+template <class T>
+double collision_step(const Workspace<T>& ws, int k) {
+  const Branch<T>& b = ws.branch[k];
+  if (b.law >= 0) return infinity;
+  const int nv = int(ws.sys.speeds);
+  const T* row = ws.geometry.direction + b.direction * nv;
+  double stiffness = 0;
+  for (int s = 0; s < b.states; ++s)
+    stiffness += abs(value(ws.jacobian.f_state[b.state + s] * ws.jacobian.g_rate[b.state + s]));
+  const double square = stiffness * value(dot(nv, row, row));
+  return square > 0 ? 0.5 / sqrt(square) : infinity;
+}
+
+/// Longest step that resolves the oscillating signals, which the error estimate may not see: with work half a radian
+/// of a sine or half a time constant of a decay, for the quadrature; else what the samples of the guards need.
+template <class T>
+double signal_step(const Workspace<T>& ws) {
+  double fastest = 0;
+  for (int k = 0; k < ws.in.n_varying; ++k) {
+    const Signal& signal = ws.in.signal[ws.in.ref_signal[ws.in.varying[k]]];
+    if (!signal.linear) fastest = larger(fastest, segment_rate(signal.coef, ws.time - signal.start));
+  }
+  return fastest > 0 ? (ws.options.work ? 0.5 : 1.5) / fastest : infinity;
+}
+
+/// Error of the work over a step in units of the tolerance, by halving. Where speeds are prescribed no state may feel
+/// the torque, so nothing else keeps the steps short enough for the quadrature.
+template <class Form, class Integrator>
+double work_error(Form& form, Step<Form>& step) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  Integrator::prepare_dense(form, step);
+  T *whole = ws.out.whole, *halves = ws.out.halves;
+  for (int k = 0; k < ws.n_branches; ++k) whole[k] = halves[k] = T(0);
+  auto add = [&](double start, double width, T* sum) {
+    for (int g = 0; g < 4; ++g) {
+      const double s = start + width * gauss.node[g];
+      interpolate(form, step, s, step.point());
+      observe(form, step.t + s * step.h, step.point(), step.slope());
+      for (int k = 0; k < ws.n_branches; ++k)
+        sum[k] += T(width * step.h * gauss.weight[g]) * ws.seen.torque[k] * ws.seen.rate[k];
+    }
+  };
+  add(0, 1, whole), add(0, 0.5, halves), add(0.5, 0.5, halves);
+  double error = 0;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const double done = value(ws.work[ws.branch[k].direction]);
+    const double tolerance = ws.options.atol + ws.options.rtol * (abs(done) + abs(value(halves[k])));
+    error = larger(error, abs(value(whole[k] - halves[k])) / tolerance);
+  }
+  return error;
+}
+
+/// Whether all of a state is finite.
+template <class T>
+CLUTCHWORK_INLINE bool all_finite(int n, const T* y) {
+  double sum = 0;
+  for (int i = 0; i < n; ++i) sum += value(y[i]) * 0;
+  return sum == 0;
+}
+
+/// Error that the motion up to the share s of a step may have, in units of the tolerance: what the interpolant misses
+/// of the equations of motion there, over that time. Only the end of a step is checked by its own estimate.
+template <class Form>
+double error_until(Form& form, Step<Form>& step, double s) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  T *y = step.point(), *slope = step.slope(), *miss = step.u();
+  interpolate(form, step, s, y);
+  evaluate(form, step.t + s * step.h, y, miss);
+  form.solve_mass(miss);
+  interpolate_slope(form, step, s, slope);
+  for (int i = 0; i < form.n(); ++i) miss[i] = T(s * step.h) * (miss[i] - slope[i]);
+  if constexpr (!Form::small) {
+    // speeds without inertia have no equation of motion
+    for (int i = 0; i < form.nz(); ++i) {
+      if (ws.rows.mass.first[i] == ws.rows.mass.first[i + 1]) miss[i] = T(0);
+    }
+  }
+  return error_norm(form, miss, step.y0(), y);
+}
+
+/// Name the branch whose torque is not finite.
+template <class Form>
+void blame(Form& form, Step<Form>& step) {
+  auto& ws = form.ws;
+  ws.detail.component = -1;
+  observe(form, ws.time, step.y0(), step.slope());
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const double x = value(ws.seen.torque[k]);
+    if (x - x == 0) continue;
+    ws.detail.component = ws.branch[k].direction;
+    ws.detail.value = x;
+    return;
+  }
+}
+
+}  // namespace clutchwork

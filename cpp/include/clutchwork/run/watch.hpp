@@ -1,0 +1,74 @@
+#pragma once
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// Lists of what the guards must watch in the present modes: docs/theory/events.md.
+namespace clutchwork {
+
+/// Branches whose laws switch, jump or end, and open contacts at rest.
+template <class T>
+void list_laws(Workspace<T>& ws) {
+  ws.guard.n_switching = ws.guard.n_chattering = ws.guard.n_bounded = ws.guard.n_undirected = 0;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (ws.contact.loaded[c] && is_bounded_law(ws.sys.contact_law[c])) ws.guard.bounded[ws.guard.n_bounded++] = c;
+  }
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const Branch<T>& b = ws.branch[k];
+    if (is_switching(b)) ws.guard.switching[ws.guard.n_switching++] = k;
+    if (b.law < 0) continue;
+    if (is_chattering_law(b.law)) ws.guard.chattering[ws.guard.n_chattering++] = k;
+  }
+  for (int k = ws.n_branches; k < ws.n_rates; ++k) ws.guard.n_undirected += ws.branch[k].sign == 0;
+}
+
+/// Guard of the slip of a contact: where it may lock.
+template <class T>
+void list_slip(Workspace<T>& ws, int k) {
+  const Branch<T>& b = ws.branch[k];
+  const int c = b.direction - int(ws.sys.elements);
+  const double slip = value(rate_of(ws, b.direction));
+  if (may_stick(ws, c) && ws.contact.mode[c] != locked) {
+    // what prescribed speeds drive cannot be stopped
+    const double level = ws.contact.forced[c] == 0 && !is_rigid(ws, c) ? ws.sys.contact_tolerance[c] : 0.0;
+    const bool outside = abs(slip) >= level * (1 - 1e-9);
+    ws.guard.line[ws.guard.n_lines++] = {LineGuard::slip, k, ws.contact.mode[c],
+                                         outside ? level * ws.contact.mode[c] : 0.0};
+  }
+}
+
+/// Guard of a rate whose change of sign matters to the law or the element behind it.
+template <class T>
+void list_turn(Workspace<T>& ws, int k) {
+  const Branch<T>& b = ws.branch[k];
+  if ((b.law >= 0 && !b.compliant) || !law_turns(b)) return;
+  const double rate = value(rate_of(ws, b.direction));
+  int& heading = ws.heading[b.direction];
+  if (abs(rate) > slip_tolerance(ws)) heading = rate > 0 ? forward : backward;
+  ws.guard.line[ws.guard.n_lines++] = {LineGuard::turn, k, heading, 0.0};
+}
+
+/// Guards that are linear in the state.
+template <class T>
+void list_lines(Workspace<T>& ws) {
+  ws.guard.n_lines = 0;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const Branch<T>& b = ws.branch[k];
+    const bool contact = b.law >= 0;
+    if (contact) list_slip(ws, k);
+    list_turn(ws, k);
+    const int edges = edge_count(ws, b.direction), sign = contact ? b.sign : 1;
+    if (b.piece < edges)
+      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, -sign, sign * edge_at(ws, b.direction, b.piece)};
+    if (edges > 0 && b.piece > 0)
+      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, sign, sign * edge_at(ws, b.direction, b.piece - 1)};
+  }
+  for (int k = ws.n_branches; k < ws.n_rates; ++k) {
+    // an open contact has passed zero when it is clear of it on the other side
+    const int sign = ws.branch[k].sign;
+    if (sign != 0) ws.guard.line[ws.guard.n_lines++] = {LineGuard::pass, k, sign, -sign * slip_tolerance(ws)};
+  }
+}
+
+}  // namespace clutchwork

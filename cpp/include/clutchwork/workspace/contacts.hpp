@@ -1,0 +1,132 @@
+#pragma once
+#include <clutchwork/workspace/arena.hpp>
+#include <clutchwork/workspace/settings.hpp>
+
+/// Contacts: what each one is and does, which are locked, and the memory of decisions.
+namespace clutchwork {
+
+/// Of each contact.
+template <class T>
+struct Contacts {
+  int *mode = nullptr, *forced = nullptr;     ///< forced: the way in which it must slip while time stands
+  int *pressed = nullptr, *loaded = nullptr;  ///< contacts with a load above zero; those that can transmit at all
+  int* compliant = nullptr;                   ///< contacts with a law that never sticks
+  int* fault = nullptr;                       ///< what has failed in it
+  int* impulse = nullptr;                     ///< contacts that an impulse has locked at the start
+  int failed = -1;                            ///< contact whose fault ends the run
+  double forced_time = -infinity;             ///< [s]
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.keep(p.mode, n.contacts, backward, open), a.keep(p.forced, n.contacts, backward, forward);
+    a.keep(p.pressed, n.contacts, 0, 1), a.keep(p.loaded, n.contacts, 0, 1);
+    a.take(p.compliant, n.contacts), a.keep(p.fault, n.contacts, sound, cannot_unlock);
+    a.keep(p.impulse, n.contacts, 0, 1);
+  }
+};
+
+/// What an event leaves to the decision: why, which contact, and how all contacts were right before it.
+template <class T>
+struct Happened {
+  Cause cause = Cause::initial;
+  int contact = -1;                       ///< whose guard was hit; -1: none or several
+  int* mode = nullptr;                    ///< of each contact
+  T *torque = nullptr, *slope = nullptr;  ///< of each contact [N m]; time derivative of its slip
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.keep(p.mode, n.contacts, backward, open), a.take(p.torque, n.contacts), a.take(p.slope, n.contacts);
+  }
+};
+
+/// The locked contacts: carriers, which are independent or rigid, and spares, which depend on them and make sets with
+/// them: contacts/locked.hpp.
+template <class T>
+struct Held {
+  int n = 0;                                        ///< number of carriers
+  int* contact = nullptr;                           ///< of each carrier
+  T* factor = nullptr;                              ///< Cholesky factor of the mobility of the carriers
+  T *reach = nullptr, *reach_prescribed = nullptr;  ///< torques by those of branches and prescribed accelerations
+
+  int n_spare = 0, n_sets = 0, n_driven = 0;
+  int *spare = nullptr, *set_first = nullptr, *set_rank = nullptr, *set_member = nullptr, *set_place = nullptr;
+  int* in_set = nullptr;  ///< of each carrier
+  int* driven = nullptr;  ///< spares whose slip the prescribed speeds can move though the carriers are locked
+  T* tie = nullptr;       ///< n_spare x contacts: direction of a spare in terms of the carriers
+
+  // scratch
+  T *rhs = nullptr, *solved = nullptr;  ///< of each carrier: right-hand side of its mobility, and the solution
+  T* carried = nullptr;                 ///< torques of the carriers
+  T* motion = nullptr;                  ///< mass-weighted acceleration, of each speed
+  T *rows = nullptr, *basis = nullptr, *norms = nullptr, *share = nullptr;  ///< of a split of directions
+  int *order = nullptr, *all = nullptr, *number = nullptr;                  ///< of the same
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    const auto nc = n.contacts, most = n.spares;
+    a.take(p.contact, nc), a.take(p.factor, nc * nc), a.take(p.reach, nc * n.directions);
+    a.take(p.reach_prescribed, nc * n.prescribed);
+    a.take(p.spare, most), a.take(p.set_first, most + 1), a.take(p.set_rank, most), a.take(p.set_member, most);
+    a.take(p.set_place, most), a.take(p.in_set, nc), a.take(p.driven, most), a.scratch(p.tie, most * most);
+    a.scratch(p.rhs, nc), a.scratch(p.solved, nc), a.scratch(p.carried, nc), a.scratch(p.motion, n.speeds);
+    a.scratch(p.rows, nc * n.speeds), a.scratch(p.basis, n.speeds * n.speeds);
+    a.scratch(p.norms, nc), a.scratch(p.share, nc);
+    a.take(p.order, nc), a.take(p.all, nc), a.take(p.number, nc);
+  }
+};
+
+/// Memory of one dependent set, its limit load and its shares: contacts/dependent.hpp.
+template <class T>
+struct SetMemory {
+  T *column = nullptr, *load = nullptr, *lower = nullptr, *upper = nullptr, *x = nullptr;
+  T *tableau = nullptr, *limit_x = nullptr, *price = nullptr;
+  T *deflection = nullptr, *step = nullptr, *residual = nullptr, *matrix = nullptr;
+  int *basis = nullptr, *place = nullptr;
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    const auto m = n.spares;
+    a.scratch(p.column, m * m), a.scratch(p.load, m), a.scratch(p.lower, m), a.scratch(p.upper, m), a.scratch(p.x, m);
+    a.scratch(p.tableau, m * (m + 1)), a.scratch(p.limit_x, m + 1), a.scratch(p.price, m + 1);
+    a.scratch(p.deflection, m), a.scratch(p.step, m), a.scratch(p.residual, m), a.scratch(p.matrix, m * m);
+    a.take(p.basis, m), a.take(p.place, m + 1);
+  }
+};
+
+/// Memory of the convex problem: contacts/problem.hpp.
+template <class T>
+struct ProblemMemory {
+  T *matrix = nullptr, *gradient = nullptr, *lower = nullptr, *upper = nullptr, *weight = nullptr, *capacity = nullptr;
+  T *x = nullptr, *slope = nullptr, *trial = nullptr, *factor = nullptr;
+  int *bound = nullptr, *free = nullptr;
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    const auto nc = n.contacts;
+    a.scratch(p.matrix, nc * nc), a.scratch(p.gradient, nc), a.scratch(p.lower, nc), a.scratch(p.upper, nc);
+    a.scratch(p.weight, nc), a.scratch(p.capacity, nc), a.scratch(p.x, nc), a.scratch(p.slope, nc);
+    a.scratch(p.trial, nc), a.scratch(p.factor, nc * nc), a.take(p.bound, nc), a.take(p.free, nc);
+  }
+};
+
+/// Scratch of a decision, and the torques that it gives.
+template <class T>
+struct Decision {
+  int* candidate = nullptr;   ///< of each contact: it may stick
+  int* released = nullptr;    ///< of each contact: 1 released, -1 taken back, 2 released for good
+  int* list = nullptr;        ///< contacts of the problem
+  T* motion = nullptr;        ///< mass-weighted acceleration, of each speed
+  double effort = 0;          ///< sum of the sizes of what makes it, against which its round-off is measured
+  T* torque = nullptr;        ///< of each contact that is locked [N m]
+  T* acceleration = nullptr;  ///< of each slip, after it
+  T* speed = nullptr;         ///< change of each speed by impulses
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.take(p.candidate, n.contacts), a.take(p.released, n.contacts), a.take(p.list, n.contacts);
+    a.scratch(p.motion, n.speeds), a.scratch(p.torque, n.contacts), a.scratch(p.acceleration, n.contacts);
+    a.scratch(p.speed, n.speeds);
+  }
+};
+
+}  // namespace clutchwork

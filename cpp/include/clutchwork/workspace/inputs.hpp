@@ -1,0 +1,69 @@
+#pragma once
+#include <clutchwork/workspace/arena.hpp>
+#include <clutchwork/workspace/settings.hpp>
+
+/// Signals and the components that read them.
+namespace clutchwork {
+
+/// Cursor of one signal.
+struct Signal {
+  std::int64_t segment = 0;
+  double start = 0;  ///< [s] start of the present segment
+  double knot = 0;   ///< [s] start of the next one
+  const double* coef = nullptr;
+  double held = 0;  ///< value of a signal that is set from outside
+  bool varying = false, linear = true, idle = false;
+};
+
+/// What components read, through references to signals, shared states, rates and heats; the prescribed speeds come
+/// last.
+template <class T>
+struct Inputs {
+  Signal* signal = nullptr;
+  int n_refs = 0, n_varying = 0;
+  int *ref_signal = nullptr, *varying = nullptr;
+  T *u = nullptr, *du = nullptr;  ///< value of each reference; its time derivative where it is a signal
+  double time = -infinity;        ///< [s] of the values
+  double next_knot = infinity;    ///< [s]
+  T *prescribed = nullptr, *prescribed_slope = nullptr, *prescribed_before = nullptr;
+
+  // references that are no signals: shared states first, then rates and heats of directions
+  int *shared_ref = nullptr, *direction_ref = nullptr;
+  int n_shared_refs = 0, n_direction_refs = 0;
+  T* shared_slope = nullptr;  ///< time derivative of each reference to a shared state, else zero
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.take(p.shared_ref, n.references), a.take(p.direction_ref, n.references), a.take(p.shared_slope, n.references);
+    a.take(p.signal, n.signals), a.take(p.ref_signal, n.references), a.take(p.varying, n.references);
+    a.take(p.u, n.references), a.take(p.du, n.references), a.take(p.prescribed_before, n.prescribed);
+  }
+};
+
+/// An active component: one direction, one torque.
+template <class T>
+struct Branch {
+  const T* params;
+  const T* law_params;
+  const T* input;
+  const T* input_slope;
+  const T* law_input;
+  const T* law_input_slope;
+  int inputs, law_inputs;
+  int kind, law;      ///< law is -1 for a torque element
+  int direction;      ///< number among elements, then contacts
+  int state, states;  ///< own states: offset and number
+  int piece;          ///< smooth piece of the element or of the law
+  int sign;           ///< direction of slip of a contact
+  bool pressed;       ///< a contact with a load; a freewheel without one still blocks
+  bool compliant;     ///< a contact whose law never sticks: smooth over signed slip
+  bool shaped;        ///< a contact whose torque per load is not the coefficient itself
+};
+
+/// Value and partial derivatives of one branch.
+template <class T>
+struct Partial {
+  T torque, by_rate, by_time;
+};
+
+}  // namespace clutchwork

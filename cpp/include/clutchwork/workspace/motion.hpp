@@ -1,0 +1,138 @@
+#pragma once
+#include <clutchwork/workspace/inputs.hpp>
+
+/// The motion of one mode: geometry, reduced coordinates, derivatives, shared states.
+namespace clutchwork {
+
+/// Rows of a matrix without their zeros.
+template <class T>
+struct Compressed {
+  int *first = nullptr, *col = nullptr;
+  T* val = nullptr;
+
+  /// Product of row i and x.
+  CLUTCHWORK_INLINE T times(int i, const T* x) const {
+    T s = T(0);
+    for (int e = first[i]; e < first[i + 1]; ++e) s += val[e] * x[col[e]];
+    return s;
+  }
+  /// x += factor times row i.
+  CLUTCHWORK_INLINE void add(int i, T factor, T* x) const {
+    for (int e = first[i]; e < first[i + 1]; ++e) x[col[e]] += val[e] * factor;
+  }
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, std::int64_t rows, std::int64_t cols) {
+    a.take(p.first, rows + 1), a.take(p.col, rows * cols), a.scratch(p.val, rows * cols);
+  }
+};
+
+/// Of the whole run, in mass-weighted coordinates x = L' v.
+template <class T>
+struct Geometry {
+  T *factor = nullptr, *direction = nullptr, *prescribed_momentum = nullptr;
+  Compressed<T> white;     ///< the directions
+  T* mobility = nullptr;   ///< of the contacts
+  bool redundant = false;  ///< contacts can depend on each other
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.scratch(p.factor, n.speeds * n.speeds), a.scratch(p.direction, n.directions * n.speeds);
+    a.scratch(p.prescribed_momentum, n.prescribed * n.speeds), a.scratch(p.mobility, n.contacts * n.contacts);
+    Compressed<T>::lay_out(p.white, a, n.directions, n.speeds);
+  }
+};
+
+/// v = Z z + Y u, and the rates of the branches in it.
+template <class T>
+struct Reduced {
+  int rank = 0, nz = 0;
+  bool is_sparse = false;
+  Method method = Method::rodas5p;
+  T* y = nullptr;  ///< z and the states at the start of a phase
+  T *z_basis = nullptr, *y_basis = nullptr;
+  T *row_z = nullptr, *offset = nullptr;                     ///< of each branch
+  T *momentum = nullptr, *column = nullptr, *row = nullptr;  ///< scratch, of each speed
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.take(p.y, n.speeds + n.states), a.take(p.z_basis, n.speeds * n.speeds),
+        a.take(p.y_basis, n.speeds * n.prescribed);
+    a.take(p.row_z, n.directions * n.speeds), a.take(p.offset, n.directions * n.prescribed);
+    a.scratch(p.momentum, n.speeds), a.scratch(p.column, n.speeds), a.scratch(p.row, n.speeds);
+  }
+};
+
+/// The sparse form: rates, mass and expansion of reduced coordinates, and the envelope in which they are factored.
+template <class T>
+struct SparseRows {
+  Compressed<T> rate, mass, expansion;
+  int* eliminated_by = nullptr;        ///< of each speed: locked contact, -1: it is kept
+  int* number = nullptr;               ///< of each speed among those that are kept, or -1
+  int *low = nullptr, *sky = nullptr;  ///< of each row: first column in the envelope; place of column 0
+  T *envelope = nullptr, *mass_envelope = nullptr;
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    Compressed<T>::lay_out(p.rate, a, n.directions, n.speeds), Compressed<T>::lay_out(p.mass, a, n.speeds, n.speeds);
+    Compressed<T>::lay_out(p.expansion, a, n.speeds, n.speeds);
+    a.take(p.eliminated_by, n.speeds), a.take(p.number, n.speeds), a.take(p.low, n.speeds), a.take(p.sky, n.speeds + 1);
+    a.scratch(p.envelope, n.speeds * n.speeds), a.scratch(p.mass_envelope, n.speeds * n.speeds);
+  }
+};
+
+/// Partial derivatives of the branches and of their own states.
+template <class T>
+struct Jacobian {
+  Partial<T>* partial = nullptr;
+  T *f_state = nullptr, *g_rate = nullptr, *g_time = nullptr;
+  T* g_state = nullptr;  ///< blocks of the branches
+  int* block = nullptr;  ///< of each branch: place of its block
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.take(p.partial, n.directions), a.take(p.f_state, n.states), a.take(p.g_rate, n.states),
+        a.take(p.g_time, n.states);
+    a.take(p.g_state, n.states * n.states), a.take(p.block, n.directions);
+  }
+};
+
+/// Shared states: heats, and the border that they put around the motion.
+template <class T>
+struct Shared {
+  T *heat = nullptr, *heat_rate = nullptr, *heat_time = nullptr;    ///< of each branch [W], by its rate, by time
+  T* heat_share = nullptr;                                          ///< of each branch, by its torque
+  T *stage_rate = nullptr, *stage_torque = nullptr;                 ///< of each branch at the present stage
+  T* torque_by = nullptr;                                           ///< torque of each branch by the shared states
+  T *by_rate = nullptr, *by_state = nullptr, *by_shared = nullptr;  ///< of the shared rates
+  T *reach = nullptr, *inverse = nullptr, *rhs = nullptr;  ///< answer of the motion to a shared state; Schur complement
+  int* pivot = nullptr;                                    ///< of its inversion
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    const auto nx = n.shared, nd = nx > 0 ? n.directions : 0;
+    a.take(p.heat, nd), a.take(p.heat_rate, nd), a.take(p.heat_time, nd), a.take(p.heat_share, nd);
+    a.take(p.stage_rate, nd), a.take(p.stage_torque, nd), a.take(p.torque_by, nd * nx), a.take(p.by_rate, nd * nx);
+    a.take(p.by_state, n.states * nx), a.take(p.by_shared, nx * nx), a.take(p.reach, (n.speeds + n.states) * nx);
+    a.take(p.inverse, nx * nx), a.scratch(p.rhs, nx), a.take(p.pivot, nx);
+  }
+};
+
+/// Scratch of the integrators.
+template <class T>
+struct Stages {
+  T* rows = nullptr;     ///< of a step whose size the compiler does not know
+  T* stiff = nullptr;    ///< effective damping of each branch
+  T* inverse = nullptr;  ///< of the blocks of the own states
+  T* own = nullptr;      ///< own states of one branch
+  int* pivot = nullptr;  ///< of the inversion of a block
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.scratch(p.rows, step_rows * (n.speeds + n.states)), a.scratch(p.stiff, n.directions);
+    a.take(p.inverse, n.states * n.states), a.scratch(p.own, n.states), a.take(p.pivot, n.states);
+  }
+  static constexpr int step_rows = 20;
+};
+
+}  // namespace clutchwork

@@ -1,0 +1,104 @@
+#pragma once
+#include <clutchwork/workspace/arena.hpp>
+#include <clutchwork/workspace/settings.hpp>
+
+/// What guards look at, what is observed and written, and the events that wait for the caller.
+namespace clutchwork {
+
+/// Guard functions that are linear in the state: sign * (rate - level) stays positive.
+struct LineGuard {
+  enum Kind : int { slip, edge, pass, turn } kind;
+  int branch;
+  int sign;
+  double level;
+};
+
+/// What the guards need at one end of a step.
+template <class T>
+struct Edge {
+  T* rate;        ///< rate of each branch
+  T* slope;       ///< its time derivative
+  T* multiplier;  ///< torque of each locked contact
+  T* drift;       ///< its time derivative
+  T* capacity;    ///< static torque of each locked contact
+  T* swing;       ///< size of its time derivative where its load bends over time, else zero
+  T* noise;       ///< round-off of the torque of each locked contact
+  T* room;        ///< what each dependent set has left of its limit load, as a share of the load
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.take(p.rate, n.directions), a.take(p.slope, n.directions), a.take(p.multiplier, n.contacts);
+    a.take(p.drift, n.contacts), a.take(p.capacity, n.contacts), a.take(p.swing, n.contacts);
+    a.take(p.noise, n.contacts), a.take(p.room, n.contacts);
+  }
+};
+
+/// Lists of what must be watched in the present phase.
+struct Guards {
+  LineGuard* line = nullptr;
+  int *switching = nullptr, *chattering = nullptr;  ///< branches with laws that switch, or that jump with the slip
+  int *bounded = nullptr, *faulty = nullptr;        ///< contacts whose laws can be left; contacts that can fail
+  int *load = nullptr, *limit = nullptr;  ///< contacts whose loads may pass zero; carriers that may break away: scratch
+  double* load_size = nullptr;            ///< largest size that the load of a contact may have, 0: not known
+  double* turned_at = nullptr;            ///< [s] when the load of a contact passed zero last
+  int n_lines = 0, n_switching = 0, n_chattering = 0, n_bounded = 0, n_faulty = 0, n_loads = 0;
+  int n_undirected = 0;  ///< open contacts at rest
+  int reversals = 0;     ///< of slips that chatter
+  std::int64_t reversals_since = 0;
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.take(p.line, 3 * n.directions + n.contacts), a.take(p.switching, n.directions), a.take(p.chattering, n.contacts);
+    a.take(p.bounded, n.contacts), a.keep(p.faulty, n.contacts, 0, n.contacts - 1);
+    a.keep(p.load, n.contacts, 0, n.contacts - 1), a.take(p.limit, n.contacts);
+    a.take(p.load_size, n.contacts), a.take(p.turned_at, n.contacts);
+  }
+};
+
+/// Rates and torques of the branches where they were observed last.
+template <class T>
+struct Seen {
+  T *rate = nullptr, *torque = nullptr, *drift = nullptr;
+  T* carried = nullptr;      ///< torques of the carriers
+  T* state_rates = nullptr;  ///< scratch of a torque that is asked for alone
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.scratch(p.rate, n.directions), a.take(p.torque, n.directions), a.scratch(p.drift, n.directions);
+    a.take(p.carried, n.contacts), a.scratch(p.state_rates, n.states);
+  }
+};
+
+/// What a row of output is made from.
+template <class T>
+struct Output {
+  T* torque = nullptr;                               ///< of every direction
+  T *v = nullptr, *dv = nullptr, *turned = nullptr;  ///< of each speed: value, time derivative, angle since the start
+  T *angle = nullptr, *prescribed_angle = nullptr;
+  T* power = nullptr;                     ///< of each direction and source, as cubics
+  T *whole = nullptr, *halves = nullptr;  ///< work of each branch over a step and its halves
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.take(p.torque, n.directions), a.scratch(p.v, n.speeds), a.scratch(p.dv, n.speeds), a.scratch(p.turned, n.speeds);
+    a.scratch(p.angle, n.nodes), a.scratch(p.prescribed_angle, n.prescribed);
+    a.scratch(p.power, 4 * (n.directions + n.prescribed)), a.scratch(p.whole, n.directions);
+    a.scratch(p.halves, n.directions);
+  }
+};
+
+/// Events that wait for the caller.
+struct EventBuffer {
+  static constexpr int room = 256;
+  double* at = nullptr;
+  int n = 0;
+  int* crowd = nullptr;  ///< events of each direction, then knots of each signal, within the last microsecond
+  double crowd_time = -infinity;
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.keep(p.crowd, n.directions + n.signals, 0, 1 << 30), a.take(p.at, event_size * (room + 2 * n.contacts));
+  }
+};
+
+}  // namespace clutchwork
