@@ -94,32 +94,38 @@ inline bool plain_inputs(const System& s, std::int64_t first, int n) {
   return true;
 }
 
+/// Whether a flow lies inside the pools, between two shared states.
+inline bool flow_fits(const System& s, std::int64_t i) {
+  bool good = s.flow_kind[i] >= 0 && s.flow_kind[i] < flow_kinds && s.flow_from[i] >= -1 && s.flow_from[i] < s.shared &&
+              s.flow_to[i] >= -1 && s.flow_to[i] < s.shared && s.flow_param[i] >= 0 && s.flow_input[i] >= 0;
+  if (!good) return false;
+  visit_flow(s.flow_kind[i], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    good = s.flow_param[i] + param_count<E> <= s.n_params && s.flow_input[i] + E::inputs <= s.n_input_refs;
+  });
+  visit_flow_curves(s.flow_kind[i], [&](int at) { good = good && curve_fits(s, s.flow_param[i] + at); });
+  return good;
+}
+
+/// Whether a process lies inside the pools, its states among the shared ones.
+inline bool process_fits(const System& s, std::int64_t i) {
+  bool good = s.process_kind[i] >= 0 && s.process_kind[i] < process_kinds &&
+              s.process_state[i] >= s.states - s.shared && s.process_param[i] >= 0 && s.process_input[i] >= 0;
+  if (!good) return false;
+  visit_process(s.process_kind[i], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    good = s.process_param[i] + param_count<E> <= s.n_params && s.process_input[i] + E::inputs <= s.n_input_refs &&
+           s.process_state[i] + E::states <= s.states;
+  });
+  visit_process_curves(s.process_kind[i], [&](int at) { good = good && curve_fits(s, s.process_param[i] + at); });
+  return good;
+}
+
 /// As in_range, for what concerns the shared states.
 inline bool shared_in_range(const System& s) {
-  if (s.shared > s.states) return false;
-  const std::int64_t first = s.states - s.shared;
-  bool good = true;
-  for (std::int64_t i = 0; good && i < s.flows; ++i) {
-    good = s.flow_kind[i] >= 0 && s.flow_kind[i] < flow_kinds && s.flow_from[i] >= -1 && s.flow_from[i] < s.shared &&
-           s.flow_to[i] >= -1 && s.flow_to[i] < s.shared && s.flow_param[i] >= 0 && s.flow_input[i] >= 0;
-    if (!good) return false;
-    visit_flow(s.flow_kind[i], [&](auto tag) {
-      using E = typename decltype(tag)::type;
-      good = s.flow_param[i] + param_count<E> <= s.n_params && s.flow_input[i] + E::inputs <= s.n_input_refs;
-    });
-    visit_flow_curves(s.flow_kind[i], [&](int at) { good = good && curve_fits(s, s.flow_param[i] + at); });
-  }
-  for (std::int64_t i = 0; good && i < s.processes; ++i) {
-    good = s.process_kind[i] >= 0 && s.process_kind[i] < process_kinds && s.process_state[i] >= first &&
-           s.process_param[i] >= 0 && s.process_input[i] >= 0;
-    if (!good) return false;
-    visit_process(s.process_kind[i], [&](auto tag) {
-      using E = typename decltype(tag)::type;
-      good = s.process_param[i] + param_count<E> <= s.n_params && s.process_input[i] + E::inputs <= s.n_input_refs &&
-             s.process_state[i] + E::states <= s.states;
-    });
-    visit_process_curves(s.process_kind[i], [&](int at) { good = good && curve_fits(s, s.process_param[i] + at); });
-  }
+  bool good = s.shared <= s.states;
+  for (std::int64_t i = 0; good && i < s.flows; ++i) good = flow_fits(s, i);
+  for (std::int64_t i = 0; good && i < s.processes; ++i) good = process_fits(s, i);
   for (std::int64_t h = 0; good && h < s.heats; ++h) {
     good = s.heat_direction[h] >= 0 && s.heat_direction[h] < s.elements + s.contacts && s.heat_to[h] >= 0 &&
            s.heat_to[h] < s.shared;
@@ -127,57 +133,72 @@ inline bool shared_in_range(const System& s) {
   return good;
 }
 
+/// Whether n numbers lie between two bounds.
+inline bool within(const std::int32_t* x, std::int64_t n, std::int64_t low, std::int64_t high) {
+  for (std::int64_t i = 0; i < n; ++i) {
+    if (x[i] < low || x[i] > high) return false;
+  }
+  return true;
+}
+
+/// Kinds are known, and offsets point into their pools.
+inline bool offsets_in_range(const System& s) {
+  const std::int64_t ne = s.elements, nc = s.contacts;
+  const bool kinds = within(s.element_kind, ne, 0, torque_kinds - 1) &&
+                     within(s.contact_kind, nc, 0, contact_kinds - 1) && within(s.contact_law, nc, 0, law_kinds - 1);
+  const bool params = within(s.element_param, ne, 0, s.n_params) && within(s.contact_param, nc, 0, s.n_params) &&
+                      within(s.contact_law_param, nc, 0, s.n_params);
+  const bool states = within(s.element_state, ne, 0, s.states) && within(s.contact_state, nc, 0, s.states);
+  const bool inputs = within(s.element_input, ne, 0, s.n_input_refs) &&
+                      within(s.contact_input, nc, 0, s.n_input_refs) &&
+                      within(s.contact_law_input, nc, 0, s.n_input_refs);
+  return kinds && params && states && inputs && within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) &&
+         within(s.input_refs, s.n_input_refs, 0, s.inputs + s.shared + 2 * (ne + nc) - 1);
+}
+
+/// Whether an element lies inside the pools; its states.
+inline bool element_fits(const System& s, std::int64_t i, std::int64_t& states) {
+  bool good = true;
+  visit_torque(s.element_kind[i], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    good = s.element_param[i] + param_count<E> <= s.n_params && s.element_input[i] + E::inputs <= s.n_input_refs &&
+           s.element_state[i] + E::states <= s.states - s.shared && plain_inputs(s, s.element_input[i], E::inputs);
+    states = E::states;
+  });
+  visit_torque_curves(s.element_kind[i], [&](int at) { good = good && curve_fits(s, s.element_param[i] + at); });
+  return good;
+}
+
+/// Whether a contact and its law lie inside the pools; their states.
+inline bool contact_fits(const System& s, std::int64_t i, std::int64_t& states) {
+  bool good = true;
+  visit_contact(s.contact_kind[i], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    good = s.contact_param[i] + param_count<E> <= s.n_params && s.contact_input[i] + E::inputs <= s.n_input_refs &&
+           plain_inputs(s, s.contact_input[i], E::inputs);
+  });
+  visit_contact_curves(s.contact_kind[i], [&](int at) { good = good && curve_fits(s, s.contact_param[i] + at); });
+  visit_law(s.contact_law[i], [&](auto tag) {
+    using L = typename decltype(tag)::type;
+    constexpr int inputs = law_inputs<L>();
+    good = good && s.contact_law_param[i] + param_count<L> <= s.n_params &&
+           s.contact_law_input[i] + inputs <= s.n_input_refs && plain_inputs(s, s.contact_law_input[i], inputs);
+  });
+  visit_law_curves(s.contact_law[i], [&](int at) { good = good && curve_fits(s, s.contact_law_param[i] + at); });
+  if (!good || !tables_fit(s, i)) return false;
+  states = states_of(s.contact_kind[i], s.contact_law[i], s.params + s.contact_law_param[i]);
+  return s.contact_state[i] + states <= s.states - s.shared;
+}
+
 /// Offsets and numbers inside the system that the core follows without looking.
 inline bool in_range(const System& s) {
-  auto within = [](const std::int32_t* x, std::int64_t n, std::int64_t low, std::int64_t high) {
-    for (std::int64_t i = 0; i < n; ++i) {
-      if (x[i] < low || x[i] > high) return false;
-    }
-    return true;
-  };
-  bool good =
-      within(s.element_kind, s.elements, 0, torque_kinds - 1) &&
-      within(s.contact_kind, s.contacts, 0, contact_kinds - 1) && within(s.contact_law, s.contacts, 0, law_kinds - 1) &&
-      within(s.element_param, s.elements, 0, s.n_params) && within(s.contact_param, s.contacts, 0, s.n_params) &&
-      within(s.contact_law_param, s.contacts, 0, s.n_params) && within(s.element_state, s.elements, 0, s.states) &&
-      within(s.contact_state, s.contacts, 0, s.states) && within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) &&
-      within(s.element_input, s.elements, 0, s.n_input_refs) &&
-      within(s.contact_input, s.contacts, 0, s.n_input_refs) &&
-      within(s.contact_law_input, s.contacts, 0, s.n_input_refs) &&
-      within(s.input_refs, s.n_input_refs, 0, s.inputs + s.shared + 2 * (s.elements + s.contacts) - 1) &&
-      shared_in_range(s);
+  bool good = offsets_in_range(s) && shared_in_range(s);
   for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
-  std::int64_t states = 0;
-  for (std::int64_t i = 0; good && i < s.elements; ++i) {
-    visit_torque(s.element_kind[i], [&](auto tag) {
-      using E = typename decltype(tag)::type;
-      good = s.element_param[i] + param_count<E> <= s.n_params && s.element_input[i] + E::inputs <= s.n_input_refs &&
-             s.element_state[i] + E::states <= s.states - s.shared && plain_inputs(s, s.element_input[i], E::inputs);
-      states += E::states;
-    });
-    visit_torque_curves(s.element_kind[i], [&](int at) { good = good && curve_fits(s, s.element_param[i] + at); });
-  }
-  for (std::int64_t i = 0; good && i < s.contacts; ++i) {
-    visit_contact(s.contact_kind[i], [&](auto tag) {
-      using E = typename decltype(tag)::type;
-      good = s.contact_param[i] + param_count<E> <= s.n_params && s.contact_input[i] + E::inputs <= s.n_input_refs &&
-             plain_inputs(s, s.contact_input[i], E::inputs);
-    });
-    visit_contact_curves(s.contact_kind[i], [&](int at) { good = good && curve_fits(s, s.contact_param[i] + at); });
-    visit_law(s.contact_law[i], [&](auto tag) {
-      using L = typename decltype(tag)::type;
-      constexpr int inputs = law_inputs<L>();
-      good = good && s.contact_law_param[i] + param_count<L> <= s.n_params &&
-             s.contact_law_input[i] + inputs <= s.n_input_refs && plain_inputs(s, s.contact_law_input[i], inputs);
-    });
-    visit_law_curves(s.contact_law[i], [&](int at) { good = good && curve_fits(s, s.contact_law_param[i] + at); });
-    if (!good || !tables_fit(s, i)) return false;
-    const int own = states_of(s.contact_kind[i], s.contact_law[i], s.params + s.contact_law_param[i]);
-    good = s.contact_state[i] + own <= s.states - s.shared;
-    states += own;
-  }
+  std::int64_t all = 0, own = 0;
+  for (std::int64_t i = 0; good && i < s.elements; ++i, all += own) good = element_fits(s, i, own);
+  for (std::int64_t i = 0; good && i < s.contacts; ++i, all += own) good = contact_fits(s, i, own);
   // states are nobody's twice
-  return good && states <= s.states - s.shared && choices_fit(s);
+  return good && all <= s.states - s.shared && choices_fit(s);
 }
 
 }  // namespace clutchwork

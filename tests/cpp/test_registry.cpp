@@ -1,4 +1,5 @@
 #include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/pieces.hpp>
 #include <initializer_list>
 
 #include "check.hpp"

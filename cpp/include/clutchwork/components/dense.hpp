@@ -90,6 +90,39 @@ bool invert(int n, T* a, int* pivot) {
   return true;
 }
 
+/// Of the rows order[rank..m) the one with the largest part outside the span so far, relative to its length (-1: none
+/// has any).
+template <class T>
+int most_independent(int m, int n, const T* rows, const int* order, const T* norms, int rank) {
+  int best = -1;
+  T best_share = T(1e-10);
+  for (int r = rank; r < m; ++r) {
+    const T* x = rows + order[r] * n + rank;
+    const T length = sqrt(dot(n - rank, x, x));
+    if (norms[order[r]] > T(0) && length / norms[order[r]] > best_share) {
+      best = r;
+      best_share = length / norms[order[r]];
+    }
+  }
+  return best;
+}
+
+/// Reflect row u onto axis `rank`, and with it all other rows and q.
+template <class T>
+void reflect(int m, int n, T* rows, T* q, T* u, int rank) {
+  const T length = sqrt(dot(n - rank, u + rank, u + rank));
+  const T alpha = u[rank] > T(0) ? -length : length;
+  u[rank] -= alpha;
+  const T beta = T(2) / dot(n - rank, u + rank, u + rank);
+  auto turn = [&](T* x) { axpy(n - rank, -(beta * dot(n - rank, u + rank, x + rank)), u + rank, x + rank); };
+  for (int r = 0; r < m; ++r) {
+    if (rows + r * n != u) turn(rows + r * n);
+  }
+  for (int i = 0; i < n; ++i) turn(q + i * n);
+  u[rank] = alpha;
+  for (int j = rank + 1; j < n; ++j) u[j] = T(0);
+}
+
 /// Orthonormal basis of R^n whose first `rank` columns span the given rows, by pivoted Householder reflections.
 /// rows: m x n, overwritten. q: n x n, its column j is q[i * n + j]. order: m, pivot order. Returns the rank.
 template <class T>
@@ -102,41 +135,12 @@ int orthonormal_split(int m, int n, T* rows, T* q, int* order, T* norms) {
   }
   int rank = 0;
   for (; rank < m && rank < n; ++rank) {
-    // the row with the largest part outside the span so far, relative to its length
-    int best = -1;
-    T best_share = T(1e-10);
-    for (int r = rank; r < m; ++r) {
-      const T* x = rows + order[r] * n;
-      const T length = sqrt(dot(n - rank, x + rank, x + rank));
-      if (norms[order[r]] > T(0) && length / norms[order[r]] > best_share) {
-        best = r;
-        best_share = length / norms[order[r]];
-      }
-    }
+    const int best = most_independent(m, n, rows, order, norms, rank);
     if (best < 0) break;
     const int swap = order[rank];
     order[rank] = order[best];
     order[best] = swap;
-    // reflect the pivot row onto axis `rank`
-    T* u = rows + order[rank] * n;
-    const T length = sqrt(dot(n - rank, u + rank, u + rank));
-    const T alpha = u[rank] > T(0) ? -length : length;
-    T pivot_row = alpha;
-    u[rank] -= alpha;
-    const T beta = T(2) / dot(n - rank, u + rank, u + rank);
-    for (int r = 0; r < m; ++r) {
-      T* x = rows + r * n;
-      if (x == u) continue;
-      const T s = beta * dot(n - rank, u + rank, x + rank);
-      axpy(n - rank, -s, u + rank, x + rank);
-    }
-    for (int i = 0; i < n; ++i) {
-      T* x = q + i * n;
-      const T s = beta * dot(n - rank, u + rank, x + rank);
-      axpy(n - rank, -s, u + rank, x + rank);
-    }
-    u[rank] = pivot_row;
-    for (int j = rank + 1; j < n; ++j) u[j] = T(0);
+    reflect(m, n, rows, q, rows + order[rank] * n, rank);
   }
   return rank;
 }

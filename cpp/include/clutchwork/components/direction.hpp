@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/kinds.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Directions of the motion: the rate of each, and the branch that works along it.

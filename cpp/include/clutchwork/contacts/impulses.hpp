@@ -1,7 +1,7 @@
 #pragma once
-#include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/acceleration.hpp>
 #include <clutchwork/contacts/problem.hpp>
 #include <clutchwork/contacts/sticking.hpp>

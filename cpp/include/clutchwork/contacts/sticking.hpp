@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/kinds.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// What each contact can hold now, and which may stick: docs/theory/contacts.md.

@@ -2,6 +2,7 @@
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/input.hpp>
+#include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/form.hpp>

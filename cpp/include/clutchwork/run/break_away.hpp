@@ -1,7 +1,7 @@
 #pragma once
-#include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/input.hpp>
+#include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/dynamics.hpp>

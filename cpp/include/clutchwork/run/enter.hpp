@@ -2,6 +2,8 @@
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/kinds.hpp>
+#include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/branches.hpp>

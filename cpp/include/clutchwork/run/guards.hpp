@@ -1,6 +1,6 @@
 #pragma once
-#include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/input.hpp>
+#include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/break_away.hpp>

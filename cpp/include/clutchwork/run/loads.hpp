@@ -1,6 +1,6 @@
 #pragma once
-#include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/input.hpp>
+#include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/snapshot.hpp>

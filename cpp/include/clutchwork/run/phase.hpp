@@ -1,6 +1,6 @@
 #pragma once
-#include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/input.hpp>
+#include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/run/break_away.hpp>

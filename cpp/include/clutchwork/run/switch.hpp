@@ -2,6 +2,8 @@
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/kinds.hpp>
+#include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/acceleration.hpp>
 #include <clutchwork/contacts/decision.hpp>
 #include <clutchwork/contacts/impulses.hpp>

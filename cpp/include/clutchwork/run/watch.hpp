@@ -1,6 +1,6 @@
 #pragma once
-#include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
 

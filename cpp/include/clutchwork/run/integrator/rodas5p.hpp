@@ -124,11 +124,40 @@ struct Rodas5P {
     }
   }
 
+  /// The point of stage s from those before, in u.
+  template <class Form, class T = typename Form::Scalar>
+  static CLUTCHWORK_INLINE void stage_point(Form& form, Step<Form>& step, int s, T* u) {
+    const int n = form.n();
+    if (s >= 6) {
+      for (int i = 0; i < n; ++i) u[i] += step.k(s - 1)[i];
+      return;
+    }
+    for (int i = 0; i < n; ++i) {
+      T x = step.y0()[i];
+      for (int j = 0; j < s; ++j) x += T(a[s][j]) * step.k(j)[i];
+      u[i] = x;
+    }
+  }
+
+  /// Right-hand side of stage s: slopes there, and the stages before.
+  template <class Form, class T = typename Form::Scalar>
+  static CLUTCHWORK_INLINE void stage_slope(Form& form, Step<Form>& step, int s, const T* u, T* mix, T* k) {
+    const int n = form.n(), nz = form.nz(), ns = form.ns();
+    const T ih = T(1 / step.h);
+    evaluate(form, step.t + node[s] * step.h, u, k);
+    for (int i = 0; i < n; ++i) {
+      T x = T(0);
+      for (int j = 0; j < s; ++j) x += T(c[s][j]) * step.k(j)[i];
+      mix[i] = x;
+    }
+    form.add_mass_times(ih, mix, k);
+    for (int i = nz; i < nz + ns; ++i) k[i] += ih * mix[i];
+  }
+
   /// One step of length h from step.y0 with f0 and dt0 known; returns the error in units of the tolerance.
   template <class Form, class T = typename Form::Scalar>
   static CLUTCHWORK_INLINE double advance(Form& form, Step<Form>& step, double h) {
-    const int n = form.n(), nz = form.nz(), ns = form.ns();
-    const T ih = T(1 / h);
+    const int n = form.n();
     if (!factor(form, T(1 / (gamma * h)))) return infinity;
     step.h = h;
     step.dense = false;
@@ -141,23 +170,8 @@ struct Rodas5P {
         for (int i = 0; i < n; ++i) u[i] = y0[i];
         for (int i = 0; i < n; ++i) k[i] = step.f0()[i];
       } else {
-        if (s < 6) {
-          for (int i = 0; i < n; ++i) {
-            T x = y0[i];
-            for (int j = 0; j < s; ++j) x += T(a[s][j]) * step.k(j)[i];
-            u[i] = x;
-          }
-        } else {
-          for (int i = 0; i < n; ++i) u[i] += step.k(s - 1)[i];
-        }
-        evaluate(form, step.t + node[s] * h, u, k);
-        for (int i = 0; i < n; ++i) {
-          T x = T(0);
-          for (int j = 0; j < s; ++j) x += T(c[s][j]) * step.k(j)[i];
-          mix[i] = x;
-        }
-        form.add_mass_times(ih, mix, k);
-        for (int i = nz; i < nz + ns; ++i) k[i] += ih * mix[i];
+        stage_point(form, step, s, u);
+        stage_slope(form, step, s, u, mix, k);
       }
       if (s < 5) {
         const T hd = T(h * d[s]);

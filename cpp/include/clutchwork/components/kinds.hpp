@@ -1,0 +1,109 @@
+#pragma once
+#include <clutchwork/workspace.hpp>
+
+/// What the kinds of components say of themselves, and what a contact can hold.
+namespace clutchwork {
+
+/// Number of own states of a torque element (law < 0) or of a contact, which are those of its law.
+template <class T>
+int states_of(int kind, int law, const T* law_params) {
+  if (law < 0) return visit_torque(kind, [](auto tag) { return decltype(tag)::type::states; });
+  return visit_law(law, [&](auto tag) {
+    using L = typename decltype(tag)::type;
+    if constexpr (SizedLaw<L>) return L::count(*reinterpret_cast<const typename L::template Params<T>*>(law_params));
+    return int(L::states);
+  });
+}
+
+/// Most states of a law.
+inline int most_law_states(int law) {
+  return visit_law(law, [](auto tag) { return int(decltype(tag)::type::states); });
+}
+
+/// Inputs of a torque element, a contact or a law.
+inline int element_inputs(int kind) {
+  return visit_torque(kind, [](auto tag) { return int(decltype(tag)::type::inputs); });
+}
+inline int contact_inputs(int kind) {
+  return visit_contact(kind, [](auto tag) { return int(decltype(tag)::type::inputs); });
+}
+inline int law_inputs_of(int law) {
+  return visit_law(law, [](auto tag) { return law_inputs<typename decltype(tag)::type>(); });
+}
+inline bool is_shaped(int kind) {
+  return visit_contact(kind, [](auto tag) { return ShapedContact<typename decltype(tag)::type>; });
+}
+
+/// Whether a law never sticks.
+inline bool is_compliant_law(int law) {
+  return visit_law(law, [](auto tag) { return CompliantLaw<typename decltype(tag)::type>; });
+}
+
+/// Load of a contact at the given inputs, negative where the clamp is relieved.
+template <class T, class S>
+CLUTCHWORK_INLINE S contact_load(int kind, const T* params, const S* input, const double* points) {
+  return visit_contact(kind, [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(params);
+    return E::load(p, At<S>{S(0), nullptr, input, 0, points});
+  });
+}
+
+/// Torque per load of a contact whose law gives the coefficient mu, slipping in a direction.
+template <class T, class S>
+CLUTCHWORK_INLINE S contact_gain(int kind, const T* params, const S& mu, int direction) {
+  return visit_contact(kind, [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (ShapedContact<E>)
+      return E::gain(*reinterpret_cast<const typename E::template Params<T>*>(params), mu, direction);
+    return mu;
+  });
+}
+
+/// Static coefficient of a law.
+template <class T>
+CLUTCHWORK_INLINE T law_hold(int law, const T* params, const T* input, const double* points) {
+  return visit_law(law, [&](auto tag) {
+    using L = typename decltype(tag)::type;
+    const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
+    return L::hold(p, At<T>{T(0), nullptr, input, 0, points});
+  });
+}
+
+/// Static torque of a contact that resists slip in a direction, not negative.
+template <class T>
+T contact_limit(const System& sys, int c, const T* params, const T* input, const T* law_input, int direction) {
+  const T* own = params + sys.contact_param[c];
+  const T hold = law_hold(sys.contact_law[c], params + sys.contact_law_param[c], law_input, sys.points);
+  return visit_contact(sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(own);
+    const At<T> at{T(0), nullptr, input, 0, sys.points};
+    if constexpr (LimitedContact<E>) {
+      return larger(E::limit(p, at, hold, direction), T(0));
+    } else {
+      const T load = larger(E::load(p, at), T(0));
+      if constexpr (ShapedContact<E>) return load * E::gain(p, hold, direction);
+      return load * hold;
+    }
+  });
+}
+
+template <class T>
+CLUTCHWORK_INLINE bool contact_one_way(const Workspace<T>& ws, int c) {
+  if (ws.contact.fault[c] == cannot_transmit) return false;
+  return visit_contact(ws.sys.contact_kind[c], [](auto tag) { return decltype(tag)::type::one_way; });
+}
+
+/// What a freewheel holds before it gives way [N m].
+template <class T>
+T freewheel_limit(const Workspace<T>& ws, int c) {
+  return visit_contact(ws.sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (YieldingContact<E>)
+      return E::holding(*reinterpret_cast<const typename E::template Params<T>*>(ws.params + ws.sys.contact_param[c]));
+    return T(infinity);
+  });
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,155 @@
+#pragma once
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// The smooth pieces of elements and laws: kinks over the rate, and those that change by their own states.
+namespace clutchwork {
+
+/// Call f with the component that rules the pieces of a branch: its element, or its law.
+template <class T, class F>
+decltype(auto) visit_branch(const Branch<T>& b, F&& f) {
+  if (b.law < 0)
+    return visit_torque(b.kind, [&](auto tag) { return f(tag, b.params, b.input, b.input_slope, b.inputs); });
+  return visit_law(b.law, [&](auto tag) { return f(tag, b.law_params, b.law_input, b.law_input_slope, b.law_inputs); });
+}
+
+/// How far the law of a switching branch is from leaving its piece, and its time derivative; `who` would leave.
+template <class T>
+Dual<T, 1> law_margin(const Workspace<T>& ws, const Branch<T>& b, T rate, T slope, const T* state, const T* rates,
+                      int& who) {
+  using S = Dual<T, 1>;
+  return visit_branch(b, [&](auto tag, const T* params, const T* inputs, const T* input_slopes, int n) {
+    using L = typename decltype(tag)::type;
+    if constexpr (SwitchingLaw<L>) {
+      const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
+      S x(rate), own[L::states > 0 ? L::states : 1], input[most_inputs];
+      x.d[0] = slope;
+      for (int i = 0; i < b.states; ++i) own[i] = S(state[b.state + i]), own[i].d[0] = rates[b.state + i];
+      dual_inputs<1>(n, inputs, input_slopes, input);
+      return L::margin(p, At<S>{x, own, input, b.piece, ws.sys.points}, who);
+    }
+    return S(1);
+  });
+}
+
+/// Take the law of a switching branch to its next piece; returns it and moves the states where the law says so.
+template <class T>
+int law_cross(const Workspace<T>& ws, const Branch<T>& b, T rate, int who, T* state) {
+  return visit_branch(b, [&](auto tag, const T* params, const T* inputs, const T*, int) {
+    using L = typename decltype(tag)::type;
+    if constexpr (SwitchingLaw<L>) {
+      const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
+      return L::cross(p, At<T>{rate, state + b.state, inputs, b.piece, ws.sys.points}, who, state + b.state);
+    }
+    return b.piece;
+  });
+}
+
+/// Whether a change of sign of the slip matters to the law of a branch now.
+template <class T>
+bool law_turns(const Branch<T>& b) {
+  return visit_branch(b, [&](auto tag, const T* params, const T*, const T*, int) {
+    using L = typename decltype(tag)::type;
+    if constexpr (SwitchingLaw<L>) {
+      return L::turns(*reinterpret_cast<const typename L::template Params<T>*>(params), b.piece);
+    }
+    return false;
+  });
+}
+
+/// Whether a state that has just crossed goes on the way it points; one that is on its way back does not.
+template <class T>
+bool law_runs_on(const Branch<T>& b, int who) {
+  return visit_branch(b, [&](auto tag, const T*, const T*, const T*, int) {
+    using L = typename decltype(tag)::type;
+    if constexpr (requires { L::runs_on(0, 0); }) return L::runs_on(b.piece, who);
+    return true;
+  });
+}
+
+/// Whether an element or a law switches between pieces.
+template <class T>
+bool is_switching(const Branch<T>& b) {
+  return visit_branch(
+      b, [&](auto tag, const T*, const T*, const T*, int) { return SwitchingLaw<typename decltype(tag)::type>; });
+}
+
+/// Room that the law of a contact has inside its tables at a slip; below zero it has left one, and `seen` is what did.
+template <class T>
+T table_room(const Workspace<T>& ws, int c, T slip, T& seen) {
+  const System& sys = ws.sys;
+  return visit_law(sys.contact_law[c], [&](auto tag) {
+    using L = typename decltype(tag)::type;
+    if constexpr (BoundedLaw<L>) {
+      const T* params = ws.params + sys.contact_law_param[c];
+      const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
+      return L::outside(p, At<T>{abs(slip), nullptr, ws.in.u + sys.contact_law_input[c], 0, sys.points}, seen);
+    }
+    return T(1);
+  });
+}
+inline bool is_bounded_law(int law) {
+  return visit_law(law, [](auto tag) { return BoundedLaw<typename decltype(tag)::type>; });
+}
+
+/// Whether a law jumps with the sign of the slip.
+inline bool is_chattering_law(int law) {
+  return visit_law(law, [](auto tag) { return requires { decltype(tag)::type::chatters; }; });
+}
+
+/// Number of kinks of the function behind a direction, over its rate or its slip.
+template <class T>
+int edge_count(const Workspace<T>& ws, int direction) {
+  const System& sys = ws.sys;
+  auto count = [&](auto tag, const T* params) {
+    using E = typename decltype(tag)::type;
+    if constexpr (Kinked<E, T>) {
+      return E::edges(*reinterpret_cast<const typename E::template Params<T>*>(params));
+    } else {
+      return 0;
+    }
+  };
+  if (direction < sys.elements) {
+    return visit_torque(sys.element_kind[direction],
+                        [&](auto tag) { return count(tag, ws.params + sys.element_param[direction]); });
+  }
+  const int c = direction - int(sys.elements);
+  return visit_law(sys.contact_law[c], [&](auto tag) { return count(tag, ws.params + sys.contact_law_param[c]); });
+}
+
+/// Kink number i of the function behind a direction.
+template <class T>
+double edge_at(const Workspace<T>& ws, int direction, int i) {
+  const System& sys = ws.sys;
+  auto at = [&](auto tag, const T* params) {
+    using E = typename decltype(tag)::type;
+    if constexpr (Kinked<E, T>) {
+      return E::edge(*reinterpret_cast<const typename E::template Params<T>*>(params), sys.points, i);
+    } else {
+      return 0.0;
+    }
+  };
+  if (direction < sys.elements) {
+    return visit_torque(sys.element_kind[direction],
+                        [&](auto tag) { return at(tag, ws.params + sys.element_param[direction]); });
+  }
+  const int c = direction - int(sys.elements);
+  return visit_law(sys.contact_law[c], [&](auto tag) { return at(tag, ws.params + sys.contact_law_param[c]); });
+}
+
+/// The piece that holds x; at a kink the one above.
+template <class T>
+int piece_of(const Workspace<T>& ws, int direction, double x) {
+  int low = 0, high = edge_count(ws, direction);
+  while (low < high) {
+    const int middle = (low + high) / 2;
+    if (edge_at(ws, direction, middle) <= x) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+}  // namespace clutchwork
