@@ -5,25 +5,21 @@ Usage: gen_lists.py FOLDER. The documentation build calls it; its output is neve
 
 from __future__ import annotations
 
-import argparse
 import ast
+import contextlib
+import io
 import os
 import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from clutchwork.command.main import parser
+from clutchwork.command.main import main, parser
 
 ROOT = Path(__file__).resolve().parent.parent
 # a page that other pages link to, and no table of contents
 ORPHAN = "---\norphan: true\n---\n\n"
 COLUMNS = "100"
-
-
-def test_files(root: Path = ROOT) -> list[Path]:
-    """All files with tests."""
-    return sorted([*root.glob("tests/*/test_*.py"), *root.glob("tests/cpp/test_*.cpp")])
 
 
 def shows(path: Path) -> str:
@@ -32,13 +28,14 @@ def shows(path: Path) -> str:
     if path.suffix == ".py":
         words = ast.get_docstring(ast.parse(text)) or ""
         return words.partition("\n\n")[0].replace("\n", " ")
-    return " ".join(re.findall(r"^/// (.*)", (re.search(r"(?:^///.*\n)+", text, re.MULTILINE) or [""])[0], re.MULTILINE))
+    first = re.match(r"(?:// .*\n)+", text)
+    return " ".join(line.removeprefix("// ") for line in first[0].splitlines()) if first else ""
 
 
 def tests() -> Iterator[str]:
     """The page of all tests."""
     yield ORPHAN + "# All tests\n\nEvery file with tests, and what it shows, in its own words.\n\n| file | |\n|---|---|"
-    for path in test_files():
+    for path in sorted([*ROOT.glob("tests/*/test_*.py"), *ROOT.glob("tests/cpp/test_*.cpp")]):
         yield f"| `{path.relative_to(ROOT)}` | {shows(path).replace('|', ', ')} |"
 
 
@@ -46,12 +43,16 @@ def commands() -> Iterator[str]:
     """The page of the command line: the help of every command."""
     os.environ["COLUMNS"] = COLUMNS
     yield ORPHAN + "# The command line\n\nWhat `--help` prints."
-    top = parser()
-    yield f"\n## clutchwork\n\n```text\n{top.format_help()}```"
-    for action in top._actions:
-        if isinstance(action, argparse._SubParsersAction):
-            for name, command in action.choices.items():
-                yield f"\n## clutchwork {name}\n\n```text\n{command.format_help()}```"
+    names = re.findall(r"^    (\w+) ", parser().format_help(), re.MULTILINE)
+    for command in ([], *([name] for name in names)):
+        yield f"\n## {' '.join(['clutchwork', *command])}\n\n```text\n{printed([*command, '--help'])}```"
+
+
+def printed(arguments: list[str]) -> str:
+    """What the command line prints before it ends."""
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.suppress(SystemExit):
+        main(arguments)
+    return out.getvalue()
 
 
 def write(folder: Path) -> list[Path]:

@@ -44,7 +44,7 @@ EVENTS = {
     "when it is $10^{-7}$ inside": "slack = 1e-7",
     "at most half a radian": "0.5 / sqrt(square)",
     "more than 40 within 800 steps": "window = 800, most = 40",
-    "More than 50 events of one contact, or 50 knots of one signal, within a microsecond": "constexpr int most = 50; if (",
+    "More than 50 events of one contact, or 50 knots of one signal, within a microsecond": "int most = 50; if (",
     "starts with a quarter of the last full step": "*= 0.25",
 }
 CLAIMS = [("theory/contacts.md", *claim) for claim in CONTACTS.items()]
@@ -55,7 +55,9 @@ def prose(name: str) -> str:
     """A page on one line, without sources, labels, tables and words that count its own parts."""
     text = page(name).partition("\n## Sources")[0]
     text = re.sub(r"^\|.*$|^\d+\. ", "", text, flags=re.MULTILINE)
-    text = re.sub(r"\{eq\}`[^`]*`|\$\$ \([\w-]+\)|`[^`]*`|\brules? \d+|\*\*Rule \d+\.\*\*", "", text, flags=re.IGNORECASE)
+    text = re.sub(
+        r"\{eq\}`[^`]*`|\$\$ \([\w-]+\)|`[^`]*`|\brules? \d+|\*\*Rule \d+\.\*\*", "", text, flags=re.IGNORECASE
+    )
     return " ".join(text.split())
 
 

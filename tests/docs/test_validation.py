@@ -32,6 +32,13 @@ def test_every_test_is_named() -> None:
     assert sorted(folder for folder in folders if not any(name.startswith(folder) for name in NAMED)) == []
 
 
+def test_every_file_of_tests_opens_with_what_it_shows() -> None:
+    """The generated list of all tests repeats these words."""
+    openings = {path: path.read_text(encoding="utf-8")[:3] for path in (ROOT / "tests").rglob("test_*.*")}
+    marks = {".py": '"""', ".cpp": "// "}
+    assert [path.name for path, opening in openings.items() if marks.get(path.suffix, opening) != opening] == []
+
+
 def _fields(*roles: Role) -> list[tuple[str, str, str]]:
     """(kind, field, meaning) of every field of the elements of some roles."""
     return [(cls.kind, item.name, spec.doc) for cls in samples.declared(*roles) for item, spec in specs(cls)]
