@@ -13,9 +13,11 @@ import experiments  # noqa: E402
 import launches  # noqa: E402
 
 import gen_docs  # noqa: E402
+import gen_lists  # noqa: E402
 import parity  # noqa: E402
 
 gen_docs.write(HERE / "reference")
+gen_lists.write(HERE / "reference")
 experiments.write(HERE / "reference" / "rig")
 launches.write(HERE / "reference" / "car")
 parity.write(HERE / "reference")

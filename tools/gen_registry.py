@@ -112,7 +112,7 @@ def visitor(schema: Any, role: Any) -> Iterator[str]:
 
 
 def curves(schema: Any, role: Any) -> Iterator[str]:
-    """A function that tells where the curves stand among the parameters of a kind."""
+    """A function that returns where the curves stand among the parameters of a kind."""
     yield f"template <class F> void visit_{role.value}_curves(int kind, F&& f) {{"
     for number, kind in enumerate(schema.kinds(role)):
         offset = 0
@@ -125,7 +125,7 @@ def curves(schema: Any, role: Any) -> Iterator[str]:
 
 
 def choices(schema: Any, role: Any) -> Iterator[str]:
-    """A function that tells where a parameter of a kind is one of a few words or a flag, and how many there are."""
+    """A function that returns where a parameter of a kind is one of a few words or a flag, and how many there are."""
     yield f"template <class F> void visit_{role.value}_choices(int kind, F&& f) {{"
     for number, kind in enumerate(schema.kinds(role)):
         offset = 0

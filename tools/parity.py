@@ -120,7 +120,7 @@ def shown(folder: Path) -> dict[str, list[str]]:
     for path in sorted(folder.rglob("test_*.py")):
         for feature, test in marks(path):
             if feature not in found:
-                raise ValueError(f"{path.name}: {test} shows {feature!r}, which is no row of tools/parity.py")
+                raise ValueError(f"{path.name}: {test} shows {feature!r}, which is not a row of tools/parity.py")
             found[feature].append(f"`{path.stem}::{test}`")
     return found
 

@@ -1,3 +1,5 @@
+// Locks, break-aways, work and contacts between prescribed speeds against closed forms.
+
 #include "check.hpp"
 #include "models.hpp"
 

@@ -1,3 +1,5 @@
+// Contacts whose laws never stick: vanishing loads, freewheels, and contacts beside them that do stick.
+
 #include "friction.hpp"
 
 /// Contacts whose laws never stick, among loads that vanish, freewheels, and contacts that do stick.

@@ -1,3 +1,5 @@
+// The bounded convex problem: its conditions of optimality, and the least objective over all sets.
+
 #include <clutchwork/workspace.hpp>
 //
 #include <clutchwork/contacts/problem.hpp>

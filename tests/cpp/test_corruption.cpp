@@ -1,3 +1,5 @@
+// Systems with damaged bytes: refused, or run to some status, while the sanitizers watch.
+
 #include "check.hpp"
 #include "models.hpp"
 

@@ -1,3 +1,5 @@
+// Saved states with damage of every kind: refused, or run on to a status, while the sanitizers watch.
+
 #include <cstdlib>
 #include <fingerprint.hpp>
 

@@ -1,3 +1,5 @@
+// Dense factorisations: the factors multiply to the matrix, the solves invert it.
+
 #include <clutchwork/components/dense.hpp>
 #include <vector>
 

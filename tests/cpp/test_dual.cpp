@@ -1,3 +1,5 @@
+// Dual numbers: derivatives of every function, and values that have the bits of plain numbers.
+
 #include <clutchwork/components/dual.hpp>
 
 #include "check.hpp"

@@ -1,3 +1,5 @@
+// Whole runs with dual numbers: derivatives by parameters against differences of plain runs.
+
 #include "check.hpp"
 #include "typed_run.hpp"
 

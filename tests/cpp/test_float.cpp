@@ -1,3 +1,5 @@
+// Whole runs in single precision against closed forms and double precision.
+
 #include "check.hpp"
 #include "typed_run.hpp"
 

@@ -1,3 +1,5 @@
+// The search for the first zero of a guard: polynomials with known roots.
+
 #include <clutchwork/run/guards.hpp>
 
 #include "check.hpp"

@@ -1,3 +1,5 @@
+// Friction laws in motions with a closed form.
+
 #include "friction.hpp"
 
 /// Friction laws in motions whose outcome is known in closed form: docs/theory/friction-laws.md.

@@ -1,3 +1,5 @@
+// Nothing is allocated after a run is loaded: every allocation is counted.
+
 #include <cstdlib>
 #include <new>
 

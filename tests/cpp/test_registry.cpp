@@ -1,3 +1,5 @@
+// Every function of every component: dual numbers against plain ones and central differences.
+
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/pieces.hpp>
 #include <initializer_list>

@@ -1,3 +1,5 @@
+// Saved states continue with the same bits, in the same memory and in another.
+
 #include "check.hpp"
 #include "models.hpp"
 

@@ -1,3 +1,5 @@
+// Shared states: heat that flows, friction over the temperature, processes.
+
 #include "friction.hpp"
 
 /// Shared states: heat that flows, friction over temperature, components that have nothing else.

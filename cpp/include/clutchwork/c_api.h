@@ -39,7 +39,7 @@ int cw_set_param(cw_run* run, int64_t offset, double value);
 
 /* A function that cw_advance asks after every step and every row of a grid; when it returns other than 0, cw_advance
    returns with status interrupted, at most one step later. NULL: none, as at the start. It must not use the run. It is
-   no part of a saved state. 1: set; 0: no run. */
+   not part of a saved state. 1: set; 0: no run. */
 int cw_set_poll(cw_run* run, int (*poll)(void* context), void* context);
 
 /* Integrate to t_end [s]. Grid: `times` holds n requested times, not decreasing, rows are filled for those that were

@@ -18,7 +18,7 @@ class Places:
     directions: Mapping[str, int]  # torque element or contact
 
     def of(self, value: Any) -> tuple[str, int]:
-        """Sort and number of a reference; ambients, whose temperature is a signal, are no case of it."""
+        """Sort and number of a reference; ambients are excluded, their temperature is a signal."""
         if isinstance(value, Rate | HeatFlow | Node):
             acting = value if isinstance(value, Node) else value.of
             name = sensor_name(acting) if isinstance(acting, Node) else acting.name

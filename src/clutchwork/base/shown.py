@@ -41,7 +41,7 @@ def shown(value: object) -> str:
 
 
 def shortened(text: str, longest: int = 4 * LONGEST) -> str:
-    """A text without its middle where it is long."""
+    """A string without its middle where it is long."""
     if len(text) <= longest:
         return text
     half = (longest - 3) // 2
@@ -49,7 +49,7 @@ def shortened(text: str, longest: int = 4 * LONGEST) -> str:
 
 
 def printable(text: str) -> str:
-    """A text whose control characters, and what else cannot be printed, are written as escapes."""
+    """A string whose control characters, and others that cannot be printed, are written as escapes."""
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)

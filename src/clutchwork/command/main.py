@@ -1,9 +1,4 @@
-"""The command line: run | check | demo | rig | fit | export | --version.
-
-Exit codes: 0 done; 1 the run stopped early (what was asked for is written up to there); 2 the command line or an
-option is wrong; 3 the model is wrong, every mistake is listed; 4 a file, such as the model, is missing or cannot be
-read or written, or a package is missing; 130 interrupted (a run writes what was asked for up to there).
-"""
+"""The command line: run | check | demo | rig | fit | export | --version."""
 
 from __future__ import annotations
 
@@ -26,6 +21,14 @@ if TYPE_CHECKING:
     from clutchwork.results.trajectory import Trajectory
 
 DONE, STOPPED, USAGE, MODEL, FILE, INTERRUPTED = 0, 1, 2, 3, 4, 130
+EXIT_CODES = {
+    DONE: "done",
+    STOPPED: "the run stopped early; what was asked for is written up to there",
+    USAGE: "the command line or an option is wrong",
+    MODEL: "the model is wrong; every mistake is listed",
+    FILE: "a file, such as the model, is missing or cannot be read or written, or a package is missing",
+    INTERRUPTED: "interrupted; a run writes what was asked for up to there",
+}
 DEMO = Path("examples", "six_speed", "model.toml")
 
 
@@ -48,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def parser() -> argparse.ArgumentParser:
     """What the command line understands."""
-    top = argparse.ArgumentParser(prog="clutchwork", description=__doc__.partition("\n")[0], epilog=_codes())
+    top = argparse.ArgumentParser(prog="clutchwork", description=__doc__, epilog=_codes())
     top.add_argument("--version", action="version", version=_version())
     commands = top.add_subparsers(required=True, metavar="command")
     _run_parser(commands.add_parser("run", help="compute the motion of a model", epilog=_codes()))
@@ -218,7 +221,7 @@ def _print_json(data: dict[str, Any]) -> None:
 
 
 def _codes() -> str:
-    return " ".join((__doc__ or "").partition("\n\n")[2].split())
+    return "Exit codes: " + "; ".join(f"{code} {words.replace(';', ',')}" for code, words in EXIT_CODES.items()) + "."
 
 
 def _version() -> str:

@@ -316,7 +316,7 @@ COMPILED_ROLES = (Role.TORQUE, Role.CONTACT, Role.LAW, Role.FLOW, Role.PROCESS)
 
 
 def schema_text() -> str:
-    """All that the compiled core must agree on, as text."""
+    """All that the compiled core must agree on, as a string."""
     lines = []
     for role in COMPILED_ROLES:
         for kind in kinds(role):

@@ -78,7 +78,7 @@ def parse(text: str) -> Unit:
 
 
 def split(text: str) -> tuple[float, str] | None:
-    """Number and unit of a text such as "0.2 kg m2"; None when it does not start with a number."""
+    """Number and unit of a string such as "0.2 kg m2"; None when it does not start with a number."""
     match = _QUANTITY.fullmatch(text.strip()) if len(text) <= LONGEST else None
     return (float(match[1]), match[2]) if match else None
 

@@ -55,7 +55,7 @@ def fixed(law: Law, name: str) -> str:
 
 
 def sum_is_held(law: Law, name: str) -> bool:
-    """Whether the law refuses ordinates of a smaller sum, as of shares; coefficients are no shares."""
+    """Whether the law refuses ordinates of a smaller sum, as of shares; coefficients are not shares."""
     less = with_ordinates(law, name, [0.999 * value for value in ordinates(law, name).values()])
     return not isinstance(law, Tabulated) and bool(faults(replace(law, **{name: less})))
 

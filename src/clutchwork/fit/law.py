@@ -51,7 +51,7 @@ def fit_law(
     those of the declaration; rest, abs(slip) [rad/s] below which a sample counts as at rest, by default 1e-3 of the
     largest; confidence of the intervals; translation, slip in m/s, torque and load in N.
 
-    Samples that do not determine a parameter are no error: the result says so. FitError tells what is wrong with input.
+    Samples that do not determine a parameter are not an error: the result reports it. FitError reports wrong input.
     """
     samples = measurement(time, slip, torque, load, temperature=temperature, translation=translation)
     return _fit(samples, law, free, bounds, rest, confidence)

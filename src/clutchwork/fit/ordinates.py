@@ -25,7 +25,7 @@ _ROUNDING = 1e-9
 
 
 def tables(cls: type) -> dict[str, Spec]:
-    """Curves, and lists of numbers that are no axes."""
+    """Curves, and lists of numbers that are not axes."""
     return {item.name: spec for item, spec in specs(cls, "curve", "numbers") if spec.what == "curve" or not spec.rising}
 
 

@@ -39,7 +39,7 @@ def read(path: str | Path, columns: dict[str, str | float]) -> Measurement:
 
     Parameters: columns, the head of the column of time, slip, torque, load and, where it counts, temperature, with or
     without its unit; load and temperature may be numbers. A head such as `slip [rpm]` is converted to
-    SI, one without unit is SI.
+    SI, one without a unit is SI.
     """
     known = _heads(Path(path))
     heads = {name: _head(name, wanted, known) for name, wanted in columns.items() if isinstance(wanted, str)}
@@ -57,7 +57,7 @@ def read(path: str | Path, columns: dict[str, str | float]) -> Measurement:
 
 
 def _heads(path: Path) -> list[str]:
-    """The first line of the file; what else is wrong with it, reading the columns tells."""
+    """The first line of the file; other defects show when the columns are read."""
     try:
         with open_regular(path, MOST_BYTES) as file, io.TextIOWrapper(file, "utf-8-sig", newline="") as stream:
             return [name.strip() for name in next(csv.reader(stream), [])]

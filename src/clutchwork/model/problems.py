@@ -117,7 +117,7 @@ def is_name(name: object) -> bool:
 
 
 def name_problems(nodes: Sequence[Node], elements: Sequence[Component], parts: Parts) -> list[Problem]:
-    """Names that are no text, reserved or given twice, those of parts included."""
+    """Names that are not printable strings, reserved or given twice, those of parts included."""
     problems, seen = [], {HOUSING.name: "the housing"}
     things = [(f'shaft "{node.name}"', node.name) for node in nodes]
     things += [(f'{node_kind(node)} "{node.name}"', node.name) for node in parts.thermal]

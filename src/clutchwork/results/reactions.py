@@ -1,6 +1,6 @@
 """Torques of rigid parts: gears, prescribed speeds and the housing.
 
-The core eliminates rigid rows, so their torques are no part of its output. The balance of every node,
+The core eliminates rigid rows, so their torques are not part of its output. The balance of every node,
 `inertia acceleration = torques of elements and contacts + rows' multipliers`, gives them back by one constant
 least-squares matrix. Redundant rows share their torque with the smallest sum of squares.
 """

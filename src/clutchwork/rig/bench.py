@@ -76,9 +76,9 @@ class Bench:
         return d
 
     def simulate(self, d: Driveline, t_end: float, **changes: Any) -> Trajectory:
-        """Run up to t_end [s]; a run that stops early is told by the table, not by a warning.
+        """Run up to t_end [s]; a run that stops early is reported by the table, not by a warning.
 
-        Nor is it told that a law of a preset could give energy away: what that does is part of the comparison.
+        Nor does it warn that a law of a preset can generate energy: the effect of that is part of the comparison.
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", StoppedEarly)

@@ -94,7 +94,7 @@ def _no_model(given: object) -> str:
 
 
 def _trajectory(job: Job, progress: Progress | None) -> Trajectory:
-    """Run, and tell how it ended."""
+    """Run, and report how it ended."""
     started = time.perf_counter()
     recording, failure = _collect(job, progress)
     made = _named(job, recording, time.perf_counter() - started)
@@ -154,7 +154,7 @@ def new_run(data: bytes) -> Any:
 def refined(steps: Array, spacing: float, jumps: Array) -> Array:
     """The solver's steps with more instants where they lie further apart than the spacing.
 
-    An instant that stands twice stays so; where a signal jumps it is made to stand twice.
+    An instant that appears twice stays so; where a signal jumps it is duplicated.
     """
     gaps = np.diff(steps)
     parts = np.maximum(1, np.ceil(gaps / spacing - 1e-9)).astype(int)

@@ -26,7 +26,7 @@ class Column(Signal):
     column: str = text("name of the column with the values", kw_only=False)
     time: str = text("name of the column with the times", default="time", kw_only=False)
     scale: float = param(
-        "1", "factor on the values in SI; 1e5 for values in bar below a head without unit", default=1.0
+        "1", "factor on the values in SI; 1e5 for values in bar below a head without a unit", default=1.0
     )
     folder: str = field(default="", kw_only=True, repr=False, compare=False)
 

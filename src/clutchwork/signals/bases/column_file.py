@@ -113,7 +113,7 @@ def _opened(text: io.TextIOWrapper) -> tuple[list[str], Iterator[list[str]]]:
 
 
 def _scan(file: BinaryIO, wanted: Wanted) -> bool:
-    """Whether all lines are alike and without quotes; a file that is no table of text is refused."""
+    """Whether all lines are alike and without quotes; a file that is not a table of characters is refused."""
     alike, count, cells = True, 0, -1
     for block in _blocks(file, wanted):
         codes = np.frombuffer(block, np.uint8)

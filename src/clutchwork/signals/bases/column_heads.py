@@ -46,7 +46,7 @@ def split(head: str) -> tuple[str, str]:
 def meant(wanted: str, known: list[str]) -> list[Head]:
     """The columns that a name may mean: the one of that very head, else those of that name.
 
-    A name without unit means a head with one, and a unit that is given with a name counts where the head has none.
+    A name without a unit means a head with one, and a unit that is given with a name counts where the head has none.
     """
     name, unit = split(wanted)
     same = [head for head in known if head == wanted]

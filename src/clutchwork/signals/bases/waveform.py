@@ -48,7 +48,7 @@ def piece_value(piece: Segment, time: float) -> float:
 def low_pass(signal: Signal, cutoff: float) -> Filtered:
     """Exact response of dy/dt = 2 pi cutoff (signal - y), y(0) = signal(0).
 
-    ValueError for signals whose response is no cubic with two waves: pulses, and values from outside.
+    ValueError for signals whose response is not a cubic with two waves: pulses, and values from outside.
     """
     pieces, rate = signal.segments(), 2 * pi * cutoff
     if not pieces or signal.repeats() > 0.0 or not all(_passes(piece, rate) for piece in pieces):

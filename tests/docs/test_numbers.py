@@ -1,0 +1,77 @@
+"""Numbers in docs/theory/contacts.md and events.md are those of the core: each one with the line that has it."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from support.pages import page
+from support.project import ROOT
+
+CORE = " ".join(
+    " ".join(path.read_text(encoding="utf-8") for path in sorted((ROOT / "cpp" / "include").rglob("*.hpp"))).split()
+)
+
+# words of the page, lines of the core
+CONTACTS = {
+    "limited to $20 n + 50$ steps": "round < 20 * p.n + 50",
+    r"R_{cc} = 10^{-10} \, G_{cc}": "double small = 1e-10",
+    r"\min\!\left( \frac{T_{\max}}{T_c}, 10^6 \right)": "ratio < 1e6 ? ratio : 1e6",
+    "$10^{-12}$ of what all torques together cause, or $10^{-10}$": "larger(1e-10 * scale, 1e-12 * ",
+    "within a millisecond, between prescribed speeds alone within a microsecond": (
+        "? 1e6 * tolerance : arrived ? larger(round_off, 1e3 * tolerance)"
+    ),
+    "at most $4 n + 5$ rounds": "round <= 4 * nc + 4",
+    "while time does not advance, to $10^{-9}$ s": "forced_time <= 1e-9",
+    r"0 \le \alpha \le 2": "ample = 2",
+    "at most $20 n + 50$": "round < 50 + 20 * set.n",
+    "A price below $10^{-9}$ of the largest": "> 1e-9 * most",
+    "in at most 60 steps": "round < 60 && miss",
+    r"|\sigma_c| \le 10^{-10} \left( 1 + \max |v| \right)": "return 1e-10 * (1 + largest)",
+}
+EVENTS = {
+    r"Coefficients above $-10^{-9} \max_j |\beta_j|$": "larger(1e-9 * scale, noise)",
+    r"$10^{-10} (1 + \max |v|)$ beyond zero": "return 1e-10 * (1 + largest)",
+    r"most $1.5/\omega$ long": "work ? 0.5 : 1.5) / fastest",
+    r"and $0.5/\omega$ where the work is integrated": "work ? 0.5 : 1.5) / fastest",
+    "after 25 time constants a decay has ended": "* s > 25 ?",
+    "Above 0.3 of the tolerance": "most_cut_error = 0.3",
+    "repeated at most four times to land": "most_landings = 4",
+    "that of $10^{-9}$ s later": "T(0)) * T(1e-9)",
+    "only when it is $10^{-11}$ of its largest size": "load_noise = 1e-11",
+    "below $-10^{-12}$": "noise = 1e-12",
+    "when it is $10^{-7}$ inside": "slack = 1e-7",
+    "at most half a radian": "0.5 / sqrt(square)",
+    "more than 40 within 800 steps": "window = 800, most = 40",
+    "More than 50 events of one contact, or 50 knots of one signal, within a microsecond": "int most = 50; if (",
+    "starts with a quarter of the last full step": "*= 0.25",
+}
+CLAIMS = [("theory/contacts.md", *claim) for claim in CONTACTS.items()]
+CLAIMS += [("theory/events.md", *claim) for claim in EVENTS.items()]
+
+
+def prose(name: str) -> str:
+    """A page on one line, without sources, labels, tables and words that count its own parts."""
+    text = page(name).partition("\n## Sources")[0]
+    text = re.sub(r"^\|.*$|^\d+\. ", "", text, flags=re.MULTILINE)
+    text = re.sub(
+        r"\{eq\}`[^`]*`|\$\$ \([\w-]+\)|`[^`]*`|\brules? \d+|\*\*Rule \d+\.\*\*", "", text, flags=re.IGNORECASE
+    )
+    return " ".join(text.split())
+
+
+@pytest.mark.parametrize(("name", "words", "line"), CLAIMS)
+def test_a_number_of_the_page_is_in_the_core(name: str, words: str, line: str) -> None:
+    assert " ".join(words.split()) in prose(name)
+    assert line in CORE
+
+
+@pytest.mark.parametrize(("name", "claims"), [("theory/contacts.md", CONTACTS), ("theory/events.md", EVENTS)])
+def test_every_number_of_the_page_is_held(name: str, claims: dict[str, str]) -> None:
+    text = prose(name)
+    for words in sorted(claims, key=len, reverse=True):
+        text = text.replace(words, "")
+    # powers of ten, decimals, and whole numbers above four, which are no indices or degrees
+    left = re.findall(r".{30}(?:10\^\{?-?\d+|\b\d+\.\d+|(?<![\w^_{.-])(?:[5-9]|[1-9]\d+)\b(?!\}))", text)
+    assert left == []
