@@ -16,8 +16,16 @@ ROOT = Path(__file__).resolve().parents[2]
 @cache
 def fingerprint() -> str:
     """Fingerprint of the package, its core, the examples and what draws."""
-    folders = (Path(clutchwork.__file__).parent, ROOT / "examples", ROOT / "docs" / "figures", ROOT / "tools")
-    files = [Path(core().__file__), *(file for folder in folders for file in sorted(folder.rglob("*.py")))]
+    folders = (
+        Path(clutchwork.__file__).parent,
+        ROOT / "examples",
+        ROOT / "docs" / "figures",
+        ROOT / "tools",
+    )
+    files = [
+        Path(core().__file__),
+        *(file for folder in folders for file in sorted(folder.rglob("*.py"))),
+    ]
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 
