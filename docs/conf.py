@@ -3,34 +3,38 @@
 from __future__ import annotations
 
 import sys
-import tomllib
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures")]
+sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures"), str(HERE)]
 
 import experiments  # noqa: E402
+import kept  # noqa: E402
 import launches  # noqa: E402
 
+import clutchwork  # noqa: E402
 import gen_docs  # noqa: E402
 import gen_lists  # noqa: E402
 import parity  # noqa: E402
 
 gen_docs.write(HERE / "reference")
 gen_lists.write(HERE / "reference")
-experiments.write(HERE / "reference" / "rig")
-launches.write(HERE / "reference" / "car")
+kept.write(experiments.write, HERE / "reference" / "rig")
+kept.write(launches.write, HERE / "reference" / "car")
 parity.write(HERE / "reference")
 
-_project = tomllib.loads((HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-project = _project["name"]
+# what is public is documented by its public name, wherever it is defined
+for _name in clutchwork.__all__:
+    getattr(clutchwork, _name).__module__ = "clutchwork"
+
+project = "clutchwork"
 author = "the clutchwork authors"
 copyright = "the clutchwork authors, Apache-2.0"
-release = version = _project["version"]
+release = version = clutchwork.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_design", "mathml"]
 source_suffix = {".md": "markdown"}
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "elements"]
 nitpicky = False
 
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist"]
@@ -40,8 +44,12 @@ myst_dmath_double_inline = True
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
+maximum_signature_line_length = 88
 
 html_theme = "furo"
-html_title = f"clutchwork {release}"
-html_static_path = ["_static"]
+html_title = "clutchwork"
+html_static_path = ["_static", "reference/static"]
+html_css_files = ["site.css"]
+html_math_renderer = "mathml"
 html_show_sourcelink = False
+html_theme_options = {"footer_icons": [], "top_of_page_buttons": []}

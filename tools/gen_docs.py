@@ -1,62 +1,31 @@
 """Write the reference pages of elements, friction laws and signals from their declarations.
 
 Usage: gen_docs.py FOLDER. The documentation build calls it; its output is never committed. The equations of a friction
-law are those of its section in docs/theory/friction-laws.md.
+law are those of its section in docs/theory/friction-laws.md; what is written by hand about an element stands in
+docs/elements.
 """
 
 from __future__ import annotations
 
 import inspect
 import re
+import shutil
 import sys
 from collections.abc import Iterator
-from dataclasses import Field
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import clutchwork  # noqa: F401  importing the package fills the registry
-from clutchwork.declare.docs import described, words
-from clutchwork.declare.schema import REGISTRY, Role, Spec, State, specs
-
-
-class Page(NamedTuple):
-    """One page: file, title, introduction, heading of each role, folder of the C++ headers."""
-
-    name: str
-    title: str
-    introduction: str
-    roles: dict[Role, str]
-    headers: str
-
-
-PAGES = (
-    Page(
-        "elements",
-        "Elements",
-        "A component of the driveline. Ports name the shafts that it joins; `torque` is what it applies to its follower"
-        " (or shaft), see [signs](../guide/signs.md).",
-        {
-            Role.CONTACT: "Contacts: friction that sticks",
-            Role.TORQUE: "Springs, dampers and torque sources",
-            Role.GEAR: "Gears",
-            Role.MOTION: "Prescribed motion",
-            Role.FLOW: "Heat flows",
-            Role.PROCESS: "Processes: states that signals, rates and heats drive",
-            Role.COMPOSITE: "Made of other elements",
-        },
-        "elements",
-    ),
-    Page(
-        "signals",
-        "Signals",
-        "A value over time, for every field of the kind *signal*. A plain number is a constant signal.",
-        {Role.SIGNAL: ""},
-        "",
-    ),
-)
+import element_figures
+import element_pages
+from clutchwork.declare.schema import REGISTRY, Role, State, specs
+from reference_fields import described, header, linked, summary, table
 
 ROOT = Path(__file__).resolve().parent.parent
 THEORY = ROOT / "docs" / "theory" / "friction-laws.md"
+SIGNALS = """# Signals
+
+A value over time, for every field that is a *signal*. A plain number is a constant signal."""
 LAWS = """# Friction laws
 
 What `friction` of a contact may be: the coefficient over slip. Laws that stick lock and break away exactly. The others
@@ -68,13 +37,16 @@ compares them.
 
 
 def write(folder: Path) -> list[Path]:
-    """Write all pages and return their paths."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "laws").mkdir(exist_ok=True)
+    """Write all pages and their pictures, and return the paths of the pages."""
+    for name in ("laws", "elements"):
+        (folder / name).mkdir(parents=True, exist_ok=True)
     laws = sorted(REGISTRY[Role.LAW].items())
-    texts = {page.name: "\n".join(_page(page)) for page in PAGES}
+    texts = dict(element_pages.pages())
+    texts |= {"signals": "\n".join(_signals())}
     texts |= {"laws": "\n".join(_overview(laws))}
     texts |= {f"laws/{kind}": "\n".join(_law(kind, cls)) for kind, cls in laws}
+    for picture in element_figures.KEPT.glob("*.svg"):
+        shutil.copy2(picture, folder / "elements" / f"{picture.stem.rpartition('-')[0]}.svg")
     return [_write(folder / f"{name}.md", text) for name, text in texts.items()]
 
 
@@ -85,23 +57,23 @@ def _write(path: Path, text: str) -> Path:
     return path
 
 
-def _page(page: Page) -> Iterator[str]:
-    yield f"# {page.title}\n\n{page.introduction}\n"
-    for role, heading in page.roles.items():
-        if heading:
-            yield f"## {heading}\n"
-        level = "###" if heading else "##"
-        for kind, cls in sorted(REGISTRY[role].items()):
-            yield from _component(level, kind, cls, page.headers)
+def _signals() -> Iterator[str]:
+    """All signals on one page."""
+    yield SIGNALS
+    for kind, cls in sorted(REGISTRY[Role.SIGNAL].items()):
+        yield f"\n({kind})=\n## {cls.__name__}\n"
+        yield described(cls)
+        yield f'In model files: `type = "{kind}"`.\n'
+        yield f"{linked(cls, '..')}\n"
+        yield "\n".join(table(cls)).replace("## Fields\n\n", "")
 
 
 def _overview(laws: list[tuple[str, Any]]) -> Iterator[str]:
     """Table of all friction laws, and their pages."""
     yield LAWS
     for kind, cls in laws:
-        summary = words(cls).partition("\n\n")[0].replace("\n", " ").replace("|", "\\|")
         sticks = "yes" if cls.sticks else "no"
-        yield f"| [{cls.__name__}](laws/{kind}.md) | `{kind}` | {sticks} | {len(cls.states) or ''} | {summary} |"
+        yield f"| [{cls.__name__}](laws/{kind}.md) | `{kind}` | {sticks} | {len(cls.states) or ''} | {summary(cls)} |"
     yield "\n```{toctree}\n:hidden:\n:maxdepth: 1\n"
     yield from (f"laws/{kind}" for kind, _ in laws)
     yield "```\n"
@@ -109,7 +81,14 @@ def _overview(laws: list[tuple[str, Any]]) -> Iterator[str]:
 
 def _law(kind: str, cls: Any) -> Iterator[str]:
     """One page: what it is, fields, states, an example, equations."""
-    yield from _component("#", kind, cls, "laws")
+    sort = "sticks exactly" if cls.sticks else "is compliant: it never locks"
+    yield f"({kind})=\n# {cls.__name__}\n"
+    yield described(cls)
+    yield f'In model files: `type = "{kind}"`. It {sort}.\n\n{linked(cls)}\n'
+    yield from table(cls)
+    if cls.states:
+        yield f"State: {'; '.join(_states(cls.states))}.{_in_use(cls)}\n"
+    yield header(kind, "laws")
     yield f"## Example\n\n{_example(kind, cls)}\n"
     yield f"## Equations\n\n{_symbols(cls)}\n\n{_equations(kind)}\n"
 
@@ -119,11 +98,11 @@ def _example(kind: str, cls: type) -> str:
     values = {item.name: spec.example for item, spec in specs(cls) if spec.example is not None}
     if not values:
         return "See the [guide](../../guide/start.md)."
-    python = ", ".join(f"{name}={_points(value, '()')}" for name, value in values.items())
-    toml = ", ".join(f"{name} = {_points(value, '[]')}" for name, value in values.items())
+    python = "".join(f"    {name}={_points(value, '()')},\n" for name, value in values.items())
+    toml = "".join(f"{name} = {_points(value, '[]')}\n" for name, value in values.items())
     return (
-        f"```python\nfriction = cw.{cls.__name__}({python})\n```\n\n"
-        f'```toml\nfriction = {{type = "{kind}", {toml}}}\n```'
+        f"```python\nfriction = cw.{cls.__name__}(\n{python})\n```\n\n"
+        f'Below an `[[element]]` of a model file:\n\n```toml\n[element.friction]\ntype = "{kind}"\n{toml}```'
     )
 
 
@@ -163,27 +142,6 @@ def _equations(kind: str) -> str:
     return f"{text}\n\nNumbers of these equations in the {{ref}}`theory <law-{kind}>`: {numbers}."
 
 
-def _linked(text: str) -> str:
-    """Digital object identifiers as links."""
-    return re.sub(r"doi:(10\.[^\s,]*[^\s,.])", r"[doi:\1](<https://doi.org/\1>)", text)
-
-
-def _component(level: str, kind: str, cls: Any, headers: str) -> Iterator[str]:
-    yield f"({kind})=\n{level} {cls.__name__}\n"
-    sort = "" if headers != "laws" else ". It sticks exactly." if cls.sticks else ". It is compliant: it never locks."
-    yield f'`cw.{cls.__name__}`, in model files `type = "{kind}"`{sort}\n'
-    yield f"{_linked(words(cls))}\n"
-    yield "| field | sort | unit | default | bound | meaning |\n|---|---|---|---|---|---|"
-    yield from (_row(item, spec) for item, spec in specs(cls))
-    yield ""
-    states = getattr(cls, "states", ())
-    if states:
-        yield f"State: {'; '.join(_states(states))}.{_in_use(cls)}\n"
-    header = ROOT / "cpp" / "include" / "clutchwork" / headers / f"{kind}.hpp"
-    if headers and header.exists():
-        yield f"Header: `cpp/include/clutchwork/{headers}/{kind}.hpp`\n"
-
-
 def _states(states: tuple[State, ...]) -> Iterator[str]:
     """Each state, or the first and the last one of many."""
     shown = [f"`{s.name}` [{s.unit}], {s.doc}" for s in states]
@@ -193,12 +151,6 @@ def _states(states: tuple[State, ...]) -> Iterator[str]:
 def _in_use(cls: Any) -> str:
     own = inspect.getdoc(cls.own_states) if "own_states" in vars(cls) else ""
     return f" In use: {own[0].lower()}{own[1:]}" if own else ""
-
-
-def _row(item: Field[Any], spec: Spec) -> str:
-    told = described(item, spec)
-    cells = (f"`{told.name}`", told.sort, told.unit, told.default, told.bound, told.meaning)
-    return "| " + " | ".join(cells) + " |"
 
 
 if __name__ == "__main__":

@@ -17,7 +17,9 @@ README = Path(__file__).resolve().parents[2] / "README.md"
 
 def simulated() -> Any:
     """The run of the README's program, which is executed without its last line, the plot."""
-    source = re.search(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+    source = re.search(
+        r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL
+    )
     assert source is not None
     names: dict[str, Any] = {}
     exec(source[1].rsplit("run.plot", 1)[0], names)
@@ -27,24 +29,50 @@ def simulated() -> Any:
 def draw(run: Any, path: Path) -> None:
     """Speeds and torques over time, the locked phase shaded."""
     lock = run.events.changes()[-1]
-    colours = {"engine": "#1f5fa8", "load": "#2b8a5f", "torque": "#b3401f", "capacity": "#8a8f94"}
-    plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False})
-    figure, (speeds, torques) = plt.subplots(1, 2, figsize=(9.0, 2.9), layout="constrained")
+    colours = {
+        "engine": "#1f5fa8",
+        "load": "#2b8a5f",
+        "torque": "#b3401f",
+        "capacity": "#8a8f94",
+    }
+    plt.rcParams.update(
+        {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False}
+    )
+    figure, (speeds, torques) = plt.subplots(
+        1, 2, figsize=(9.0, 2.9), layout="constrained"
+    )
     for name in ("engine", "load"):
         speeds.plot(run.time, run[f"{name}.speed"], color=colours[name], label=name)
-    torques.plot(run.time, run["c1.capacity"], color=colours["capacity"], ls="--", label="static capacity")
-    torques.plot(run.time, run["c1.torque"], color=colours["torque"], label="torque of the clutch")
+    torques.plot(
+        run.time,
+        run["c1.capacity"],
+        color=colours["capacity"],
+        ls="--",
+        label="static capacity",
+    )
+    torques.plot(
+        run.time,
+        run["c1.torque"],
+        color=colours["torque"],
+        label="torque of the clutch",
+    )
     for axes, title, unit in ((speeds, "speed", "rad/s"), (torques, "torque", "N m")):
         axes.axvspan(lock.time, run.time[-1], color="#e6ecf2", lw=0)
-        axes.set(xlabel="time [s]", ylabel=f"{title} [{unit}]", xlim=(0.0, run.time[-1]))
-        axes.legend(frameon=False, loc="upper right" if axes is speeds else (0.12, 0.25))
+        axes.set(
+            xlabel="time [s]", ylabel=f"{title} [{unit}]", xlim=(0.0, run.time[-1])
+        )
+        axes.legend(
+            frameon=False, loc="upper right" if axes is speeds else (0.12, 0.25)
+        )
     speeds.annotate(
         f"locks at {lock.time:.6f} s",
         (lock.time, 20.0),
-        (1.02, 6.0),
+        (1.0, 1.0),
         arrowprops={"arrowstyle": "-", "lw": 0.7},
     )
-    torques.text(0.84, 0.45, "locked", transform=torques.transAxes, ha="center", color="#5b6b7c")
+    torques.text(
+        0.84, 0.45, "locked", transform=torques.transAxes, ha="center", color="#5b6b7c"
+    )
     # no date and no version in the file: the same picture gives the same bytes
     figure.savefig(path, dpi=110, metadata={"Software": None})
 

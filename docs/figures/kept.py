@@ -1,0 +1,38 @@
+"""Pictures that are drawn anew only when something has changed that they may depend on."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import clutchwork
+from clutchwork.declare.core import core
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@cache
+def fingerprint() -> str:
+    """Fingerprint of the package, its core, the examples and what draws."""
+    folders = (
+        Path(clutchwork.__file__).parent,
+        ROOT / "examples",
+        ROOT / "docs" / "figures",
+        ROOT / "tools",
+    )
+    files = [
+        Path(core().__file__),
+        *(file for folder in folders for file in sorted(folder.rglob("*.py"))),
+    ]
+    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
+
+
+def write(draw: Callable[[Path], list[Path]], folder: Path) -> None:
+    """Let a function write its pictures into a folder, unless those there are of the same fingerprint."""
+    mark = folder / "fingerprint"
+    if mark.exists() and mark.read_text() == fingerprint():
+        return
+    draw(folder)
+    mark.write_text(fingerprint())
