@@ -22,14 +22,23 @@ class Domain(Enum):
 
 @dataclass(frozen=True)
 class Node:
-    """A shaft, a mass or the housing, as `Driveline.shaft`, `.mass` and `.housing` hand it out."""
+    """A shaft, a mass or the housing, as `Driveline.shaft`, `.mass` and `.housing` hand it out.
+
+    Parameters:
+        name (text, required): its path in results and messages
+        domain (choice: Domain.ROTATION, Domain.TRANSLATION; default Domain.ROTATION): a shaft, or a mass on a line
+        inertia (number [kg m2 or kg] >= 0, default 0): inertia of a shaft, mass of a mass
+        speed (number [rad/s or m/s], default none): at the start; none: follows from the others, else 0
+        angle (number [rad or m], default 0): angle or position at the start
+        fixed (flag, default false): whether it is the housing
+    """
 
     name: str
     domain: Domain = Domain.ROTATION
-    inertia: float = 0.0  # kg m2, or kg for a mass
-    speed: float | None = None  # rad/s or m/s at the start; None: follows from the others, else 0
-    angle: float = 0.0  # rad or m at the start
-    fixed: bool = False  # the housing
+    inertia: float = 0.0
+    speed: float | None = None
+    angle: float = 0.0
+    fixed: bool = False
 
     def __reduce__(self) -> str | tuple[Any, ...]:
         # there is one housing, copies included
@@ -43,11 +52,17 @@ HOUSING = Node("housing", fixed=True)
 
 @dataclass(frozen=True)
 class ThermalNode:
-    """A mass that holds heat, or an ambient of given temperature, as `Driveline.thermal` and `.ambient` hand it out."""
+    """A mass that holds heat, or an ambient of given temperature, as `Driveline.thermal` and `.ambient` hand it out.
+
+    Parameters:
+        name (text, required): its path in results and messages
+        capacity (number [J/K] > 0, default none): none: an ambient, whose temperature does not depend on its heat
+        temperature (signal [K], default 300): of a mass at the start, of an ambient over time
+    """
 
     name: str
-    capacity: float | None = None  # J/K; None: an ambient, whose temperature does not depend on the heat it takes
-    temperature: SignalLike = 300.0  # K, of a mass at the start, of an ambient over time
+    capacity: float | None = None
+    temperature: SignalLike = 300.0
 
 
 class Passive(NamedTuple):
@@ -198,14 +213,22 @@ class Signal(Declared):
 
 @dataclass(frozen=True)
 class Rate:
-    """Rate of an element, or slip of a contact, as an input of a flow or process [rad/s]."""
+    """Rate of an element, or slip of a contact, as an input of a flow or process [rad/s].
+
+    Parameters:
+        of (element, required): whose rate it is
+    """
 
     of: Component
 
 
 @dataclass(frozen=True)
 class HeatFlow:
-    """Heat that an element or a contact makes, as an input of a flow or process [W]."""
+    """Heat that an element or a contact makes, as an input of a flow or process [W].
+
+    Parameters:
+        of (element, required): whose heat it is
+    """
 
     of: Component
 
