@@ -72,10 +72,6 @@ class Passive(NamedTuple):
     damping: float
 
 
-# attributes that a user of a declaration needs beside its fields; methods are called by the engine
-OFFERED = (property, cached_property)
-
-
 class Listed(type):
     """Class of declarations: dir() and help() list what their users need, and no hook that only the engine calls."""
 
@@ -84,9 +80,9 @@ class Listed(type):
 
     def __dir__(cls) -> list[str]:
         found = {name: value for base in reversed(cls.__mro__) for name, value in vars(base).items()}
-        return [
-            name for name, value in found.items() if name == "part" or (isinstance(value, OFFERED) and name[0] != "_")
-        ]
+        shown = [name for name, value in found.items() if isinstance(value, property | cached_property)]
+        made_of_parts = found.get("parts", Component.parts) is not Component.parts
+        return [name for name in [*shown, *(["part"] if made_of_parts else [])] if name[0] != "_"]
 
 
 class Declared(metaclass=Listed):
@@ -98,13 +94,22 @@ class Declared(metaclass=Listed):
 
 
 @dataclass(frozen=True)
-class Component(Declared):
-    """An element with a name that is its path in results and errors."""
+class Element(Declared):
+    """An element with a name that is its path in results and errors, as its users see it.
+
+    Parameters:
+        name (text, required): its path in results and messages
+    """
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Component(Element):
+    """An element as its authors see it: what it is to the engine, by class variables and methods."""
 
     one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
     lossy: ClassVar[bool] = False  # a torque element whose work is heat, what it stores apart
-
-    name: str
 
     def parts(self) -> Iterable[Component | ThermalNode]:
         """What it is made of, named `{self.name}.{part}`; nothing: it is one piece.
@@ -114,7 +119,7 @@ class Component(Declared):
         """
         return ()
 
-    def part(self, name: str) -> Component | ThermalNode:
+    def part(self, name: str) -> Element | ThermalNode:
         """A part by its name within this component; KeyError when there is none."""
         named = {part.name: part for part in self.parts()}
         return named[f"{self.name}.{name}"]
@@ -219,7 +224,7 @@ class Rate:
         of (element, required): whose rate it is
     """
 
-    of: Component
+    of: Element
 
 
 @dataclass(frozen=True)
@@ -230,11 +235,11 @@ class HeatFlow:
         of (element, required): whose heat it is
     """
 
-    of: Component
+    of: Element
 
 
 # what an input accepts
-SignalLike: TypeAlias = "float | Signal | ThermalNode | Component | tuple[Component, str] | Node | Rate | HeatFlow"
+SignalLike: TypeAlias = "float | Signal | ThermalNode | Element | tuple[Element, str] | Node | Rate | HeatFlow"
 # (x, y) pairs of a curve
 Points: TypeAlias = "Sequence[tuple[float, float]]"
 # units of the gain of a contact, on shafts and on masses: torque or force per pressure, per force, per share

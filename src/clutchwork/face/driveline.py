@@ -10,7 +10,7 @@ from clutchwork.base.errors import ModelError, Problem, UseError, warn
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
 from clutchwork.declare.calls import explain, explained
-from clutchwork.declare.node import HOUSING, Component, Domain, Node, Signal, ThermalNode
+from clutchwork.declare.node import HOUSING, Component, Domain, Element, Node, Signal, ThermalNode
 from clutchwork.declare.speech import words_of_files
 from clutchwork.model.model import Model
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from clutchwork.results.trajectory import Trajectory
     from clutchwork.run.record import Progress
 
-E = TypeVar("E", bound=Component)
+E = TypeVar("E", bound=Element)
 
 
 class Driveline:

@@ -5,9 +5,9 @@ from __future__ import annotations
 # modules that are imported when the name is first used
 NAMES = {
     "ClutchworkError": "base.errors",
-    "Component": "declare.node",
     "Domain": "declare.node",
     "Driveline": "face.driveline",
+    "Element": "declare.node",
     "FaultWarning": "run.failure",
     "HeatFlow": "declare.node",
     "Interrupted": "run.failure",
