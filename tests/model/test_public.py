@@ -2,22 +2,104 @@
 
 from __future__ import annotations
 
+import inspect
+import pydoc
 import subprocess
 import sys
+from dataclasses import MISSING
+from functools import cached_property
 
 import pytest
 
 import clutchwork as cw
+from clutchwork.declare.docs import described, parameters, words
+from clutchwork.declare.schema import Role, specs
+from support import samples
+
+ALL = samples.declared(*Role)
+PROPERTIES = (property, cached_property)
+
+# the public interface beside elements, laws and signals: a name that comes or goes is a line in CHANGELOG.md
+PUBLIC = [
+    *("ClutchworkError", "Domain", "Driveline", "Element", "FaultWarning", "HeatFlow", "Interrupted", "Law"),
+    *("ModelError", "ModelWarning", "Node", "OptionError", "Options", "Problem", "Rate", "Signal", "SimulationError"),
+    *("StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
+    *("export_c", "fit", "rig", "simulate"),
+]
 
 
 def _python(code):
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
 
 
-def test_names_are_there():
-    for name in cw.__all__:
-        assert getattr(cw, name) is not None
-        assert name in dir(cw)
+def test_dir_lists_the_public_names_alone():
+    assert cw.__all__ == sorted([*PUBLIC, *(cls.__name__ for cls in ALL)])
+    assert dir(cw) == sorted([*cw.__all__, "__version__"])
+    assert all(getattr(cw, name) is not None for name in dir(cw))
+
+
+def _help(thing):
+    return pydoc.plain(pydoc.render_doc(thing))
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_help_starts_with_the_words_of_a_class_and_lists_every_parameter(cls):
+    shown = [line.removeprefix(" |  ") for line in _help(cls).splitlines()]
+    first = shown.index(words(cls).splitlines()[0])
+    # a blank line, the class, its signature, a blank line
+    assert first == 5
+    table = shown[shown.index("Parameters:", first) + 1 :]
+    assert table[: table.index("")] == [f"    {name} {text}" for name, text in parameters(cls)]
+    for item, spec in specs(cls):
+        (line,) = [line for line in table if line.startswith(f"    {item.name} (")]
+        told = described(item, spec)
+        assert line.endswith(f"): {told.meaning}")
+        assert f"[{told.unit}]" in line or not told.unit
+        assert told.bound in line
+        assert told.default in line
+
+
+def test_all_of_a_disc_clutch_is_shown():
+    assert len(list(parameters(cw.DiskClutch))) == 28
+    assert "    surfaces (whole number [1] > 0, default 4): number of friction surfaces\n" in cw.DiskClutch.__doc__
+    assert (
+        "    normal_force (signal [N], default none): force on the discs (instead of `pressure`)\n"
+        in cw.DiskClutch.__doc__
+    )
+    assert (
+        "    direction (choice: bidirectional, unidirectional; default bidirectional): slips" in cw.DiskClutch.__doc__
+    )
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_signature_is_that_of_the_parameters(cls):
+    found = inspect.signature(cls).parameters
+    public = [name for name, _ in parameters(cls)]
+    assert [name for name in found if name in public] == public
+    # where a model file is, a column of a CSV file must know
+    assert set(found) - set(public) <= {"folder"}
+    defaults = {item.name: item.default for item, _ in specs(cls)}
+    for name, parameter in found.items():
+        if name in defaults:
+            assert parameter.default is (parameter.empty if defaults[name] is MISSING else defaults[name])
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_dir_of_an_element_lists_its_fields_and_properties(cls):
+    place = () if cls.role in (Role.LAW, Role.SIGNAL) else ("x",)
+    made = cls(*place, **samples.fields(cls, samples.nodes()))
+    assert {*dir(made)} == {*(name for name, _ in parameters(cls)), *dir(cls)}
+    offered = [name for name in dir(cls) if not isinstance(inspect.getattr_static(cls, name), PROPERTIES)]
+    # what is made of others hands them out by name
+    assert offered == (["part"] if cls.role is Role.COMPOSITE else [])
+    # help() shows no attribute that dir() hides
+    hooks = [
+        name
+        for name in ("parts", "rows", "sums", "problems", "segments", "states", "kind", "role")
+        if hasattr(cls, name)
+    ]
+    assert not [line for line in _help(cls).splitlines() if line.split(" |  ")[-1].split("(")[0].split(" ")[0] in hooks]
+    assert "__dataclass" not in _help(cls)
 
 
 def test_unknown_name_gets_a_near_match():

@@ -69,3 +69,9 @@ def run_in(site: Path, script: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-I", "-S", "-c", head + script], capture_output=True, text=True, check=False
     )
+
+
+def write_stubs(project: Path, folder: Path) -> None:
+    """Write the type stubs of a copy, as the build does."""
+    tool = str(project / "tools/gen_stubs.py")
+    subprocess.run([sys.executable, "-I", "-S", tool, str(project), str(folder)], check=True)

@@ -17,7 +17,7 @@ SORTS = {
     "law": "friction law",
     "thermal": "thermal port",
 }
-NAME = "name (text, required): its path in results and messages"
+NAME = ("name", "(text, required): its path in results and messages")
 
 
 class Described(NamedTuple):
@@ -61,15 +61,17 @@ def _default(item: Field[Any], spec: Spec) -> str:
     return f"{item.default:g}" if isinstance(item.default, int | float) else str(item.default)
 
 
-def parameters(cls: type) -> Iterator[str]:
-    """A line for each parameter, in a form that editors know: `radius (number [m] > 0, default none): meaning`."""
+def parameters(cls: type) -> Iterator[tuple[str, str]]:
+    """Name and text of each parameter, together in a form that editors know: `radius (number [m], required): ...`."""
     if "name" in {item.name for item in fields(cls)}:
         yield NAME
     for item, spec in specs(cls):
         told = described(item, spec)
-        sort = f"{told.sort}: {told.bound}" if spec.choices else " ".join(filter(None, (told.sort, _bounded(told))))
+        sort = (
+            f"{told.sort}: {told.bound};" if spec.choices else f"{' '.join(filter(None, (told.sort, _bounded(told))))},"
+        )
         default = told.default if told.default == "required" else f"default {told.default}"
-        yield f"{told.name} ({sort}{';' if spec.choices else ','} {default}): {told.meaning}"
+        yield told.name, f"({sort} {default}): {told.meaning}"
 
 
 def _bounded(told: Described) -> str:
@@ -84,7 +86,7 @@ def words(cls: type) -> str:
 
 def docstring(cls: type) -> str:
     """The words of a declaration, then its parameters."""
-    lines = "\n".join(f"    {line}" for line in parameters(cls))
+    lines = "\n".join(f"    {name} {text}" for name, text in parameters(cls))
     return f"{words(cls)}\n\nParameters:\n{lines}" if lines else words(cls)
 
 

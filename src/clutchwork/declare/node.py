@@ -22,14 +22,23 @@ class Domain(Enum):
 
 @dataclass(frozen=True)
 class Node:
-    """A shaft, a mass or the housing, as `Driveline.shaft`, `.mass` and `.housing` hand it out."""
+    """A shaft, a mass or the housing, as `Driveline.shaft`, `.mass` and `.housing` hand it out.
+
+    Parameters:
+        name (text, required): its path in results and messages
+        domain (choice: Domain.ROTATION, Domain.TRANSLATION; default Domain.ROTATION): a shaft, or a mass on a line
+        inertia (number [kg m2 or kg] >= 0, default 0): inertia of a shaft, mass of a mass
+        speed (number [rad/s or m/s], default none): at the start; none: follows from the others, else 0
+        angle (number [rad or m], default 0): angle or position at the start
+        fixed (flag, default false): whether it is the housing
+    """
 
     name: str
     domain: Domain = Domain.ROTATION
-    inertia: float = 0.0  # kg m2, or kg for a mass
-    speed: float | None = None  # rad/s or m/s at the start; None: follows from the others, else 0
-    angle: float = 0.0  # rad or m at the start
-    fixed: bool = False  # the housing
+    inertia: float = 0.0
+    speed: float | None = None
+    angle: float = 0.0
+    fixed: bool = False
 
     def __reduce__(self) -> str | tuple[Any, ...]:
         # there is one housing, copies included
@@ -43,11 +52,17 @@ HOUSING = Node("housing", fixed=True)
 
 @dataclass(frozen=True)
 class ThermalNode:
-    """A mass that holds heat, or an ambient of given temperature, as `Driveline.thermal` and `.ambient` hand it out."""
+    """A mass that holds heat, or an ambient of given temperature, as `Driveline.thermal` and `.ambient` hand it out.
+
+    Parameters:
+        name (text, required): its path in results and messages
+        capacity (number [J/K] > 0, default none): none: an ambient, whose temperature does not depend on its heat
+        temperature (signal [K], default 300): of a mass at the start, of an ambient over time
+    """
 
     name: str
-    capacity: float | None = None  # J/K; None: an ambient, whose temperature does not depend on the heat it takes
-    temperature: SignalLike = 300.0  # K, of a mass at the start, of an ambient over time
+    capacity: float | None = None
+    temperature: SignalLike = 300.0
 
 
 class Passive(NamedTuple):
@@ -55,10 +70,6 @@ class Passive(NamedTuple):
 
     stiffness: float
     damping: float
-
-
-# attributes that a user of a declaration needs beside its fields; methods are called by the engine
-OFFERED = (property, cached_property)
 
 
 class Listed(type):
@@ -69,9 +80,9 @@ class Listed(type):
 
     def __dir__(cls) -> list[str]:
         found = {name: value for base in reversed(cls.__mro__) for name, value in vars(base).items()}
-        return [
-            name for name, value in found.items() if name == "part" or (isinstance(value, OFFERED) and name[0] != "_")
-        ]
+        shown = [name for name, value in found.items() if isinstance(value, property | cached_property)]
+        made_of_parts = found.get("parts", Component.parts) is not Component.parts
+        return [name for name in [*shown, *(["part"] if made_of_parts else [])] if name[0] != "_"]
 
 
 class Declared(metaclass=Listed):
@@ -83,13 +94,22 @@ class Declared(metaclass=Listed):
 
 
 @dataclass(frozen=True)
-class Component(Declared):
-    """An element with a name that is its path in results and errors."""
+class Element(Declared):
+    """An element with a name that is its path in results and errors, as its users see it.
+
+    Parameters:
+        name (text, required): its path in results and messages
+    """
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Component(Element):
+    """An element as its authors see it: what it is to the engine, by class variables and methods."""
 
     one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
     lossy: ClassVar[bool] = False  # a torque element whose work is heat, what it stores apart
-
-    name: str
 
     def parts(self) -> Iterable[Component | ThermalNode]:
         """What it is made of, named `{self.name}.{part}`; nothing: it is one piece.
@@ -99,7 +119,7 @@ class Component(Declared):
         """
         return ()
 
-    def part(self, name: str) -> Component | ThermalNode:
+    def part(self, name: str) -> Element | ThermalNode:
         """A part by its name within this component; KeyError when there is none."""
         named = {part.name: part for part in self.parts()}
         return named[f"{self.name}.{name}"]
@@ -198,20 +218,28 @@ class Signal(Declared):
 
 @dataclass(frozen=True)
 class Rate:
-    """Rate of an element, or slip of a contact, as an input of a flow or process [rad/s]."""
+    """Rate of an element, or slip of a contact, as an input of a flow or process [rad/s].
 
-    of: Component
+    Parameters:
+        of (element, required): whose rate it is
+    """
+
+    of: Element
 
 
 @dataclass(frozen=True)
 class HeatFlow:
-    """Heat that an element or a contact makes, as an input of a flow or process [W]."""
+    """Heat that an element or a contact makes, as an input of a flow or process [W].
 
-    of: Component
+    Parameters:
+        of (element, required): whose heat it is
+    """
+
+    of: Element
 
 
 # what an input accepts
-SignalLike: TypeAlias = "float | Signal | ThermalNode | Component | tuple[Component, str] | Node | Rate | HeatFlow"
+SignalLike: TypeAlias = "float | Signal | ThermalNode | Element | tuple[Element, str] | Node | Rate | HeatFlow"
 # (x, y) pairs of a curve
 Points: TypeAlias = "Sequence[tuple[float, float]]"
 # units of the gain of a contact, on shafts and on masses: torque or force per pressure, per force, per share

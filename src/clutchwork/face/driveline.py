@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
 from clutchwork.base.errors import ModelError, Problem, UseError, warn
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
-from clutchwork.declare.calls import explained
-from clutchwork.declare.node import HOUSING, Component, Domain, Node, Signal, ThermalNode
+from clutchwork.declare.calls import explain, explained
+from clutchwork.declare.node import HOUSING, Component, Domain, Element, Node, Signal, ThermalNode
 from clutchwork.declare.speech import words_of_files
 from clutchwork.model.model import Model
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.declare.option_fields import OptionFields
+    from clutchwork.declare.options import Options
     from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.record import Progress
 
-E = TypeVar("E", bound=Component)
+E = TypeVar("E", bound=Element)
 
 
 class Driveline:
@@ -153,11 +156,18 @@ class Driveline:
                 raise ModelError([TOO_FAR_APART], self.name) from None
 
     @explained("d.simulate")
-    def simulate(self, t_end: float, **options: Any) -> Trajectory:
+    def simulate(
+        self,
+        t_end: float,
+        *,
+        options: Options | None = None,
+        progress: Progress | None = None,
+        **changes: Unpack[OptionFields],
+    ) -> Trajectory:
         """Assemble and run up to t_end [s]; options as for `clutchwork.simulate`."""
         from clutchwork.run.simulation import simulate
 
-        return simulate(self.assemble(), t_end, **options)
+        return simulate(self.assemble(), t_end, options=options, progress=progress, **changes)
 
     @classmethod
     @explained("cw.Driveline.load")
@@ -194,3 +204,6 @@ class Driveline:
         made = cls(model.name)
         made._model = model
         return made
+
+
+explain(Driveline)

@@ -37,11 +37,13 @@ _LAZY = {
 __all__ = ["FitError", "FitResult", "Parameter", "UndeterminedError", "fit_csv", "fit_law"]
 
 
-def __getattr__(name: str) -> Any:
-    if name in _LAZY:
-        return getattr(import_module(f"clutchwork.fit.{_LAZY[name]}"), name)
-    raise AttributeError(f"clutchwork.fit has no {name!r}{near(name, __all__)}")
+if not TYPE_CHECKING:
+    # to a type checker any name would do
+    def __getattr__(name: str) -> Any:
+        if name in _LAZY:
+            return getattr(import_module(f"clutchwork.fit.{_LAZY[name]}"), name)
+        raise AttributeError(f"clutchwork.fit has no {name!r}{near(name, __all__)}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)

@@ -54,15 +54,17 @@ _KNOWING = (
 __all__ = [*sorted([*_LAZY, *_KNOWING]), "presets"]
 
 
-def __getattr__(name: str) -> Any:
-    if name == "presets":
-        return import_module("clutchwork.rig.presets")
-    if name in _LAZY:
-        return getattr(import_module(f"clutchwork.rig.{_LAZY[name]}"), name)
-    if name in _KNOWING:
-        return getattr(import_module("clutchwork.rig.functions"), name)
-    raise AttributeError(f"clutchwork.rig has no {name!r}{near(name, __all__)}")
+if not TYPE_CHECKING:
+    # to a type checker any name would do
+    def __getattr__(name: str) -> Any:
+        if name == "presets":
+            return import_module("clutchwork.rig.presets")
+        if name in _LAZY:
+            return getattr(import_module(f"clutchwork.rig.{_LAZY[name]}"), name)
+        if name in _KNOWING:
+            return getattr(import_module("clutchwork.rig.functions"), name)
+        raise AttributeError(f"clutchwork.rig has no {name!r}{near(name, __all__)}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)

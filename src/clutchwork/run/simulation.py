@@ -6,7 +6,7 @@ import os
 import time
 import warnings
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,9 @@ from clutchwork.run.failure import Interrupted, StoppedEarly, explain, report_fa
 from clutchwork.run.grid import output_grid
 from clutchwork.run.jumps import jump_times
 from clutchwork.run.record import Progress, Recording, record
+
+if TYPE_CHECKING:
+    from clutchwork.declare.option_fields import OptionFields
 
 Array = NDArray[np.float64]
 
@@ -60,7 +63,7 @@ def simulate(
     *,
     options: Options | None = None,
     progress: Progress | None = None,
-    **changes: Any,
+    **changes: Unpack[OptionFields],
 ) -> Trajectory:
     """Compute the motion of a Driveline or a System from 0 to t_end.
 
@@ -75,7 +78,7 @@ def simulate(
     t_end = end_time(t_end)
     if options is not None and not isinstance(options, Options):
         raise UseError("simulate", [f"options is {shown(options)}: it must be cw.Options(...)"])
-    chosen = (options or Options()).changed(changes)
+    chosen = (options or Options()).changed({**changes})
     if not isinstance(model, System) and not hasattr(model, "assemble"):
         raise UseError("simulate", [_no_model(model)])
     system = model if isinstance(model, System) else model.assemble()
