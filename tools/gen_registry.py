@@ -1,4 +1,4 @@
-"""Write registry.gen.hpp: pair every declaration with its C++ header, and lay out System, rows, events and statuses.
+"""Write registry.gen.hpp: pair every declaration with its C++ header, and lay out System, rows, events and options.
 
 Usage: gen_registry.py PROJECT_ROOT OUTPUT. Ends with an error that names the file when a pair does not fit.
 """
@@ -6,6 +6,7 @@ Usage: gen_registry.py PROJECT_ROOT OUTPUT. Ends with an error that names the fi
 from __future__ import annotations
 
 import importlib
+import math
 import re
 import sys
 import types
@@ -189,6 +190,48 @@ def rows(layout: Any) -> Iterator[str]:
     yield "enum class Status : int { " + ", ".join(name for name, *_ in layout.STATUS) + ", running };"
 
 
+def options(table: dict[str, Any]) -> Iterator[str]:
+    """The settings of a run that the core knows: a struct with their defaults, and what each may be."""
+    rows = {name: row for name, row in table.items() if row.core}
+    yield "enum class Method : int;"
+    yield "/// Settings of a run."
+    yield "struct Options {"
+    for name, row in rows.items():
+        kind = _option_type(name, row.spec)
+        unit = f"[{row.spec.unit}] " if row.unit else ""
+        yield f"  {kind} {name} = {kind}({_number(row.number(row.default))});  ///< {unit}{row.spec.doc}"
+    yield "};"
+    yield "/// What a setting may be; `unset` is a number that stands for none, NaN where there is no such number."
+    yield "struct OptionRange {"
+    yield "  double least, most, unset;"
+    yield "  bool whole;"
+    yield "  constexpr bool allows(double x) const {"
+    yield "    return x == unset || (x >= least && x <= most && (!whole || x == double(std::int64_t(x))));"
+    yield "  }"
+    yield "};"
+    yield "/// Calls f(setting, its name, its range) for all settings, in order."
+    yield "template <class O, class F> void visit_options(O& o, F&& f) {"
+    for name, row in rows.items():
+        unset = row.unset if row.spec.optional else math.nan
+        numbers = ", ".join(_number(x) for x in (row.least, row.most, unset))
+        yield f'  f(o.{name}, "{name}", OptionRange{{{numbers}, {str(row.whole).lower()}}});'
+    yield "}"
+
+
+def _option_type(name: str, spec: Any) -> str:
+    if spec.choices:
+        # the numbers of a choice are those of an enumeration of the layout
+        return name.capitalize()
+    return "bool" if spec.flag else "std::int64_t" if spec.whole else "double"
+
+
+def _number(x: float) -> str:
+    """A double, exactly."""
+    if math.isnan(x):
+        return '__builtin_nan("")'
+    return repr(float(x)) if math.isfinite(x) else "__builtin_huge_val()"
+
+
 def main() -> int:
     """Generate, or say what does not pair."""
     root, out = Path(sys.argv[1]), Path(sys.argv[2])
@@ -211,7 +254,8 @@ def main() -> int:
             lines += asserts(schema, role, kind)
         lines += [*visitor(schema, role), *curves(schema, role), *choices(schema, role)]
     lines.append(f"inline constexpr int most_own_states = {most_states(schema)};")
-    lines += [*system(layout), *rows(layout), "}"]
+    table = importlib.import_module("clutchwork.declare.options").OPTIONS
+    lines += [*system(layout), *rows(layout), *options(table), "}"]
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text("\n".join(lines) + "\n")
     return 0

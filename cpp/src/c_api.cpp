@@ -37,8 +37,6 @@ void reset(cw_run* run) {
   }
 }
 
-bool same(const char* a, const char* b) { return std::strcmp(a, b) == 0; }
-
 bool is_finite(double x) { return x - x == 0; }
 
 saved::Measure measured(const cw_run* run) {
@@ -87,20 +85,14 @@ cw_run* cw_load(const void* system, std::int64_t bytes, void* memory, std::int64
 }
 
 int cw_set_option(cw_run* run, const char* name, double value) {
-  if (run == nullptr || name == nullptr || !(value >= 0)) return 0;
-  Options& o = run->ws.options;
-  const bool whole = value <= 1e18 && value == double(std::int64_t(value)),
-             positive = value >= 1e-300 && value <= 1e300;
-  if (same(name, "rtol") && positive) return o.rtol = value, 1;
-  if (same(name, "atol") && positive) return o.atol = value, 1;
-  if (same(name, "method") && whole && value <= method_count) return o.method = Method(int(value)), 1;
-  if (same(name, "first_step")) return o.first_step = value, 1;
-  if (same(name, "max_step") && value >= 1e-300) return o.max_step = value, 1;
-  if (same(name, "max_steps") && whole) return o.max_steps = std::int64_t(value), 1;
-  if (same(name, "max_events") && whole) return o.max_events = std::int64_t(value), 1;
-  if (same(name, "angles")) return o.angles = value != 0, 1;
-  if (same(name, "work")) return o.work = value != 0, 1;
-  return 0;
+  if (run == nullptr || name == nullptr) return 0;
+  int done = 0;
+  visit_options(run->ws.options, [&](auto& setting, const char* known, const OptionRange& range) {
+    if (std::strcmp(name, known) != 0 || !range.allows(value)) return;
+    setting = static_cast<std::remove_reference_t<decltype(setting)>>(value);
+    done = 1;
+  });
+  return done;
 }
 
 int cw_set_input(cw_run* run, std::int64_t input, double value) {

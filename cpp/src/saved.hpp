@@ -14,10 +14,7 @@ template <class W, class A>
 void describe(W& ws, A& a) {
   const System& s = ws.sys;
   const std::int64_t nc = s.contacts, nd = s.elements + nc;
-  auto& o = ws.options;
-  a.number(o.rtol, 1e-300, 1e300), a.number(o.atol, 1e-300, 1e300), a.whole(o.method, 0, method_count);
-  a.number(o.first_step, 0, infinity), a.number(o.max_step, 1e-300, infinity);
-  a.whole(o.max_steps, 0, most), a.whole(o.max_events, 0, most), a.whole(o.angles, 0, 1), a.whole(o.work, 0, 1);
+  visit_options(ws.options, [&](auto& setting, const char*, const OptionRange& range) { a.setting(setting, range); });
   auto& n = ws.statistics;
   a.whole(n.steps, 0, most), a.whole(n.rejected, 0, most), a.whole(n.evaluations, 0, most);
   a.whole(n.jacobians, 0, most), a.whole(n.events, 0, most), a.whole(n.phases, 0, most), a.whole(n.locations, 0, most);
@@ -49,6 +46,13 @@ struct Visitor {
   void scratch(P* const&, std::int64_t) {}
   void keep(int* const& p, std::int64_t n, std::int64_t low, std::int64_t high) {
     for (std::int64_t i = 0; i < n; ++i) self().whole(p[i], low, high);
+  }
+  template <class X>
+  void setting(X& x, const OptionRange& range) {
+    const double low = range.unset < range.least ? range.unset : range.least;
+    const double high = range.unset > range.most ? range.unset : range.most;
+    if constexpr (std::is_same_v<std::remove_const_t<X>, double>) return self().number(x, low, high);
+    self().whole(x, std::int64_t(low), std::int64_t(high));
   }
   template <class X>
   void time(X& x) {

@@ -47,7 +47,7 @@ def test_engine_clutch_vehicle_is_as_worked_out_by_hand() -> None:
 def test_the_car_of_the_model_file_starts_without_a_controller() -> None:
     model = cw.Driveline.load(EXAMPLES / "car_launch" / "model.toml")
     assert model.check() == []
-    run = model.simulate(**model.simulation)
+    run = model.simulate()
     assert run.finished
     assert run["clutch.state"][-1] == "locked"
     assert run["car.speed"][-1] > 5.0

@@ -181,7 +181,7 @@ def test_exporting_again_keeps_what_was_edited(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({}, "no end time"),
+        ({}, "t_end is missing"),
         ({"t_end": 1.0, "signals": ["c1.slpi"]}, "did you mean 'c1.slip'"),
         ({"t_end": 1.0, "signals": ["c1.state"]}, "use c1.mode"),
         ({"t_end": 1.0, "times": [0.0, 1.0]}, "give dt"),

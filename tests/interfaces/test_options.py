@@ -12,8 +12,9 @@ from clutchwork.run.grid import output_grid
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"rtol": 0.0}, "rtol is 0: it must be a finite number above 0"),
+        ({"rtol": 0.0}, "rtol is 0: it must be a finite number of at least 1e-14"),
         ({"rtol": 1e-16}, "double precision"),
+        ({"atol": 0.0}, "atol is 0: it must be a finite number above 0"),
         ({"atol": float("nan")}, "atol is nan"),
         ({"max_step": -1.0}, "max_step is -1 s"),
         ({"method": "rodas"}, "did you mean 'rodas5p'"),

@@ -150,12 +150,12 @@ CASES = {
     "wrong setting": (
         'name = "two discs"',
         'name = "x"\nsimulation = {t_end = -1}',
-        "simulation: t_end = -1.0 s: must be > 0 s",
+        "simulation: t_end = -1 s: must be a finite number above 0; it is the end time of the run",
     ),
     "unknown method": (
         'name = "two discs"',
         'name = "x"\nsimulation = {method = "rodas"}',
-        "method = 'rodas': is an unknown method; did you mean 'rodas5p'?",
+        "method = 'rodas': must be one of auto, rodas5p, dopri5; did you mean 'rodas5p'?",
     ),
     "format of the future": (
         'name = "two discs"',

@@ -25,8 +25,9 @@ int64_t cw_size(const void* system, int64_t bytes);
 /* Start a run at time zero in `memory` (aligned to 16 bytes); NULL when system or memory do not fit. */
 cw_run* cw_load(const void* system, int64_t bytes, void* memory, int64_t memory_bytes);
 
-/* Settings by name: rtol, atol, method (0 automatic, 1 rodas5p, 2 dopri5), first_step, max_step [s], max_steps,
-   max_events, angles, work. 1: set; 0: unknown, out of range or not a number. */
+/* Settings by name: rtol, atol, method (0 auto, 1 rodas5p, 2 dopri5), first_step [s] (0: chosen by the solver),
+   max_step [s] (INFINITY: no limit), max_steps, max_events, angles, work (0 or 1). Ranges are those of the options of a
+   run. 1: set; 0: unknown, out of range or not a number. */
 int cw_set_option(cw_run* run, const char* name, double value);
 
 /* Value of a signal that is set from outside. 1: set; 0: no such signal, or the value is not finite. */

@@ -24,6 +24,7 @@ from clutchwork.declare.node import Component, Node, ThermalNode
 from clutchwork.declare.schema import schema_hash
 from clutchwork.files.model_file import from_dict, to_dict
 from clutchwork.model.model import Model
+from clutchwork.model.settings import plain_settings
 
 MAGIC = b"CLUTCHWK"
 
@@ -58,6 +59,7 @@ class System:
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()  # what the driveline was warned of when it was assembled
     model: Mapping[str, Any] = field(default_factory=dict)  # the driveline as in a model file
+    settings: Mapping[str, Any] = field(default_factory=dict)  # of its runs, as in [simulation] of a model file
 
     def __getattr__(self, name: str) -> Array:
         try:
@@ -91,7 +93,8 @@ class System:
     @classmethod
     def of(cls, model: Model, independent: Sequence[str] = ()) -> System:
         """The System of a model without mistakes; `independent` names the shafts with the independent speeds."""
-        return cls(**assembled(model, independent), model=_source(model))
+        made = assembled(model, independent)
+        return cls(**made, model=_source(model), settings=plain_settings(model.settings))
 
     def to_bytes(self) -> bytes:
         """The System as the compiled core reads it: little endian, every array aligned to 8 bytes."""
@@ -128,7 +131,8 @@ class System:
             raise SystemFormatError(
                 "this System has a controller in Python or no names; save its driveline or to_bytes()"
             )
-        stored = {"model": json.dumps(dict(self.model), allow_nan=False), "independent": json.dumps(self.independent)}
+        model = {**self.model, "simulation": plain_settings(self.settings)}
+        stored = {"model": json.dumps(model, allow_nan=False), "independent": json.dumps(self.independent)}
         archive.write(path, {"content": self.to_bytes(), **{key: value.encode() for key, value in stored.items()}})
 
     @classmethod

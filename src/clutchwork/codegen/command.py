@@ -9,9 +9,12 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-from clutchwork.declare.options import METHODS
+from clutchwork.declare.options import OPTIONS
+from clutchwork.declare.speech import words_of_files
+from clutchwork.run.flags import DEFAULTS, add_options, given_options
 
-SETTINGS = ("rtol", "atol", "method", "dt", "max_step")
+# the grid of an exported run has a spacing
+OF_EXPORT = ("t_end", "dt", *(name for name, row in OPTIONS.items() if row.core))
 
 
 def add_command(subparsers: Any) -> None:
@@ -20,16 +23,9 @@ def add_command(subparsers: Any) -> None:
     export.set_defaults(command=export_command)
     export.add_argument("model", type=Path, help="model file, TOML or JSON")
     export.add_argument("--out", type=Path, metavar="DIR", required=True, help="output folder")
-    export.add_argument(
-        "--t-end", type=float, metavar="S", help="end time [s]; default: t_end of the [simulation] table"
-    )
-    export.add_argument("--dt", type=float, metavar="S", help="spacing of the grid [s]; default: a thousandth of t-end")
-    export.add_argument("--rtol", type=float, help="relative tolerance, default 1e-6")
-    export.add_argument("--atol", type=float, help="absolute tolerance, default 1e-8")
-    export.add_argument("--method", choices=sorted(METHODS), help="default rodas5p")
-    export.add_argument("--max-step", type=float, metavar="S", help="longest step of the solver [s]")
     export.add_argument("--signals", metavar="A,B", help="signals to print; default: all")
     export.add_argument("--json", action="store_true", help="print the result as JSON on standard output")
+    add_options(export, OF_EXPORT, {**DEFAULTS, "dt": "a thousandth of the end time"})
 
 
 def export_command(asked: argparse.Namespace) -> int:
@@ -38,11 +34,10 @@ def export_command(asked: argparse.Namespace) -> int:
     from clutchwork.codegen import export_c
     from clutchwork.face.driveline import Driveline
 
-    given = {name: getattr(asked, name) for name in SETTINGS if getattr(asked, name) is not None}
     signals = None if asked.signals is None else [name.strip() for name in asked.signals.split(",")]
-    with warnings.catch_warnings(record=True) as warned:
+    with warnings.catch_warnings(record=True) as warned, words_of_files():
         warnings.simplefilter("always", ModelWarning)
-        folder = export_c(Driveline.load(asked.model), asked.out, t_end=asked.t_end, signals=signals, **given)
+        folder = export_c(Driveline.load(asked.model), asked.out, signals=signals, **given_options(asked))
     for warning in warned:
         sys.stderr.write(f"warning: {warning.message}\n")
     if asked.json:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.assembly.wiring import wiring
 from clutchwork.codegen.model import Exported, chosen, files
 from clutchwork.codegen.sources import sources
-from clutchwork.declare.options import Options, end_time
+from clutchwork.declare.options import Options
 from clutchwork.face.driveline import Driveline
 from clutchwork.results.channels import Channels
+from clutchwork.run.settings import merged
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -34,19 +35,14 @@ def export_c(
 ) -> Path:
     """Write C and C++ of a Driveline or a System into a folder; its path.
 
-    Parameters: t_end [s], that of the model file by default; signals, names of what main.c prints, all by default;
-    options, an `Options`, or its fields by name (rtol=, dt=, method= ...), after those of the model file. `make` in
+    Parameters: t_end [s]; signals, names of what main.c prints, all by default; options, an `Options`, or its fields by
+    name (rtol=, dt=, method= ...). What is left out is that of the settings of the model, as for `simulate`. `make` in
     the folder builds it, with a C and a C++20 compiler and nothing else. What is in it: docs/guide/export.md.
     """
-    settings = dict(model.simulation) if isinstance(model, Driveline) else {}
-    settings |= changes | ({} if t_end is None else {"t_end": t_end})
-    if "t_end" not in settings:
-        raise ValueError("no end time given: set t_end, or t_end in the [simulation] table of the model file")
-    end = end_time(settings.pop("t_end"))
-    made = (options or Options()).changed(settings)
+    system = model if not isinstance(model, Driveline) else model.assemble()
+    end, made = merged(system.settings, changes if t_end is None else {**changes, "t_end": t_end}, options)
     if made.times is not None:
         raise ValueError("times cannot be exported: give dt, the spacing of the grid")
-    system = model if not isinstance(model, Driveline) else model.assemble()
     channels = Channels(wiring(system), angles=made.angles, work=made.work)
     exported = Exported(system, end, made.dt or end / INTERVALS, made, chosen(signals, channels))
     _refuse_large(exported)

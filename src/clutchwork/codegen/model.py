@@ -11,7 +11,7 @@ from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.codegen.expression import expression
 from clutchwork.codegen.text import comment, enumeration, identifiers, literal, string
 from clutchwork.declare.layout import EVENT, MODES, STATUS
-from clutchwork.declare.options import Options
+from clutchwork.declare.options import OPTIONS, Options
 from clutchwork.results.channels import Channel, Channels
 from clutchwork.results.forms import Mode
 from clutchwork.results.rows import numbers
@@ -148,9 +148,11 @@ def _row(model: Exported) -> list[tuple[str, str]]:
 def tables(model: Exported) -> Iterator[str]:
     """model.c: settings, printed signals, names of contacts."""
     yield from (f"/* {MADE} */", '#include "model.h"', "", "int model_set_options(cw_run *run) {")
-    settings = model.options.core_options().items()
     yield "  return 1"
-    yield from (f'         && cw_set_option(run, "{name}", {literal(value)})' for name, value in settings)
+    for name, value in model.options.core_options().items():
+        row = OPTIONS[name]
+        words = comment(f"[{row.spec.unit}] {row.spec.doc}" if row.unit else row.spec.doc)
+        yield f'         && cw_set_option(run, "{name}", {literal(value)}) /* {words} */'
     yield from ("      ;", "}", "")
     yield "const model_signal model_signals[MODEL_SIGNALS] = {"
     for name in model.printed:

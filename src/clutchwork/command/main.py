@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import ModelError, ModelFileError, ModelWarning
 from clutchwork.command.progress import Bar
-from clutchwork.declare.options import METHODS, Options, end_time
+from clutchwork.declare.speech import words_of_files
+from clutchwork.run.flags import add_options, given_options
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -65,12 +66,6 @@ def parser() -> argparse.ArgumentParser:
 def _run_parser(run: argparse.ArgumentParser) -> None:
     run.set_defaults(command=_run)
     run.add_argument("model", type=Path, help="model file, TOML or JSON")
-    run.add_argument("--t-end", type=float, metavar="S", help="end time [s]; default: t_end of the [simulation] table")
-    run.add_argument("--rtol", type=float, help="relative tolerance, default 1e-6")
-    run.add_argument("--atol", type=float, help="absolute tolerance, default 1e-8")
-    run.add_argument("--method", choices=sorted(METHODS), help="default rodas5p")
-    run.add_argument("--dt", type=float, metavar="S", help="spacing of the output [s]; default: refined steps")
-    run.add_argument("--max-step", type=float, metavar="S", help="longest step of the solver [s]")
     run.add_argument("--ratio", metavar="A/B", help="shafts whose speed ratio is reported; default: drive and load")
     run.add_argument("--out", type=Path, metavar="DIR", help="folder for picture.png, trajectory.csv, events.csv")
     run.add_argument("--plot", type=Path, metavar="FILE", help="write the picture (png, svg or pdf)")
@@ -78,6 +73,7 @@ def _run_parser(run: argparse.ArgumentParser) -> None:
     run.add_argument("--events", type=Path, metavar="FILE", help="write the events")
     run.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
     run.add_argument("--quiet", action="store_true", help="no report and no progress bar")
+    add_options(run)
 
 
 def _check_parser(check: argparse.ArgumentParser) -> None:
@@ -98,10 +94,9 @@ def _run(asked: argparse.Namespace) -> int:
     from clutchwork.face.driveline import Driveline
     from clutchwork.results.ratios import phases
 
-    driveline = Driveline.load(asked.model)
-    system = _assembled(driveline)
+    system = _assembled(Driveline.load(asked.model))
     shafts = _shafts(system, asked.ratio)
-    run, code = _simulated(driveline, system, asked)
+    run, code = _simulated(system, asked)
     found = phases(run, shafts) if shafts and len(run) else []
     written = _write(run, asked) if len(run) else []
     if asked.json:
@@ -124,23 +119,19 @@ def _assembled(driveline: Driveline) -> System:
     return system
 
 
-def _simulated(driveline: Driveline, system: System, asked: argparse.Namespace) -> tuple[Trajectory, int]:
+def _simulated(system: System, asked: argparse.Namespace) -> tuple[Trajectory, int]:
     """Run with the settings of the file, overruled by those of the command line; what came of it, and the exit code."""
     from clutchwork.run.failure import Interrupted, StoppedEarly
+    from clutchwork.run.settings import merged
     from clutchwork.run.simulation import simulate
 
-    settings = dict(driveline.simulation)
-    for name in ("t_end", "rtol", "atol", "method", "dt", "max_step"):
-        given = getattr(asked, name)
-        settings |= {} if given is None else {name: given}
-    if "t_end" not in settings:
-        raise ValueError("no end time given: set --t-end, or t_end in the [simulation] table of the model file")
-    t_end = end_time(settings.pop("t_end"))
+    with words_of_files():
+        t_end, options = merged(system.settings, given_options(asked))
     with warnings.catch_warnings(), Bar(hidden=asked.quiet or asked.json) as bar:
         # the exit code and the message report it
         warnings.simplefilter("ignore", StoppedEarly)
         try:
-            run = simulate(system, t_end, options=Options().changed(settings), progress=bar.show)
+            run = simulate(system, t_end, options=options, progress=bar.show)
         except Interrupted as stop:
             return stop.trajectory, INTERRUPTED
     return run, DONE if run.finished else STOPPED

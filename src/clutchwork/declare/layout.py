@@ -122,6 +122,9 @@ EVENT = (
 
 MODES = {-1: "backward", 0: "locked", 1: "forward", 2: "open"}
 
+# integrators by their number
+METHODS = {"auto": 0, "rodas5p": 1, "dopri5": 2}
+
 # why a run returned: (name, message, remedy)
 STATUS = (
     ("done", "reached the end time", ""),

@@ -47,7 +47,10 @@ class Driveline:
 
     @property
     def simulation(self) -> dict[str, Any]:
-        """Settings of a run, as in [simulation] of a model file: t_end, dt, rtol ..."""
+        """Settings of its runs, to be changed: t_end [s] and fields of `Options`, as in [simulation] of a model file.
+
+        `simulate` takes from here what it is not given; `save` writes them.
+        """
         return self._model.settings
 
     @property
@@ -158,13 +161,16 @@ class Driveline:
     @explained("d.simulate")
     def simulate(
         self,
-        t_end: float,
+        t_end: float | None = None,
         *,
         options: Options | None = None,
         progress: Progress | None = None,
         **changes: Unpack[OptionFields],
     ) -> Trajectory:
-        """Assemble and run up to t_end [s]; options as for `clutchwork.simulate`."""
+        """Assemble and run up to t_end [s]; options as for `clutchwork.simulate`.
+
+        What is left out is that of `simulation`, so a driveline from a model file runs with the settings of its file.
+        """
         from clutchwork.run.simulation import simulate
 
         return simulate(self.assemble(), t_end, options=options, progress=progress, **changes)

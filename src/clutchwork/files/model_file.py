@@ -44,6 +44,7 @@ from clutchwork.files.reader import FORMAT, Reader
 from clutchwork.files.writer import Writer, toml
 from clutchwork.model.model import Model
 from clutchwork.model.problems import model_problems
+from clutchwork.model.settings import plain_settings, settings_problems
 from clutchwork.model.thermal import node_kind
 
 # more belongs into CSV files
@@ -160,9 +161,10 @@ def to_dict(model: Model, *, folder: str | Path | None = None, embed: bool = Fal
     for key in ("thermal", "ambient"):
         data[key] = [writer.thermal(node) for node in model.thermal if node_kind(node) == key]
     data["element"] = [writer.element(element) for element in model.elements]
-    data["simulation"] = dict(model.settings)
-    if writer.problems:
-        raise ModelError(writer.problems, model.name)
+    problems = [*writer.problems, *settings_problems(model.settings)]
+    if problems:
+        raise ModelError(problems, model.name)
+    data["simulation"] = plain_settings(model.settings)
     return {key: value for key, value in data.items() if value not in ([], {})}
 
 

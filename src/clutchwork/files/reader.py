@@ -6,14 +6,15 @@ from collections.abc import Mapping
 from dataclasses import MISSING
 from typing import Any
 
-from clutchwork.base.errors import Problem, near
+from clutchwork.base.errors import near
 from clutchwork.base.shown import listed, shown
 from clutchwork.declare.node import Component, Domain, Node, ThermalNode
-from clutchwork.declare.schema import REGISTRY, Role, Spec
+from clutchwork.declare.options import SIMULATION
+from clutchwork.declare.schema import REGISTRY, Role
 from clutchwork.declare.speech import element_path
 from clutchwork.files.references import References
 from clutchwork.files.values import Values
-from clutchwork.model.fields import BROKEN, CHECKS
+from clutchwork.model.fields import BROKEN
 from clutchwork.model.model import Model
 from clutchwork.model.numbers import At
 from clutchwork.model.problems import NODE_FIELDS, node_path
@@ -22,14 +23,6 @@ from clutchwork.model.thermal import NODE_FIELDS as THERMAL_FIELDS
 FORMAT = 1
 TOP = ("format", "name", "description", "shaft", "mass", "thermal", "ambient", "element", "simulation")
 ELEMENTS = tuple(role for role in Role if role not in (Role.LAW, Role.SIGNAL))
-SIMULATION = {
-    "t_end": Spec("param", "s", "end time", above=0.0),
-    "dt": Spec("param", "s", "spacing of the output", above=0.0),
-    "rtol": Spec("param", "1", "relative tolerance", above=0.0),
-    "atol": Spec("param", "1", "absolute tolerance", above=0.0),
-    "max_step": Spec("param", "s", "largest step", above=0.0),
-    "method": Spec("text", "", "auto, rodas5p or dopri5"),
-}
 
 
 def element_kinds() -> dict[str, Any]:
@@ -131,25 +124,9 @@ class Reader(Values):
         at = At("simulation", "")
         if not isinstance(data, Mapping):
             return self._report(at, "must be a table", shown(data), "write [simulation] above its keys") and {}
-        self._unknown(data, SIMULATION, at)
         made = {}
-        for key, spec in SIMULATION.items():
-            if key in data:
-                place = at.inner(key, spec.unit)
-                made[key] = data[key] if spec.what == "text" else self._number(data[key], spec, place)
-                if made[key] is not BROKEN:
-                    self.problems += _simulation_problems(made[key], spec, place)
-        return made
-
-
-def _simulation_problems(value: Any, spec: Spec, at: At) -> list[Problem]:
-    from clutchwork.declare.options import METHODS
-
-    found = list(CHECKS[spec.what](value, spec, at))
-    if spec.what == "text" and not found and value not in METHODS:
-        found.append(
-            at.problem(
-                "is an unknown method" + near(value, METHODS), shown(value), f"known methods: {', '.join(METHODS)}"
-            )
-        )
-    return found
+        for key, value in data.items():
+            row = SIMULATION.get(key)
+            # an unknown name is reported with the other mistakes of the settings
+            made[key] = value if row is None else self._value(value, row.spec, at.inner(key, row.spec.unit))
+        return {key: value for key, value in made.items() if value is not BROKEN}

@@ -14,6 +14,7 @@ from clutchwork.model.kinematics import kinematics
 from clutchwork.model.model import Model
 from clutchwork.model.numbers import At, number_problems
 from clutchwork.model.parts import Parts, Sensor, take_apart
+from clutchwork.model.settings import settings_problems
 from clutchwork.model.start import start
 from clutchwork.model.structure import Mechanism
 from clutchwork.model.temperatures import temperature_advice
@@ -30,6 +31,7 @@ def model_problems(model: Model, incomplete: Sequence[str] = ()) -> list[Problem
     """
     nodes, elements, thermal = model.nodes, model.elements, model.thermal
     problems = [] if is_name(model.name) else [Problem("driveline", "name", NO_NAME, shown(model.name), GIVE_NAME)]
+    problems += settings_problems(model.settings)
     problems += [problem for node in nodes for problem in node_problems(node)]
     problems += [problem for node in thermal for problem in thermal_problems(node)]
     parts, found = _parts(elements, thermal)

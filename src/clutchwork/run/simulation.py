@@ -17,7 +17,7 @@ from clutchwork.base.errors import UseError, caller
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.core import core
-from clutchwork.declare.options import Options, end_time
+from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES, NOT_FINITE
 from clutchwork.results.events import from_rows
 from clutchwork.results.trajectory import SimulationError, Trajectory
@@ -27,6 +27,7 @@ from clutchwork.run.failure import Interrupted, StoppedEarly, explain, report_fa
 from clutchwork.run.grid import output_grid
 from clutchwork.run.jumps import jump_times
 from clutchwork.run.record import Progress, Recording, record
+from clutchwork.run.settings import merged
 
 if TYPE_CHECKING:
     from clutchwork.declare.option_fields import OptionFields
@@ -59,7 +60,7 @@ class Job:
 @explained("simulate")
 def simulate(
     model: Assembles | System,
-    t_end: float,
+    t_end: float | None = None,
     *,
     options: Options | None = None,
     progress: Progress | None = None,
@@ -70,21 +71,24 @@ def simulate(
     Parameters: t_end [s]; options, an `Options`, or its fields by name (rtol=, dt=, method= ...); progress, a
     function of (time reached [s], t_end [s]) that is called now and then.
 
+    What is left out is that of the settings of the model, `Driveline.simulation`, which a model file holds in its
+    [simulation] table; `options` replaces all of them but t_end.
+
     A fault that its element reports as a warning is a `FaultWarning`. A run that cannot go on warns with `StoppedEarly`
     and returns the trajectory so far, with `status` and `message`.
     A controller that raises ends in `SimulationError`, which holds the trajectory so far too, and so does
     `Interrupted`, the KeyboardInterrupt that Ctrl-C raises.
     """
-    t_end = end_time(t_end)
     if options is not None and not isinstance(options, Options):
         raise UseError("simulate", [f"options is {shown(options)}: it must be cw.Options(...)"])
-    chosen = (options or Options()).changed({**changes})
     if not isinstance(model, System) and not hasattr(model, "assemble"):
         raise UseError("simulate", [_no_model(model)])
     system = model if isinstance(model, System) else model.assemble()
-    refuse_endless(system.inputs, t_end, chosen.max_steps)
+    given = {**changes} if t_end is None else {**changes, "t_end": t_end}
+    end, chosen = merged(system.settings, given, options)
+    refuse_endless(system.inputs, end, chosen.max_steps)
     control = Control(controllers(system.inputs), Signals(system))
-    run = _trajectory(Job(system, t_end, chosen, control), progress)
+    run = _trajectory(Job(system, end, chosen, control), progress)
     report_faults(run)
     return run
 

@@ -13,19 +13,6 @@ enum class Cause : int { initial, slip_zero, torque_limit, input, consequence, i
 enum class Method : int { automatic, rodas5p, dopri5 };
 inline constexpr int method_count = 2;  ///< without `automatic`
 
-/// Settings of a run.
-struct Options {
-  double rtol = 1e-6;  ///< [1] relative tolerance of a step
-  double atol = 1e-8;  ///< [SI] absolute tolerance of a step
-  Method method = Method::rodas5p;
-  double first_step = 0;       ///< [s] 0: found from the slopes
-  double max_step = infinity;  ///< [s]
-  std::int64_t max_steps = 10'000'000;
-  std::int64_t max_events = 100'000;
-  bool angles = true;  ///< integrate the angles
-  bool work = true;    ///< integrate the work of every component
-};
-
 /// Counters of a run.
 struct Statistics {
   std::int64_t steps = 0, rejected = 0, evaluations = 0, jacobians = 0, events = 0, phases = 0, locations = 0;

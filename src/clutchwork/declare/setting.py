@@ -1,0 +1,149 @@
+"""How one option of a run is declared: unit, meaning, default, bounds, and what it is to the compiled core."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from numbers import Real
+from typing import Any, NamedTuple
+
+from clutchwork.base.errors import near
+from clutchwork.base.shown import shown
+from clutchwork.declare.schema import Spec
+from clutchwork.declare.speech import say
+
+# beyond these the square or the reciprocal of a number leaves double precision
+LEAST, MOST = 1e-300, 1e300
+
+
+class Fault(NamedTuple):
+    """What is wrong with a value."""
+
+    value: str  # "-1 s" as it was given
+    message: str  # "must be a finite number above 0"
+    remedy: str
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One row of the table of options."""
+
+    spec: Spec
+    default: Any
+    core: bool = False  # the compiled core knows it, by the same name
+    unset: float = 0.0  # the number that is None in the core
+
+    @property
+    def least(self) -> float:
+        """The smallest number that is allowed; a flag is 0 or 1, a word its place."""
+        if self.spec.above is not None:
+            return max(LEAST, math.nextafter(self.spec.above, math.inf))
+        return float(self.spec.at_least or 0.0)
+
+    @property
+    def most(self) -> float:
+        """The largest number that is allowed."""
+        if self.spec.flag or self.spec.choices:
+            return float(max(1, len(self.spec.choices) - 1))
+        return MOST if self.spec.at_most is None else self.spec.at_most
+
+    @property
+    def whole(self) -> bool:
+        """Whether the core takes only whole numbers."""
+        return self.spec.whole or self.spec.flag or bool(self.spec.choices)
+
+    @property
+    def shown_default(self) -> str:
+        """The default as model files and tables of options show it, empty where there is none."""
+        if self.spec.flag:
+            return "true" if self.default else "false"
+        if self.default is None:
+            return ""
+        return self.default if isinstance(self.default, str) else f"{self.default:.16g}"
+
+    @property
+    def unit(self) -> str:
+        """The unit as it stands behind a number, with a blank; that of a bare number is empty."""
+        return "" if self.spec.unit in ("", "1") else f" {self.spec.unit}"
+
+    def number(self, value: Any) -> float:
+        """A value without fault as the number of the core."""
+        if value is None:
+            return self.unset
+        return float(self.spec.choices.index(value) if self.spec.choices else value)
+
+    def fault(self, value: Any) -> Fault | None:
+        """What is wrong with a value; lists of numbers are looked at where they are used."""
+        spec = self.spec
+        if spec.what == "numbers" or (value is None and spec.optional):
+            return None
+        if spec.choices:
+            known = isinstance(value, str) and value in spec.choices
+            message = f"must be one of {', '.join(spec.choices)}{near(value, spec.choices)}"
+            return None if known else Fault(shown(value), message, "")
+        if spec.flag:
+            message = say("must be true or false", "must be True or False")
+            return None if isinstance(value, bool) else Fault(shown(value), message, f"it says {spec.doc}")
+        message = self._wrong(_as_number(value))
+        return Fault(self._shown(value), message, f"it is the {spec.doc}") if message else None
+
+    def _wrong(self, number: float | None) -> str:
+        """What a number must be, empty when it is that."""
+        spec = self.spec
+        if spec.whole and (number is None or math.isnan(number) or (math.isfinite(number) and number % 1.0)):
+            return "must be a whole number"
+        if number is None:
+            return f"must be a number in{self.unit}" if self.unit else "must be a number"
+        if not spec.whole and (not math.isfinite(number) or number <= (spec.above or 0.0)):
+            low = f"of at least {spec.at_least:g}" if spec.above is None else f"above {spec.above:g}"
+            return f"must be a finite number {low}"
+        if number < self.least:
+            return f"must be at least {self.least:g}"
+        return f"must be at most {self.most:.16g}" if number > self.most else ""
+
+    def _shown(self, value: Any) -> str:
+        number = _as_number(value)
+        return shown(value) if number is None or self.spec.whole else f"{number:g}{self.unit}"
+
+
+def setting(
+    unit: str,
+    doc: str,
+    *,
+    default: Any,
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+    choices: tuple[str, ...] = (),
+    numbers: bool = False,
+    core: bool = False,
+    unset: float = 0.0,
+) -> Any:
+    """A field of `Options`; its default says what it is: a flag, a whole number, or None for one that may be left out.
+
+    With `core` the compiled core knows it, and None as `unset`; `numbers` are a list that does not decrease.
+    """
+    spec = Spec(
+        "numbers" if numbers else "option",
+        unit,
+        doc,
+        default is None,
+        above,
+        at_least,
+        None,
+        at_most,
+        flag=isinstance(default, bool),
+        whole=type(default) is int,
+        choices=choices,
+    )
+    row = Setting(spec, default, core, unset)
+    return field(default=default, metadata={"spec": spec, "setting": row})
+
+
+def _as_number(value: object) -> float | None:
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf

@@ -1,0 +1,33 @@
+"""What a run is done with: what the call gives, before what the settings of its model say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from clutchwork.base.errors import OptionError
+from clutchwork.declare.options import Options, end_time
+from clutchwork.declare.speech import say
+
+ON_COMMAND_LINE = "give --t-end, or t_end in the [simulation] table of the model file"
+IN_PYTHON = "give the end time to the call in s, or set t_end in d.simulation, the [simulation] table of a model file"
+
+
+def merged(
+    settings: Mapping[str, Any], given: Mapping[str, Any], options: Options | None = None
+) -> tuple[float, Options]:
+    """End time [s] and options of a run.
+
+    Parameters: settings of the model, t_end among them; given, those that overrule them one by one; options, which
+    replace all settings but the end time.
+    """
+    wanted = {name: settings[name] for name in settings if options is None or name == "t_end"}
+    # a grid that is given replaces the other kind of grid
+    for grid, other in (("dt", "times"), ("times", "dt")):
+        if given.get(grid) is not None:
+            wanted.pop(other, None)
+    wanted.update(given)
+    t_end = wanted.pop("t_end", None)
+    if t_end is None:
+        raise OptionError([f"t_end is missing: {say(ON_COMMAND_LINE, IN_PYTHON)}"])
+    return end_time(t_end), (options or Options()).changed(wanted)
