@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from clutchwork.declare.docs import default_in_words
 from clutchwork.declare.options import SIMULATION
 from clutchwork.declare.setting import Setting
 
@@ -36,7 +37,7 @@ def page() -> str:
 
 def _rows() -> Iterator[str]:
     for name, row in SIMULATION.items():
-        default = f"`{row.shown_default}`" if row.shown_default else "required" if name == "t_end" else ""
+        default = "required" if name == "t_end" else default_in_words(row.default, row.spec)
         cells = (f"`{name}`", row.unit.strip(), default, _values(row), _in_c(row), row.spec.doc)
         yield f"| {' | '.join(cells)} |"
 

@@ -27,7 +27,7 @@ def check(run: cw.Trajectory) -> None:
 
 def main(folder: Path) -> None:
     """Run, tell, draw."""
-    run = cw.Driveline.load(HERE / "model.toml").simulate(1.0)
+    run = cw.Driveline.load(HERE / "model.toml").simulate()
     print(run.events)
     print(run.energy)
     run.plot(folder / "engine_clutch_vehicle.png")

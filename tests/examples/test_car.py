@@ -36,7 +36,7 @@ def launch() -> cw.Trajectory:
 
 def test_engine_clutch_vehicle_is_as_worked_out_by_hand() -> None:
     model = EXAMPLES / "engine_clutch_vehicle" / "model.toml"
-    run = cw.Driveline.load(model).simulate(1.0)
+    run = cw.Driveline.load(model).simulate()
     example("engine_clutch_vehicle").check(run)
     page = (model.parent / "README.md").read_text(encoding="utf-8")
     assert f"{run.events[-1].time:.4f} s" in page

@@ -52,13 +52,16 @@ def _unit(spec: Spec) -> str:
 
 
 def _default(item: Field[Any], spec: Spec) -> str:
-    if item.default is MISSING:
-        return "required"
-    if item.default is None:
+    return "required" if item.default is MISSING else default_in_words(item.default, spec)
+
+
+def default_in_words(default: Any, spec: Spec) -> str:
+    """A default as model files write it, or what stands in its place."""
+    if default is None:
         return "the housing" if spec.what == "port" else "none"
     if spec.flag:
-        return "true" if item.default else "false"
-    return f"{item.default:g}" if isinstance(item.default, int | float) else str(item.default)
+        return "true" if default else "false"
+    return f"{default:.12g}" if isinstance(default, int | float) else str(default)
 
 
 def parameters(cls: type) -> Iterator[tuple[str, str]]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from clutchwork.base.errors import OptionError, UseError, advised, near
 from clutchwork.declare.calls import explain
+from clutchwork.declare.docs import document
 from clutchwork.declare.layout import METHODS
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.setting import Setting, setting
@@ -135,6 +136,7 @@ OPTIONS: dict[str, Setting] = {item.name: item.metadata["setting"] for item in f
 T_END = Setting(Spec("option", "s", "end time of the run", optional=True, above=0.0), None)
 SIMULATION = {"t_end": T_END, **OPTIONS}
 
+document(Options)
 explain(Options)
 
 

@@ -53,15 +53,6 @@ class Setting:
         return self.spec.whole or self.spec.flag or bool(self.spec.choices)
 
     @property
-    def shown_default(self) -> str:
-        """The default as model files and tables of options show it, empty where there is none."""
-        if self.spec.flag:
-            return "true" if self.default else "false"
-        if self.default is None:
-            return ""
-        return self.default if isinstance(self.default, str) else f"{self.default:.16g}"
-
-    @property
     def unit(self) -> str:
         """The unit as it stands behind a number, with a blank; that of a bare number is empty."""
         return "" if self.spec.unit in ("", "1") else f" {self.spec.unit}"

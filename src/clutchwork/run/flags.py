@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from clutchwork.declare.docs import default_in_words
 from clutchwork.declare.options import SIMULATION
 from clutchwork.declare.quantity import QuantityError, in_si
 from clutchwork.declare.setting import Setting
@@ -28,9 +29,7 @@ def add_options(
             kinds = {"action": argparse.BooleanOptionalAction}
         elif row.spec.choices:
             kinds = {"choices": row.spec.choices}
-        group.add_argument(
-            f"--{name.replace('_', '-')}", help=_help(row, defaults.get(name, row.shown_default)), **kinds
-        )
+        group.add_argument(f"--{name.replace('_', '-')}", help=_help(row, defaults.get(name, "")), **kinds)
 
 
 def given_options(asked: argparse.Namespace) -> dict[str, Any]:
@@ -69,6 +68,8 @@ def _metavar(row: Setting) -> str:
 def _help(row: Setting, default: str) -> str:
     """Meaning, unit and default."""
     unit = f" [{row.spec.unit}]" if row.unit else ""
+    if not default and row.default is not None:
+        default = default_in_words(row.default, row.spec)
     words = f"{row.spec.doc}{unit}" + (f"; default: {default}" if default else "")
     # argparse fills in what follows a percent sign
     return words.replace("%", "%%")
