@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import re
 import shutil
@@ -99,13 +100,16 @@ def test_every_cause_is_explained() -> None:
     assert [cause for cause in CAUSES if cause != "start" and f"`{cause}`" not in page] == []
 
 
-def test_every_option_is_explained() -> None:
-    from dataclasses import fields
+def test_every_option_has_a_line_on_its_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    from clutchwork.declare.options import SIMULATION
 
-    from clutchwork.declare.options import Options
-
-    page = (ROOT / "docs" / "guide" / "start.md").read_text(encoding="utf-8")
-    assert [item.name for item in fields(Options) if f"`{item.name}`" not in page] == []
+    monkeypatch.syspath_prepend(ROOT / "tools")
+    lines = importlib.import_module("option_page").page().split("\n")
+    for name, row in SIMULATION.items():
+        (line,) = (line for line in lines if line.startswith(f"| `{name}` | {row.unit.strip()} |"))
+        assert row.spec.doc in line
+        assert line.count(" | ") == 5
+    assert "reference/options" in (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import pickle
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -312,10 +314,16 @@ def test_a_grid_that_is_given_replaces_that_of_the_settings() -> None:
     assert d.simulate(dt=0.5).time.tolist() == [0.0, 0.5]
     with pytest.raises(cw.OptionError, match="not both"):
         d.simulate(dt=0.5, times=[0.0])
+    assert d.simulate(0.0625).time.tolist() == [0.0]
     d.simulation["dt"] = 0.25
     (problem,) = d.check()
     assert "times" in str(problem)
     assert "not both" in str(problem)
+
+
+def test_options_are_loaded_when_they_are_first_used() -> None:
+    code = "import sys, clutchwork; assert not any('option' in name for name in sys.modules if 'clutchwork' in name)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 def test_settings_of_a_system_may_be_replaced() -> None:

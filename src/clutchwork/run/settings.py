@@ -30,4 +30,8 @@ def merged(
     t_end = wanted.pop("t_end", None)
     if t_end is None:
         raise OptionError([f"t_end is missing: {say(ON_COMMAND_LINE, IN_PYTHON)}"])
-    return end_time(t_end), (options or Options()).changed(wanted)
+    end = end_time(t_end)
+    if "t_end" in given and "times" not in given and wanted.get("times") is not None:
+        # a run that is made shorter ends before the last instants of the settings
+        wanted["times"] = [instant for instant in wanted["times"] if instant <= end]
+    return end, (options or Options()).changed(wanted)
