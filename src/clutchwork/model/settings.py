@@ -20,7 +20,9 @@ def settings_problems(settings: Mapping[str, Any]) -> Iterator[Problem]:
     for name, value in settings.items():
         row, place = SIMULATION.get(name), at.inner(str(name))
         if row is None:
-            yield place.problem("is not known here" + near(name, SIMULATION), remedy=f"known are {listed(SIMULATION)}")
+            yield place.problem(
+                "is an unknown key" + near(name, SIMULATION), remedy=f"known keys: {listed(SIMULATION)}"
+            )
         elif row.spec.what == "numbers" and value is not None:
             yield from _instants(value, row.spec, at.inner(name, row.spec.unit))
         elif fault := row.fault(value):
