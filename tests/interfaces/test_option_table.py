@@ -188,7 +188,7 @@ DOORS = (
 def test_every_option_reaches_the_run(name: str, door: Callable[..., cw.Trajectory], tmp_path: Path) -> None:
     value = sample(SIMULATION[name])
     run = door(name, value, tmp_path)
-    assert used(run, name) == value
+    assert (used(run, name), type(used(run, name))) == (value, type(value))
     assert run.t_end == (value if name == "t_end" else T_END)
     for other, row in OPTIONS.items():
         assert other == name or getattr(run.options, other) == row.default
