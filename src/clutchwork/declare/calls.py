@@ -46,7 +46,7 @@ def explain(cls: Any) -> None:
         try:
             made(self, *args, **named)
         except TypeError:
-            problems = list(_problems(made, (self, *args), named, _meanings(cls)))
+            problems = list(_problems(cls, args, named, _meanings(cls)))
             if not problems:
                 raise
             raise UseError(f"cw.{cls.__name__}({_name(args, named)})", problems) from None

@@ -12,6 +12,8 @@ from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Any, TypeVar, dataclass_transform
 
+from clutchwork.declare.frozen import freeze
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
@@ -235,33 +237,6 @@ REGISTRY: dict[Role, dict[str, type]] = {role: {} for role in Role}
 C = TypeVar("C", bound=type)
 
 
-# what a dataclass would write anew for every class: half of the time of an import
-def _values(thing: Any) -> tuple[Any, ...]:
-    return tuple(getattr(thing, item.name) for item in fields(thing))
-
-
-def _repr(thing: Any) -> str:
-    shown = ", ".join(f"{item.name}={getattr(thing, item.name)!r}" for item in fields(thing) if item.repr)
-    return f"{type(thing).__qualname__}({shown})"
-
-
-def _eq(one: Any, other: Any) -> Any:
-    return _values(one) == _values(other) if type(one) is type(other) else NotImplemented
-
-
-def _hash(thing: Any) -> int:
-    return hash(_values(thing))
-
-
-def _freeze(cls: type) -> Any:
-    """A frozen dataclass whose repr, equality and hash are shared by all declarations."""
-    own: Any = cls
-    if "__repr__" not in vars(cls):
-        own.__repr__ = _repr
-    own.__eq__, own.__hash__ = _eq, _hash
-    return dataclass(frozen=True, repr=False, eq=False)(cls)
-
-
 @dataclass_transform(
     kw_only_default=True,
     frozen_default=True,
@@ -269,7 +244,7 @@ def _freeze(cls: type) -> Any:
 )
 def family(cls: C) -> C:
     """Freeze fields that several declarations share, as a base that is itself none."""
-    frozen: Any = _freeze(cls)
+    frozen: Any = freeze(cls)
     return frozen  # type: ignore[no-any-return]
 
 
@@ -282,7 +257,7 @@ def component(role: Role, *, states: tuple[State, ...] = ()) -> Callable[[C], C]
     """Freeze a declaration as a dataclass and register it under its kind, the stem of its module."""
 
     def register(cls: C) -> C:
-        frozen: Any = _freeze(cls)
+        frozen: Any = freeze(cls)
         kind = cls.__module__.rpartition(".")[2]
         frozen.kind, frozen.role, frozen.states = kind, role, states
         REGISTRY[role][kind] = frozen

@@ -1,0 +1,62 @@
+"""What all declarations share, where a dataclass writes it anew for each class: a third of the time of an import."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, dataclass, fields
+from functools import cache
+from typing import Any, NamedTuple
+
+
+class Call(NamedTuple):
+    """How a declaration is called."""
+
+    places: tuple[str, ...]  # fields that may be positional
+    names: tuple[str, ...]  # all of them
+    defaults: dict[str, Any]
+
+
+@cache
+def _call(cls: Any) -> Call:
+    given = [item for item in fields(cls) if item.init]
+    places = tuple(item.name for item in given if not item.kw_only)
+    defaults = {item.name: item.default for item in given if item.default is not MISSING}
+    return Call(places, tuple(item.name for item in given), defaults)
+
+
+def _init(thing: Any, *args: Any, **named: Any) -> None:
+    cls: Any = type(thing)
+    call = _call(cls)
+    given = {**call.defaults, **dict(zip(call.places, args, strict=False)), **named}
+    twice = len(args) > len(call.places) or any(name in named for name in call.places[: len(args)])
+    if twice or given.keys() != {*call.names}:
+        # `explain` says what is wrong
+        raise TypeError(f"{cls.__name__}() does not take these arguments")
+    vars(thing).update((name, given[name]) for name in call.names)
+    if hasattr(thing, "__post_init__"):
+        thing.__post_init__()
+
+
+def _values(thing: Any) -> tuple[Any, ...]:
+    return tuple(getattr(thing, item.name) for item in fields(thing))
+
+
+def _repr(thing: Any) -> str:
+    shown = ", ".join(f"{item.name}={getattr(thing, item.name)!r}" for item in fields(thing) if item.repr)
+    return f"{type(thing).__qualname__}({shown})"
+
+
+def _eq(one: Any, other: Any) -> Any:
+    return _values(one) == _values(other) if type(one) is type(other) else NotImplemented
+
+
+def _hash(thing: Any) -> int:
+    return hash(_values(thing))
+
+
+def freeze(cls: type) -> Any:
+    """A frozen dataclass whose constructor, repr, equality and hash are shared by all declarations."""
+    own: Any = cls
+    if "__repr__" not in vars(cls):
+        own.__repr__ = _repr
+    own.__init__, own.__eq__, own.__hash__ = _init, _eq, _hash
+    return dataclass(frozen=True, init=False, repr=False, eq=False)(cls)
