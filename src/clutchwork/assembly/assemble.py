@@ -177,7 +177,7 @@ def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
 
 def _tolerance(contact: Any) -> float:
     """Slip below which a contact may lock; the band of a Karnopp law widens it."""
-    return max(float(contact.tolerance), float(getattr(contact.friction, "band", 0.0)))
+    return max(float(contact.tolerance), float(contact.friction.band))
 
 
 def _gears(model: Mechanism) -> Iterable[Gearing]:

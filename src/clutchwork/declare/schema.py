@@ -191,7 +191,8 @@ def signal(
     The C++ functions get them as `at.input[i]`, in order of declaration.
 
     With `instead_of` it is another way to give the signal of that name: exactly one of them is given, or
-    none where that signal has a value `otherwise`. With `presses` a constant below zero is warned of.
+    none where that signal has a value `otherwise`. With `presses` a constant below zero is warned of; it stands in
+    pictures, and so does a signal with a `gain`, the units of the parameter that multiplies it.
     """
     spec = Spec("alternative" if instead_of else "signal", unit, doc, default is None, units=units, gain=gain)
     return _field(replace(spec, instead_of=instead_of, otherwise=otherwise, presses=presses), default)
@@ -273,6 +274,18 @@ def family(cls: C) -> C:
     return frozen  # type: ignore[no-any-return]
 
 
+# what acts along one direction, and the ports that say which
+RATES = (Role.TORQUE, Role.CONTACT, Role.MOTION)
+ENDS = (["base", "follower"], ["shaft", "base"], ["shaft"])
+
+
+def _check_ports(cls: type) -> None:
+    names = [item.name for item, _ in specs(cls, "port")]
+    if names not in ENDS:
+        allowed = " or ".join(", ".join(ports) for ports in ENDS)
+        raise TypeError(f"{cls.__module__}: ports of {cls.__name__} are {', '.join(names)}; declare {allowed}")
+
+
 @dataclass_transform(
     kw_only_default=True,
     frozen_default=True,
@@ -284,6 +297,8 @@ def component(role: Role, *, states: tuple[State, ...] = ()) -> Callable[[C], C]
     def register(cls: C) -> C:
         frozen: Any = _freeze(cls)
         kind = cls.__module__.rpartition(".")[2]
+        if role in RATES:
+            _check_ports(cls)
         frozen.kind, frozen.role, frozen.states = kind, role, states
         REGISTRY[role][kind] = frozen
         return cls

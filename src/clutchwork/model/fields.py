@@ -33,10 +33,9 @@ def object_problems(thing: Any, at: At) -> Iterator[Problem]:
     yield from found
     # rules between fields only make sense once each field does; what is wrong inside a law is its own affair
     inside = tuple(f"{at.inner(item.name).quantity}." for item, _ in specs(type(thing), "law"))
-    rules = getattr(thing, "problems", None)
-    if rules is not None and all(problem.quantity.startswith(inside) for problem in found):
+    if all(problem.quantity.startswith(inside) for problem in found):
         try:
-            for name, message, remedy in rules():
+            for name, message, remedy in thing.problems():
                 yield at.inner(name).problem(message, remedy=remedy)
         except ArithmeticError:
             yield at.problem(
@@ -133,16 +132,15 @@ def law_problems(law: Law, at: At) -> Iterator[Problem]:
     yield from found or (_peak(law, at) if law.sticks else ())
 
 
-def _peak(law: Any, at: At) -> Iterator[Problem]:
+def _peak(law: Law, at: At) -> Iterator[Problem]:
     """A kinetic coefficient above the static one has no motion that follows from it."""
-    # a law over the temperature compares its tables itself
-    if not isinstance(getattr(law, "static", 0.0), Real):
-        return
+    static: Any = law.static
     kinetic = law.sliding()
-    if kinetic is None:
+    # a law over the temperature compares its tables itself
+    if static is not None and not isinstance(static, Real):
+        return
+    if static is None or kinetic is None:
         kinetic, static = coefficients(law, 0.0)
-    else:
-        static = law.static
     # equal values may differ by round-off
     if kinetic > static * (1 + 1e-12):
         message = f"is below the kinetic coefficient at vanishing slip, {kinetic:g}"

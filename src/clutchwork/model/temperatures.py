@@ -30,9 +30,8 @@ def temperature_advice(elements: Sequence[Component], thermal: Sequence[ThermalN
     for element in elements:
         at = At(path_of(element), "")
         yield from _inside(element, at)
-        law = getattr(element, "friction", None)
-        if isinstance(law, Law):
-            yield from _inside(law, at.inner("friction"))
+        if isinstance(element.friction, Law):
+            yield from _inside(element.friction, at.inner("friction"))
 
 
 def _inside(thing: Any, at: At) -> Iterator[Problem]:

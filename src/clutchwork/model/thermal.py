@@ -90,7 +90,7 @@ class Known:
         states: dict[str, tuple[str, ...]] = {node.name: ("K",) for node in parts.thermal}
         for process in parts.components:
             if role(process) is Role.PROCESS:
-                states |= {f"{process.name}.{s.name}": (s.unit,) for s in type(process).states}  # type: ignore[attr-defined]
+                states |= {f"{process.name}.{s.name}": (s.unit,) for s in type(process).states}
         acting = frozenset(c.name for c in parts.components if role(c) in (Role.TORQUE, Role.CONTACT))
         added = {id(thing): thing for thing in (*nodes, *thermal, *elements)}
         inner = dict[str, list[Any]]()
@@ -113,7 +113,7 @@ def _inside(component: Component) -> Iterator[Component | ThermalNode]:
 
 def reference_problems(component: Component, known: Known) -> Iterator[Problem]:
     """Inputs that other components give: whether those are there, and give what is wanted."""
-    law = getattr(component, "friction", None)
+    law = component.friction
     for thing, at in ((component, At(path_of(component), "")), (law, At(path_of(component), "friction"))):
         if thing is component or isinstance(thing, Law):
             for item, spec in specs(type(thing), "signal", "alternative"):
@@ -124,9 +124,9 @@ def reference_problems(component: Component, known: Known) -> Iterator[Problem]:
                     yield from _temperature(component, place)
 
 
-def _temperature(component: Any, at: At) -> Iterator[Problem]:
+def _temperature(component: Component, at: At) -> Iterator[Problem]:
     """A friction law without a temperature takes that of the thermal node of its contact."""
-    if getattr(component, "heat", None) is None and role(component) is Role.CONTACT:
+    if component.heat_path() is None and role(component) is Role.CONTACT:
         yield at.problem("is missing", remedy="give a temperature [K], or connect the contact by `heat` to a node")
 
 
