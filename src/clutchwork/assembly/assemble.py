@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,16 +17,16 @@ from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.ports import ports
 from clutchwork.declare.rational import Row, plus
 from clutchwork.declare.schema import Role, kinds
+from clutchwork.model.findings import Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
 from clutchwork.model.model import Model
-from clutchwork.model.parts import take_apart
 from clutchwork.model.pools import Pools
-from clutchwork.model.problems import model_advice
 from clutchwork.model.start import start
 from clutchwork.model.structure import Kinematics, Mechanism
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+    from fractions import Fraction
 
 
 Array = NDArray[Any]
@@ -33,15 +34,11 @@ Array = NDArray[Any]
 
 def assembled(whole: Model, independent: Sequence[str] = ()) -> dict[str, Any]:
     """The fields of the System of a model without mistakes; ModelError reports those of its structure."""
-    parts = take_apart(whole.elements, whole.thermal)
-    model = Mechanism(tuple(whole.nodes), parts.components)
-    made, problems = kinematics(model, independent)
-    if made is None:
-        raise ModelError(problems)
-    _arrange(model, made, independent)
-    speeds, motions, problems = start(model, made)
-    if problems:
-        raise ModelError(problems)
+    found = findings(whole)
+    if found.structure is None:
+        raise ModelError(found.problems)
+    parts, model = found.structure.parts, found.structure.mechanism
+    made, speeds, motions = _chosen(found.structure, independent)
     shared = Shared(parts.thermal, tuple(model.role(Role.PROCESS)))
     where = places(parts.thermal, shared.processes, [component for component, _ in model.acting])
     pools, wires, columns = Pools(), Wires(where), Columns(model, made)
@@ -75,21 +72,36 @@ def assembled(whole: Model, independent: Sequence[str] = ()) -> dict[str, Any]:
         "independent": tuple(model.nodes[n].name for n in made.independent),
         "parameters": pools.places,
         "notes": tuple(made.notes),
-        "warnings": tuple(str(advice) for advice in model_advice(whole)),
+        "warnings": tuple(map(str, found.advice)),
     }
 
 
-def _arrange(model: Mechanism, made: Kinematics, wanted: Sequence[str]) -> None:
-    """Order the independent speeds: as wanted, else so that those that act on each other are close."""
+def _chosen(found: Structure, wanted: Sequence[str]) -> tuple[Kinematics, list[Fraction], list[Any]]:
+    """The structure with the independent speeds that are wanted, else in a good order: speeds at the start, motions."""
+    model = found.mechanism
     if wanted:
-        made.independent.sort(key=lambda node: wanted.index(model.nodes[node].name))
-        return
+        made, problems = kinematics(model, wanted)
+        if made is None:
+            raise ModelError(problems)
+        order = sorted(made.independent, key=lambda node: wanted.index(model.nodes[node].name))
+        made = replace(made, independent=order)
+        speeds, motions, problems = start(model, made)
+        if problems:
+            raise ModelError(problems)
+        return made, speeds, motions
+    speed_of = dict(zip(found.kinematics.independent, found.speeds, strict=True))
+    made = replace(found.kinematics, independent=_arranged(model, found.kinematics))
+    return made, [speed_of[node] for node in made.independent], found.motions
+
+
+def _arranged(model: Mechanism, made: Kinematics) -> list[int]:
+    """The independent speeds so that those that act on each other are close."""
     touching: dict[int, set[int]] = {node: set() for node in made.independent}
     for row in (*made.speeds, *(made.over(row) for _, row in model.acting)):
         together = touching.keys() & row.keys()
         for node in together:
             touching[node] |= together - {node}
-    made.independent[:] = apart(made.independent, lambda node: sorted(touching[node]))
+    return apart(made.independent, lambda node: sorted(touching[node]))
 
 
 class Columns:

@@ -10,10 +10,11 @@ from __future__ import annotations
 import hashlib
 from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from enum import Enum
-from typing import TYPE_CHECKING, Any, TypeVar, dataclass_transform
+from functools import cache
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, dataclass_transform
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
 
 class Role(Enum):
@@ -306,20 +307,35 @@ def component(role: Role, *, states: tuple[State, ...] = ()) -> Callable[[C], C]
     return register
 
 
-def specs(cls: type, *what: str) -> Iterator[tuple[Field[Any], Spec]]:
+Declared: TypeAlias = "tuple[tuple[Field[Any], Spec], ...]"
+Inputs: TypeAlias = "tuple[tuple[tuple[str, ...], Spec], ...]"
+
+
+def specs(cls: type, *what: str) -> Declared:
     """The declared fields of a component, in order; optionally only some sorts."""
+    return _specs(cls, what)
+
+
+@cache
+def _specs(cls: Any, what: tuple[str, ...]) -> Declared:
     found = [(item, item.metadata["spec"]) for item in fields(cls) if "spec" in item.metadata]
     # sorting keeps the order of equals
-    for item, spec in sorted(found, key=lambda pair: pair[1].last):
-        if not what or spec.what in what:
-            yield item, spec
+    ordered = sorted(found, key=lambda pair: pair[1].last)
+    return tuple((item, spec) for item, spec in ordered if not what or spec.what in what)
 
 
-def inputs(cls: type) -> Iterator[tuple[list[str], Spec]]:
+def inputs(cls: type) -> Inputs:
     """The inputs of a component in order: the names under which each can be given, and its spec."""
+    return _inputs(cls)
+
+
+@cache
+def _inputs(cls: Any) -> Inputs:
     others = [(item.name, spec.instead_of) for item, spec in specs(cls, "alternative")]
-    for item, spec in specs(cls, "signal"):
-        yield [item.name, *(name for name, stands_for in others if stands_for == item.name)], spec
+    return tuple(
+        ((item.name, *(name for name, stands_for in others if stands_for == item.name)), spec)
+        for item, spec in specs(cls, "signal")
+    )
 
 
 def kinds(role: Role) -> list[str]:

@@ -42,8 +42,8 @@ from clutchwork.declare.speech import words_of_files
 from clutchwork.files.lines import Lines
 from clutchwork.files.reader import FORMAT, Reader
 from clutchwork.files.writer import Writer, toml
+from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
-from clutchwork.model.problems import model_problems
 from clutchwork.model.thermal import node_kind
 
 # more belongs into CSV files
@@ -125,7 +125,7 @@ def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines
     reader = Reader(str(folder))
     with tolerable(source), words_of_files():
         model = reader.model(data)
-        problems = reader.problems + model_problems(model, reader.incomplete)
+        problems = reader.problems + findings(model, reader.incomplete).problems
     if problems:
         placed = [lines.placed(problem, data) for problem in problems] if lines else problems
         raise ModelError(placed, source or model.name)

@@ -18,3 +18,5 @@ class Model:
     elements: list[Component] = field(default_factory=list)
     settings: dict[str, Any] = field(default_factory=dict)  # as in [simulation] of a model file: t_end, dt, rtol ...
     from_file: bool = False  # messages use the words of model files
+    # what the checks found, and of which content; `model.findings` alone reads it
+    kept: Any = field(default=None, init=False, repr=False, compare=False)
