@@ -44,8 +44,9 @@ def assembled(whole: Model, independent: Sequence[str] = ()) -> dict[str, Any]:
     pools, wires, columns = Pools(), Wires(where), Columns(model, made)
     wires.surround(parts.thermal)
     arrays = _inertia(model, made, columns)
-    arrays |= _rates(model, made, columns, Role.TORQUE, "element")
-    arrays |= _rates(model, made, columns, Role.CONTACT, "contact")
+    rates = [made.over(row) for _, row in model.acting] if independent else found.structure.rates
+    arrays |= _rates(model, rates, columns, Role.TORQUE, "element")
+    arrays |= _rates(model, rates, columns, Role.CONTACT, "contact")
     states = list[float]()
     arrays |= _elements(model, pools, wires, states)
     arrays |= _contacts(model, pools, wires, states)
@@ -90,14 +91,14 @@ def _chosen(found: Structure, wanted: Sequence[str]) -> tuple[Kinematics, list[F
             raise ModelError(problems)
         return made, speeds, motions
     speed_of = dict(zip(found.kinematics.independent, found.speeds, strict=True))
-    made = replace(found.kinematics, independent=_arranged(model, found.kinematics))
+    made = replace(found.kinematics, independent=_arranged(found.rates, found.kinematics))
     return made, [speed_of[node] for node in made.independent], found.motions
 
 
-def _arranged(model: Mechanism, made: Kinematics) -> list[int]:
+def _arranged(rates: Sequence[Row], made: Kinematics) -> list[int]:
     """The independent speeds so that those that act on each other are close."""
     touching: dict[int, set[int]] = {node: set() for node in made.independent}
-    for row in (*made.speeds, *(made.over(row) for _, row in model.acting)):
+    for row in (*made.speeds, *rates):
         together = touching.keys() & row.keys()
         for node in together:
             touching[node] |= together - {node}
@@ -145,8 +146,9 @@ def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, 
     }
 
 
-def _rates(model: Mechanism, made: Kinematics, columns: Columns, role: Role, prefix: str) -> dict[str, Any]:
-    rates, prescribed = columns.split([made.over(row) for c, row in model.acting if c.role is role])
+def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role, prefix: str) -> dict[str, Any]:
+    own = [row for row, (component, _) in zip(found, model.acting, strict=True) if component.role is role]
+    rates, prescribed = columns.split(own)
     return {
         f"{prefix}_rate": rates,
         f"{prefix}_rate_prescribed": prescribed,

@@ -45,6 +45,7 @@ from clutchwork.files.writer import Writer, toml
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
 from clutchwork.model.thermal import node_kind
+from clutchwork.signals.bases.sheets import one_reading
 
 # more belongs into CSV files
 MOST_BYTES = 10_000_000
@@ -123,7 +124,7 @@ def _no_constant(name: str) -> float:
 def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines | None = None) -> Model:
     """A model from the content of a model file; CSV paths are relative to the folder."""
     reader = Reader(str(folder))
-    with tolerable(source), words_of_files():
+    with tolerable(source), words_of_files(), one_reading():
         model = reader.model(data)
         problems = reader.problems + findings(model, reader.incomplete).problems
     if problems:

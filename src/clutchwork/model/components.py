@@ -96,12 +96,12 @@ def _law_advice(component: Component) -> Iterator[Problem]:
 
 def connection_problems(component: Component, nodes: Sequence[Node]) -> Iterator[Problem]:
     """Ports that are on foreign nodes, on one and the same node, or of two kinds of motion."""
-    at, joined = At(path_of(component), ""), ports(component)
+    joined = ports(component)
     if not joined or not all(isinstance(node, Node) for node in joined.values()):
         return
-    known = {id(node) for node in nodes}
+    at = At(path_of(component), "")
     for name, node in joined.items():
-        if not node.fixed and id(node) not in known:
+        if not node.fixed and not any(node is other for other in nodes):
             found = near(node.name, [n.name for n in nodes if n.name != node.name])
             yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
     moving = {name: node for name, node in joined.items() if not node.fixed}

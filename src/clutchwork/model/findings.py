@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, is_dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.declare.speech import of_files
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
     from clutchwork.base.errors import Problem
     from clutchwork.declare.node import Component, Signal
+    from clutchwork.declare.rational import Row
     from clutchwork.model.model import Model
 
 
@@ -30,6 +32,11 @@ class Structure:
     kinematics: Kinematics
     speeds: list[Fraction]  # of the independent nodes at the start
     motions: list[tuple[Component, Signal]]  # prescribed speeds
+
+    @cached_property
+    def rates(self) -> list[Row]:
+        """Rates of what acts over the independent speeds."""
+        return [self.kinematics.over(direction) for _, direction in self.mechanism.acting]
 
 
 class Findings(NamedTuple):
@@ -64,6 +71,12 @@ def findings(model: Model, incomplete: Sequence[str] = ()) -> Findings:
         kept = Kept(_find(model, incomplete), things, more, _changeable(things))
         model.kept = None if incomplete else kept
     return kept.findings
+
+
+def may_change(model: Model) -> bool:
+    """Whether a model that was looked at holds lists or arrays, which its owner may change."""
+    kept: Kept | None = model.kept
+    return kept is None or bool(kept.changeable)
 
 
 def _identical(these: Sequence[Any], others: Sequence[Any]) -> bool:

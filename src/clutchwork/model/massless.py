@@ -63,10 +63,12 @@ def _needs_inertia(component: Any) -> bool:
 
 def undamped(model: Mechanism, made: Kinematics) -> dict[int, Row]:
     """Motions of the speeds without inertia that move no damper, each by the speed that is 1 in it."""
+    if not made.massless:
+        return {}
     massless = sorted(made.massless)
     rates = (made.over(direction) for component, direction in model.acting if _damps(component))
     dampers = ({speed: rate[speed] for speed in massless if speed in rate} for rate in rates)
-    solved = eliminate(dampers, massless).solved
+    solved = eliminate(dampers, massless, traced=False).solved
     motions: dict[int, Row] = {}
     for speed in (speed for speed in massless if speed not in solved):
         motions[speed] = {speed: ONE, **{other: -row[speed] for other, row in solved.items() if speed in row}}

@@ -11,7 +11,7 @@ from clutchwork.declare.schema import Spec
 from clutchwork.declare.speech import path_of, say
 from clutchwork.model.components import component_advice, component_problems, connection_problems
 from clutchwork.model.model import Model
-from clutchwork.model.numbers import At, number_problems
+from clutchwork.model.numbers import At, is_right, number_problems
 from clutchwork.model.parts import Parts, take_apart
 from clutchwork.model.temperatures import temperature_advice
 from clutchwork.model.thermal import Known, Within, node_kind, port_problems, reference_problems, thermal_problems
@@ -86,7 +86,7 @@ def node_problems(node: Node) -> list[Problem]:
     values = (node.inertia, node.speed, node.angle)
     problems: list[Problem] = []
     for (name, spec), value in zip(NODE_FIELDS[node.domain].items(), values, strict=True):
-        if not (value is None and spec.optional):
+        if not (is_right(value, spec) or (value is None and spec.optional)):
             problems += number_problems(value, spec, At(path, name, spec.unit))
     return problems
 

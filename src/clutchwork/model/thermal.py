@@ -9,7 +9,7 @@ from typing import Any
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import listed, shown
 from clutchwork.declare import units
-from clutchwork.declare.node import Component, Domain, HeatFlow, Law, Node, Rate, ThermalNode, is_reference
+from clutchwork.declare.node import Component, Domain, HeatFlow, Node, Rate, ThermalNode, is_reference
 from clutchwork.declare.ports import thermal_ports
 from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Role, Spec, specs
@@ -59,9 +59,10 @@ class Within:
 
 def port_problems(component: Component, thermal: Sequence[ThermalNode], within: Within) -> Iterator[Problem]:
     """Thermal ports on foreign nodes, or both on one and the same."""
-    at, joined = At(path_of(component), ""), thermal_ports(component)
-    if not all(isinstance(node, ThermalNode) for node in joined.values()):
+    joined = thermal_ports(component)
+    if not joined or not all(isinstance(node, ThermalNode) for node in joined.values()):
         return
+    at = At(path_of(component), "")
     own = {id(other) for other in thermal}
     for name, node in joined.items():
         foreign = node.name in {other.name for other in thermal} and id(node) not in own
@@ -114,14 +115,14 @@ def _inside(component: Component) -> Iterator[Component | ThermalNode]:
 def reference_problems(component: Component, known: Known) -> Iterator[Problem]:
     """Inputs that other components give: whether those are there, and give what is wanted."""
     law = component.friction
-    for thing, at in ((component, At(path_of(component), "")), (law, At(path_of(component), "friction"))):
-        if thing is component or isinstance(thing, Law):
-            for item, spec in specs(type(thing), "signal", "alternative"):
-                value, place = getattr(thing, item.name), at.inner(item.name, spec.unit)
-                if is_reference(value):
-                    yield from _reference(value, spec, place, component, known)
-                elif value is None and spec.unit == "K" and isinstance(thing, Law):
-                    yield from _temperature(component, place)
+    for thing, quantity in ((component, ""), (law, "friction")):
+        for item, spec in specs(type(thing), "signal", "alternative") if thing is not None else ():
+            value = getattr(thing, item.name)
+            if is_reference(value):
+                place = At(path_of(component), quantity).inner(item.name, spec.unit)
+                yield from _reference(value, spec, place, component, known)
+            elif value is None and spec.unit == "K" and thing is law:
+                yield from _temperature(component, At(path_of(component), quantity).inner(item.name, spec.unit))
 
 
 def _temperature(component: Component, at: At) -> Iterator[Problem]:
