@@ -123,7 +123,8 @@ def _matrix(rows: Sequence[Row], places: Mapping[int, int]) -> Array:
     for number, row in enumerate(rows):
         for column, value in row.items():
             if column in places:
-                made[number, places[column]] = float(value)
+                # the quotient of two whole numbers is rounded once
+                made[number, places[column]] = value.numerator / value.denominator
     return made
 
 

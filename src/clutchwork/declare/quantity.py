@@ -107,16 +107,14 @@ def numbers_in_si(value: Any, spec: Spec, unit: str) -> Any:
         value = value["values"]
     if not isinstance(value, list):
         return value
-    return tuple(
-        tuple(_times(x, factor) for x in row) if isinstance(row, list) else _times(row, factor) for row in value
-    )
+    return [[_times(x, factor) for x in row] if isinstance(row, list) else _times(row, factor) for row in value]
 
 
 def _scaled(value: Any, x: float, y: float) -> Any:
     """Pairs times factors; what is not a list of pairs of numbers is returned for the checks that follow."""
     if not isinstance(value, list) or not all(isinstance(point, list) and len(point) == 2 for point in value):
         return value
-    return tuple((_times(a, x), _times(b, y)) for a, b in value)
+    return [(_times(a, x), _times(b, y)) for a, b in value]
 
 
 def _times(value: Any, factor: float) -> Any:

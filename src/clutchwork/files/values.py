@@ -50,7 +50,8 @@ class Values:
             if key in entry
         }
         self.problems += value_problems(cls, values, at)
-        return values
+        # lists could be changed by their owner, and the reader has none
+        return {key: _in_tuples(value) if type(value) is list else value for key, value in values.items()}
 
     def _value(self, value: Any, spec: Spec, owner: At, key: str) -> Any:
         if type(value) is float and spec.what == "param" and spec.unit != "*":
@@ -145,6 +146,10 @@ class Values:
                 fault = f"cannot be given: the head of the column has the unit [{unit}]"
                 return self._report(at.inner("unit"), fault, shown(value["unit"]), "remove unit")
         return BROKEN if factor is BROKEN else signal
+
+
+def _in_tuples(value: Any) -> Any:
+    return tuple(map(_in_tuples, value)) if isinstance(value, list) else value
 
 
 def _place(at: At, key: str, spec: Spec) -> At:

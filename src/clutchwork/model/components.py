@@ -99,12 +99,12 @@ def connection_problems(component: Component, nodes: Sequence[Node]) -> Iterator
     joined = ports(component)
     if not joined or not all(isinstance(node, Node) for node in joined.values()):
         return
+    moving = {name: node for name, node in joined.items() if not node.fixed}
     at = At(path_of(component), "")
-    for name, node in joined.items():
-        if not node.fixed and not any(node is other for other in nodes):
+    for name, node in moving.items():
+        if all(node is not other for other in nodes):
             found = near(node.name, [n.name for n in nodes if n.name != node.name])
             yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
-    moving = {name: node for name, node in joined.items() if not node.fixed}
     if not moving:
         yield at.problem("is attached to the housing alone", remedy="attach a port to a shaft")
     elif len(joined) == 2 and len({id(node) for node in joined.values()}) == 1:

@@ -31,7 +31,7 @@ def object_problems(thing: Any, at: At) -> Iterator[Problem]:
     """All mistakes of a declared object: an element, a law or a signal."""
     found = [] if is_sound(thing) else list(value_problems(type(thing), vars(thing), at))
     yield from found
-    if not found:
+    if not found and not is_sound(thing):
         mark_sound(thing)
     # rules between fields only make sense once each field does; what is wrong inside a law is its own affair
     inside = tuple(f"{at.inner(item.name).quantity}." for item, _ in specs(type(thing), "law"))
