@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,16 +17,16 @@ from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.ports import ports
 from clutchwork.declare.rational import Row, plus
 from clutchwork.declare.schema import Role, kinds
+from clutchwork.model.findings import Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
 from clutchwork.model.model import Model
-from clutchwork.model.parts import take_apart
 from clutchwork.model.pools import Pools
-from clutchwork.model.problems import model_advice
 from clutchwork.model.start import start
 from clutchwork.model.structure import Kinematics, Mechanism
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+    from fractions import Fraction
 
 
 Array = NDArray[Any]
@@ -33,22 +34,19 @@ Array = NDArray[Any]
 
 def assembled(whole: Model, independent: Sequence[str] = ()) -> dict[str, Any]:
     """The fields of the System of a model without mistakes; ModelError reports those of its structure."""
-    parts = take_apart(whole.elements, whole.thermal)
-    model = Mechanism(tuple(whole.nodes), parts.components)
-    made, problems = kinematics(model, independent)
-    if made is None:
-        raise ModelError(problems)
-    _arrange(model, made, independent)
-    speeds, motions, problems = start(model, made)
-    if problems:
-        raise ModelError(problems)
+    found = findings(whole)
+    if found.structure is None:
+        raise ModelError(found.problems)
+    parts, model = found.structure.parts, found.structure.mechanism
+    made, speeds, motions = _chosen(found.structure, independent)
     shared = Shared(parts.thermal, tuple(model.role(Role.PROCESS)))
     where = places(parts.thermal, shared.processes, [component for component, _ in model.acting])
     pools, wires, columns = Pools(), Wires(where), Columns(model, made)
     wires.surround(parts.thermal)
     arrays = _inertia(model, made, columns)
-    arrays |= _rates(model, made, columns, Role.TORQUE, "element")
-    arrays |= _rates(model, made, columns, Role.CONTACT, "contact")
+    rates = [made.over(row) for _, row in model.acting] if independent else found.structure.rates
+    arrays |= _rates(model, rates, columns, Role.TORQUE, "element")
+    arrays |= _rates(model, rates, columns, Role.CONTACT, "contact")
     states = list[float]()
     arrays |= _elements(model, pools, wires, states)
     arrays |= _contacts(model, pools, wires, states)
@@ -75,21 +73,36 @@ def assembled(whole: Model, independent: Sequence[str] = ()) -> dict[str, Any]:
         "independent": tuple(model.nodes[n].name for n in made.independent),
         "parameters": pools.places,
         "notes": tuple(made.notes),
-        "warnings": tuple(str(advice) for advice in model_advice(whole)),
+        "warnings": tuple(map(str, found.advice)),
     }
 
 
-def _arrange(model: Mechanism, made: Kinematics, wanted: Sequence[str]) -> None:
-    """Order the independent speeds: as wanted, else so that those that act on each other are close."""
+def _chosen(found: Structure, wanted: Sequence[str]) -> tuple[Kinematics, list[Fraction], list[Any]]:
+    """The structure with the independent speeds that are wanted, else in a good order: speeds at the start, motions."""
+    model = found.mechanism
     if wanted:
-        made.independent.sort(key=lambda node: wanted.index(model.nodes[node].name))
-        return
+        made, problems = kinematics(model, wanted)
+        if made is None:
+            raise ModelError(problems)
+        order = sorted(made.independent, key=lambda node: wanted.index(model.nodes[node].name))
+        made = replace(made, independent=order)
+        speeds, motions, problems = start(model, made)
+        if problems:
+            raise ModelError(problems)
+        return made, speeds, motions
+    speed_of = dict(zip(found.kinematics.independent, found.speeds, strict=True))
+    made = replace(found.kinematics, independent=_arranged(found.rates, found.kinematics))
+    return made, [speed_of[node] for node in made.independent], found.motions
+
+
+def _arranged(rates: Sequence[Row], made: Kinematics) -> list[int]:
+    """The independent speeds so that those that act on each other are close."""
     touching: dict[int, set[int]] = {node: set() for node in made.independent}
-    for row in (*made.speeds, *(made.over(row) for _, row in model.acting)):
+    for row in (*made.speeds, *rates):
         together = touching.keys() & row.keys()
         for node in together:
             touching[node] |= together - {node}
-    made.independent[:] = apart(made.independent, lambda node: sorted(touching[node]))
+    return apart(made.independent, lambda node: sorted(touching[node]))
 
 
 class Columns:
@@ -110,7 +123,8 @@ def _matrix(rows: Sequence[Row], places: Mapping[int, int]) -> Array:
     for number, row in enumerate(rows):
         for column, value in row.items():
             if column in places:
-                made[number, places[column]] = float(value)
+                # the quotient of two whole numbers is rounded once
+                made[number, places[column]] = value.numerator / value.denominator
     return made
 
 
@@ -133,8 +147,9 @@ def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, 
     }
 
 
-def _rates(model: Mechanism, made: Kinematics, columns: Columns, role: Role, prefix: str) -> dict[str, Any]:
-    rates, prescribed = columns.split([made.over(row) for c, row in model.acting if c.role is role])
+def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role, prefix: str) -> dict[str, Any]:
+    own = [row for row, (component, _) in zip(found, model.acting, strict=True) if component.role is role]
+    rates, prescribed = columns.split(own)
     return {
         f"{prefix}_rate": rates,
         f"{prefix}_rate_prescribed": prescribed,
@@ -177,7 +192,7 @@ def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
 
 def _tolerance(contact: Any) -> float:
     """Slip below which a contact may lock; the band of a Karnopp law widens it."""
-    return max(float(contact.tolerance), float(getattr(contact.friction, "band", 0.0)))
+    return max(float(contact.tolerance), float(contact.friction.band))
 
 
 def _gears(model: Mechanism) -> Iterable[Gearing]:

@@ -63,7 +63,7 @@ class Wires:
             name = next((name for name in names if getattr(thing, name) is not None), names[0])
             value = getattr(thing, name)
             if value is None and spec.unit == "K" and thing is not component:
-                value = getattr(component, "heat", None)
+                value = _warming(component)
             unit = _unit(component, type(thing).__dataclass_fields__[name].metadata["spec"])
             if is_reference(value):
                 self.refs.append(self._reference(value))
@@ -107,6 +107,12 @@ class Wires:
             "segment_time": flat[:, 0],
             "segment_coef": flat[:, 1:],
         }
+
+
+def _warming(component: Component) -> ThermalNode | None:
+    """Thermal node of an element, whose temperature its friction law has."""
+    path = component.heat_path()
+    return path.node if path else None
 
 
 def _signal(value: Any) -> Signal:

@@ -72,15 +72,9 @@ def flow_arrays(model: Mechanism, pools: Pools, wires: Wires) -> dict[str, Any]:
 
 def heat_arrays(model: Mechanism, where: Places) -> dict[str, Any]:
     """Paths of heat from elements and contacts to thermal nodes."""
-    warm = [(number, component) for number, (component, _) in enumerate(model.acting) if _node_of_heat(component)]
+    paths = [(number, path) for number, (component, _) in enumerate(model.acting) if (path := component.heat_path())]
     return {
-        "heat_direction": [number for number, _ in warm],
-        "heat_to": [where.shared[component.heat.name] for _, component in warm],
-        "heat_share": [float(component.heat_share) for _, component in warm],
+        "heat_direction": [number for number, _ in paths],
+        "heat_to": [where.shared[path.node.name] for _, path in paths],
+        "heat_share": [path.share for _, path in paths],
     }
-
-
-def _node_of_heat(component: Any) -> ThermalNode | None:
-    """Thermal node that takes the heat of an element."""
-    node: ThermalNode | None = getattr(component, "heat", None)
-    return node

@@ -23,6 +23,7 @@ from clutchwork.declare.layout import COUNTS, FIELDS, layout_text
 from clutchwork.declare.node import Component, Node, ThermalNode
 from clutchwork.declare.schema import schema_hash
 from clutchwork.files.model_file import from_dict, to_dict
+from clutchwork.model.findings import may_change
 from clutchwork.model.model import Model
 from clutchwork.model.settings import plain_settings
 
@@ -58,8 +59,8 @@ class System:
     parameters: Mapping[str, int] = field(default_factory=dict)  # "c1.gain" -> place in params
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()  # what the driveline was warned of when it was assembled
-    model: Mapping[str, Any] = field(default_factory=dict)  # the driveline as in a model file
     settings: Mapping[str, Any] = field(default_factory=dict)  # of its runs, as in [simulation] of a model file
+    source: Model | None = field(default=None, repr=False)  # the driveline, as it was when it was assembled
 
     def __getattr__(self, name: str) -> Array:
         try:
@@ -85,6 +86,14 @@ class System:
                     sizes[size] = max(sizes[size], length)
         return sizes
 
+    @cached_property
+    def model(self) -> Mapping[str, Any]:
+        """The driveline as in a model file; empty where there is none, or it holds Python functions."""
+        try:
+            return {} if self.source is None else to_dict(self.source, embed=True)
+        except ModelError:
+            return {}
+
     @property
     def dependent(self) -> tuple[tuple[str, ...], ...]:
         """Sets of contacts that depend on each other when locked together, so that their shares are a convention."""
@@ -93,8 +102,11 @@ class System:
     @classmethod
     def of(cls, model: Model, independent: Sequence[str] = ()) -> System:
         """The System of a model without mistakes; `independent` names the shafts with the independent speeds."""
-        made = assembled(model, independent)
-        return cls(**made, model=_source(model), settings=plain_settings(model.settings))
+        made = cls(**assembled(model, independent), settings=plain_settings(model.settings), source=model.copy())
+        if may_change(model):
+            # written now, before its owner changes a list inside
+            _ = made.model
+        return made
 
     def to_bytes(self) -> bytes:
         """The System as the compiled core reads it: little endian, every array aligned to 8 bytes."""
@@ -151,11 +163,3 @@ class System:
         if any(plain.arrays[name].shape != array.shape for name, array in named.arrays.items()):
             raise SystemFormatError(f"{path}: its arrays do not fit its model; write the file with System.save")
         return replace(named, arrays=plain.arrays)
-
-
-def _source(model: Model) -> Mapping[str, Any]:
-    """The model as plain data; empty when it holds Python functions."""
-    try:
-        return to_dict(model, embed=True)
-    except ModelError:
-        return {}

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.node import Component, Domain, Node
-from clutchwork.declare.ports import ports
+from clutchwork.declare.ports import ends, ports
 from clutchwork.declare.schema import State
 from clutchwork.model.parts import Sensor
 
@@ -134,22 +134,19 @@ def row_columns(sizes: Mapping[str, int]) -> dict[str, slice]:
 
 def _branch(component: Component, places: Mapping[int, int]) -> Branch:
     """Direction follower - base or shaft - base, over the nodes and the housing."""
-    joined = ports(component)
-    moving, base = joined.get("follower") or joined["shaft"], joined.get("base")
-    ends = [(moving, 1.0)] + ([(base, -1.0)] if base is not None else [(None, -1.0)])
+    moving, base = ends(component)
     direction: dict[int, float] = {}
-    for node, factor in ends:
-        index = HOUSING if node is None else places.get(id(node), HOUSING)
+    for node, factor in ((moving, 1.0), (base, -1.0)):
+        index = places.get(id(node), HOUSING)
         direction[index] = direction.get(index, 0.0) + factor
-    known = next((node for node, _ in ends if node is not None and not node.fixed), moving)
-    return Branch(component.name, component, direction, known.domain)
+    return Branch(component.name, component, direction, base.domain if moving.fixed else moving.domain)
 
 
 def _with_states(branches: list[Branch]) -> list[Branch]:
     """The same with the names and places of the states that they, or their friction laws, own."""
     made, first = list[Branch](), 0
     for branch in branches:
-        law = getattr(branch.component, "friction", None)
+        law = branch.component.friction
         own = tuple(branch.component.states if law is None else law.own_states())
         states = tuple((state.name, state.unit, first + k) for k, state in enumerate(own))
         made.append(replace(branch, states=states))

@@ -37,7 +37,13 @@ def _init(thing: Any, *args: Any, **named: Any) -> None:
 
 
 def _values(thing: Any) -> tuple[Any, ...]:
-    return tuple(getattr(thing, item.name) for item in fields(thing))
+    cls: Any = type(thing)
+    return tuple([getattr(thing, name) for name in _names(cls)])
+
+
+@cache
+def _names(cls: Any) -> tuple[str, ...]:
+    return tuple(item.name for item in fields(cls))
 
 
 def _repr(thing: Any) -> str:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from enum import Enum
+from enum import Enum, Flag, auto
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias, cast
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from clutchwork.declare.schema import State
+    from clutchwork.declare.schema import Role, State
+
+# what is wrong, as (quantity, what is so, remedy)
+Found: TypeAlias = "list[tuple[str, str, str]]"
 
 
 class Domain(Enum):
@@ -65,11 +68,26 @@ class ThermalNode:
     temperature: SignalLike = 300.0
 
 
+class Work(Flag):
+    """What becomes of the work of an element; several parts are joined by `|`."""
+
+    SOURCE = auto()  # it comes from outside of the driveline, or goes there: drives and loads
+    STORE = auto()  # the element stores it and gives it back, as much as `stored` says
+    LOSS = auto()  # it becomes heat
+
+
 class Passive(NamedTuple):
     """Torque `-(stiffness twist + damping rate)` on the follower, in N m/rad and N m s/rad, or N/m and N s/m."""
 
     stiffness: float
     damping: float
+
+
+class HeatPath(NamedTuple):
+    """The thermal node that takes the heat of an element, and the share of it that gets there."""
+
+    node: ThermalNode
+    share: float
 
 
 class Listed(type):
@@ -106,10 +124,33 @@ class Element(Declared):
 
 @dataclass(frozen=True)
 class Component(Element):
-    """An element as its authors see it: what it is to the engine, by class variables and methods."""
+    """An element as its authors see it: what it is to the engine, by class variables and methods.
+
+    Two fields have a meaning of their own wherever an element has them: `friction`, the law of a contact, and `locked`,
+    whether it starts so.
+    """
+
+    # set by @component
+    kind: ClassVar[str]
+    role: ClassVar[Role]
+    states: ClassVar[tuple[State, ...]] = ()
 
     one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
-    lossy: ClassVar[bool] = False  # a torque element whose work is heat, what it stores apart
+    work: ClassVar[Work] = Work.SOURCE  # of a torque element; the work of a contact is always heat
+    elastic: ClassVar[bool] = False  # joins its ends as a shaft does: counts as rigid in ratios of speeds
+    jumps: ClassVar[bool] = False  # a torque element whose torque jumps: its shafts need inertia, as at a contact
+
+    # what an element has unless it declares a field of that name
+    friction = cast("Law | None", None)
+    locked = False
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        return []
+
+    def law_problems(self) -> Found:
+        """What it cannot do with its friction law, as `problems`; asked once both make sense."""
+        return []
 
     def parts(self) -> Iterable[Component | ThermalNode]:
         """What it is made of, named `{self.name}.{part}`; nothing: it is one piece.
@@ -124,6 +165,14 @@ class Component(Element):
         named = {part.name: part for part in self.parts()}
         return named[f"{self.name}.{name}"]
 
+    def sums(self) -> tuple[str, ...]:
+        """Names of parts, within it, whose torque, power, work and heat count as those of its own name."""
+        return ()
+
+    def initial_states(self) -> tuple[float, ...]:
+        """Its states at the start, each in its unit."""
+        return ()
+
     def state_scales(self) -> tuple[float, ...]:
         """Of a process: what one unit of each of its states in the solver is worth, 1 where nothing is said.
 
@@ -134,14 +183,24 @@ class Component(Element):
     def passive(self) -> Passive | None:
         """Stiffness and damping of an element whose torque is nothing else; None: its torque is another.
 
-        The damping of such elements determines the speed of a shaft without inertia, and springs alone keep their
-        balance there. An element that is none never carries such a shaft.
+        With a stiffness its first state is the torque of that spring, stiffness times twist. The damping of such
+        elements determines the speed of a shaft without inertia, and springs alone keep their balance there, in
+        series. An element that is none never carries such a shaft.
         """
         return None
 
-    def sums(self) -> tuple[str, ...]:
-        """Names of parts, within it, whose torque, power, work and heat count as those of its own name."""
-        return ()
+    def stored(self, states: Sequence[float], torque: float) -> float:  # noqa: ARG002, most need the states alone
+        """Energy [J] that it stores, by its states and its torque; where it is `passive` that of its spring."""
+        passive = self.passive()
+        return 0.5 * states[0] * states[0] / passive.stiffness if passive and passive.stiffness else 0.0
+
+    def heat_path(self) -> HeatPath | None:
+        """Where its heat goes; None: nowhere that is followed."""
+        return None
+
+    def fault_warning(self) -> str:
+        """What to warn of when a fault of it is triggered, such as "cannot transmit"; empty: nothing."""
+        return ""
 
 
 @dataclass(frozen=True)
@@ -149,17 +208,33 @@ class Law(Declared):
     """A friction law; it has no name of its own.
 
     A law that sticks is set-valued: it locks exactly. One that does not is compliant: its torque is a function of
-    slip and of its own states, and it never locks.
+    slip and of its own states, and it never locks. Some fields have a meaning of their own wherever a law has them:
+    `static` and `kinetic`, the coefficients at rest and while it slips, numbers or tables; `band`, the slip [rad/s] up
+    to which it sticks, which widens the tolerance of its contact; `extrapolation`, what tables do beyond their ends.
     """
 
-    sticks: ClassVar[bool] = True
+    # set by @component
+    kind: ClassVar[str]
+    role: ClassVar[Role]
     states: ClassVar[tuple[State, ...]] = ()
+
+    sticks: ClassVar[bool] = True
+
+    # what a law has unless it declares a field of that name
+    static = cast("Coefficients | None", None)
+    kinetic = cast("Coefficients | None", None)
+    band = 0.0
+    extrapolation = "nearest"
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        return []
 
     def own_states(self) -> tuple[State, ...]:
         """The states in use, the first ones of `states`."""
         return self.states
 
-    def advice(self) -> list[tuple[str, str, str]]:
+    def advice(self) -> Found:
         """Properties that are allowed and rarely wanted, as (quantity, what is so, remedy); each becomes a warning."""
         return []
 
@@ -195,9 +270,24 @@ class Segment(NamedTuple):
         return tuple(wave for wave in (self[5:9], self[9:13]) if wave[0] != 0.0)
 
 
+class Sampling(NamedTuple):
+    """A Python function of time and readings that sets a signal every period [s]."""
+
+    period: float
+    function: Callable[[float, Mapping[str, float]], float]
+
+
 @dataclass(frozen=True)
 class Signal(Declared):
     """A value over time in the unit of the quantity that it drives."""
+
+    # set by @component
+    kind: ClassVar[str]
+    role: ClassVar[Role]
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        return []
 
     def segments(self) -> tuple[Segment, ...]:
         """Pieces in order of their start.
@@ -207,13 +297,17 @@ class Signal(Declared):
         """
         raise NotImplementedError
 
-    def unit_problems(self, units: tuple[str, ...]) -> list[tuple[str, str, str]]:  # noqa: ARG002, most need none
+    def unit_problems(self, units: tuple[str, ...]) -> Found:  # noqa: ARG002, most need none
         """What does not fit the units of the driven quantity, where the values say their own, as `problems` does."""
         return []
 
     def repeats(self) -> float:
         """Period [s] with which the pieces repeat from the start of the first one; 0: never."""
         return 0.0
+
+    def sampling(self) -> Sampling | None:
+        """The controller that sets it in a run; None: its pieces say all."""
+        return None
 
 
 @dataclass(frozen=True)
@@ -242,6 +336,8 @@ class HeatFlow:
 SignalLike: TypeAlias = "float | Signal | ThermalNode | Element | tuple[Element, str] | Node | Rate | HeatFlow"
 # (x, y) pairs of a curve
 Points: TypeAlias = "Sequence[tuple[float, float]]"
+# coefficients of friction: one, a table, or rows of one
+Coefficients: TypeAlias = "float | Points | Sequence[float] | Sequence[Sequence[float]]"
 # units of the gain of a contact, on shafts and on masses: torque or force per pressure, per force, per share
 GAIN_OF_PRESSURE = ("m3", "m2")
 GAIN_OF_FORCE = ("m", "1", "N m", "N")

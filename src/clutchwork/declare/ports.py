@@ -11,6 +11,12 @@ def ports(component: Component) -> dict[str, Node]:
     return {item.name: getattr(component, item.name) or HOUSING for item, _ in specs(type(component), "port")}
 
 
+def ends(component: Component) -> tuple[Node, Node]:
+    """What the rate of an element is counted of and from: follower and base, or shaft and base."""
+    joined = ports(component)
+    return joined["follower"] if "follower" in joined else joined["shaft"], joined.get("base", HOUSING)
+
+
 def thermal_ports(component: Component) -> dict[str, ThermalNode]:
     """Thermal nodes at the ports of an element, those that are given."""
     values = {item.name: getattr(component, item.name) for item, _ in specs(type(component), "thermal")}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -12,23 +13,44 @@ if TYPE_CHECKING:
 Row = dict[int, Fraction]
 ZERO = Fraction(0)
 ONE = Fraction(1)
+MINUS = Fraction(-1)
+# beyond it not every whole number is a float
+WHOLE = 2.0**53
 
 
 def exact(value: float | Fraction) -> Fraction:
     """The decimal number as written: 2.78 becomes 278/100, not its binary neighbour."""
-    return value if isinstance(value, Fraction) else Fraction(repr(float(value)))
+    if isinstance(value, Fraction):
+        return value
+    number = float(value)
+    # most are whole, and those are read the fastest
+    if -WHOLE < number < WHOLE and number.is_integer():
+        return Fraction(int(number))
+    return Fraction(*Decimal(repr(number)).as_integer_ratio())
 
 
 def plus(row: Mapping[int, Fraction], factor: Fraction, other: Mapping[int, Fraction]) -> Row:
     """Sum of row + factor * other, without zeros."""
     made = dict(row)
-    for column, value in other.items():
-        total = made.get(column, ZERO) + factor * value
-        if total:
-            made[column] = total
-        else:
-            made.pop(column, None)
+    if factor:
+        for column, value in other.items():
+            term = _product(factor, value)
+            before = made.get(column)
+            total = term if before is None else before + term
+            if total:
+                made[column] = total
+            else:
+                made.pop(column, None)
     return made
+
+
+def _product(one: Fraction, other: Fraction) -> Fraction:
+    """Product of two fractions, of which most are plus or minus one."""
+    if one is ONE:
+        return other
+    if other is ONE:
+        return one
+    return -other if one is MINUS else one * other
 
 
 class Echelon:
@@ -37,30 +59,32 @@ class Echelon:
     Columns are solved for in the order that is given; columns that are not in it never are.
     """
 
-    def __init__(self, order: Iterable[int]) -> None:
-        """Start without rows."""
+    def __init__(self, order: Iterable[int], *, traced: bool = True) -> None:
+        """Start without rows; only where it is traced it knows the origin of each row."""
         self.solved: dict[int, Row] = {}
         self.origin: dict[int, Row] = {}  # of each solved row: the sum of added rows that it is
         self.spare: list[tuple[Row, Row]] = []  # sums of added rows without a column to solve for, and what they left
         self._rank = {column: place for place, column in enumerate(order)}
+        self._traced = traced
         self._added = 0
 
     def add(self, row: Mapping[int, Fraction]) -> None:
         """Add a row and solve it for the first column that is left in it."""
-        rest, origin = self._replaced(row, {self._added: ONE})
+        rest, origin = self._replaced(row, {self._added: ONE} if self._traced else {})
         self._added += 1
         columns = [column for column in rest if column in self._rank]
         if not columns:
             self.spare.append((origin, rest))
             return
         column = min(columns, key=self._rank.__getitem__)
-        scale = 1 / rest[column]
+        scale = ONE if rest[column] is ONE else 1 / rest[column]
         rest, origin = plus({}, scale, rest), plus({}, scale, origin)
+        rest[column] = ONE
         for other, solved in self.solved.items():
             factor = solved.get(column)
             if factor:
                 self.solved[other] = plus(solved, -factor, rest)
-                self.origin[other] = plus(self.origin[other], -factor, origin)
+                self.origin[other] = plus(self.origin[other], -factor, origin) if self._traced else {}
         self.solved[column], self.origin[column] = rest, origin
 
     def rest(self, row: Mapping[int, Fraction]) -> Row:
@@ -72,13 +96,13 @@ class Echelon:
         for column, factor in row.items():
             if column in self.solved:
                 rest = plus(rest, -factor, self.solved[column])
-                origin = plus(origin, -factor, self.origin[column])
+                origin = plus(origin, -factor, self.origin[column]) if self._traced else origin
         return rest, origin
 
 
-def eliminate(rows: Iterable[Mapping[int, Fraction]], order: Iterable[int]) -> Echelon:
+def eliminate(rows: Iterable[Mapping[int, Fraction]], order: Iterable[int], *, traced: bool = True) -> Echelon:
     """Solve rows for the columns in the given order where they can be."""
-    echelon = Echelon(order)
+    echelon = Echelon(order, traced=traced)
     for row in rows:
         echelon.add(row)
     return echelon
@@ -90,6 +114,6 @@ def smallest(rows: Sequence[Row], target: Row) -> list[int]:
     keep = list(range(len(rows)))
     for number in list(keep):
         fewer = [other for other in keep if other != number]
-        if not eliminate((rows[other] for other in fewer), columns).rest(target):
+        if not eliminate((rows[other] for other in fewer), columns, traced=False).rest(target):
             keep = fewer
     return keep

@@ -10,12 +10,13 @@ from __future__ import annotations
 import hashlib
 from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from enum import Enum
-from typing import TYPE_CHECKING, Any, TypeVar, dataclass_transform
+from functools import cache
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, dataclass_transform
 
 from clutchwork.declare.frozen import freeze
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
 
 class Role(Enum):
@@ -193,7 +194,8 @@ def signal(
     The C++ functions get them as `at.input[i]`, in order of declaration.
 
     With `instead_of` it is another way to give the signal of that name: exactly one of them is given, or
-    none where that signal has a value `otherwise`. With `presses` a constant below zero is warned of.
+    none where that signal has a value `otherwise`. With `presses` a constant below zero is warned of; it stands in
+    pictures, and so does a signal with a `gain`, the units of the parameter that multiplies it.
     """
     spec = Spec("alternative" if instead_of else "signal", unit, doc, default is None, units=units, gain=gain)
     return _field(replace(spec, instead_of=instead_of, otherwise=otherwise, presses=presses), default)
@@ -248,6 +250,18 @@ def family(cls: C) -> C:
     return frozen  # type: ignore[no-any-return]
 
 
+# what acts along one direction, and the ports that say which
+RATES = (Role.TORQUE, Role.CONTACT, Role.MOTION)
+ENDS = (["base", "follower"], ["shaft", "base"], ["shaft"])
+
+
+def _check_ports(cls: type) -> None:
+    names = [item.name for item, _ in specs(cls, "port")]
+    if names not in ENDS:
+        allowed = " or ".join(", ".join(ports) for ports in ENDS)
+        raise TypeError(f"{cls.__module__}: ports of {cls.__name__} are {', '.join(names)}; declare {allowed}")
+
+
 @dataclass_transform(
     kw_only_default=True,
     frozen_default=True,
@@ -259,6 +273,8 @@ def component(role: Role, *, states: tuple[State, ...] = ()) -> Callable[[C], C]
     def register(cls: C) -> C:
         frozen: Any = freeze(cls)
         kind = cls.__module__.rpartition(".")[2]
+        if role in RATES:
+            _check_ports(cls)
         frozen.kind, frozen.role, frozen.states = kind, role, states
         REGISTRY[role][kind] = frozen
         return cls
@@ -266,20 +282,35 @@ def component(role: Role, *, states: tuple[State, ...] = ()) -> Callable[[C], C]
     return register
 
 
-def specs(cls: type, *what: str) -> Iterator[tuple[Field[Any], Spec]]:
+Declared: TypeAlias = "tuple[tuple[Field[Any], Spec], ...]"
+Inputs: TypeAlias = "tuple[tuple[tuple[str, ...], Spec], ...]"
+
+
+def specs(cls: type, *what: str) -> Declared:
     """The declared fields of a component, in order; optionally only some sorts."""
+    return _specs(cls, what)
+
+
+@cache
+def _specs(cls: Any, what: tuple[str, ...]) -> Declared:
     found = [(item, item.metadata["spec"]) for item in fields(cls) if "spec" in item.metadata]
     # sorting keeps the order of equals
-    for item, spec in sorted(found, key=lambda pair: pair[1].last):
-        if not what or spec.what in what:
-            yield item, spec
+    ordered = sorted(found, key=lambda pair: pair[1].last)
+    return tuple((item, spec) for item, spec in ordered if not what or spec.what in what)
 
 
-def inputs(cls: type) -> Iterator[tuple[list[str], Spec]]:
+def inputs(cls: type) -> Inputs:
     """The inputs of a component in order: the names under which each can be given, and its spec."""
+    return _inputs(cls)
+
+
+@cache
+def _inputs(cls: Any) -> Inputs:
     others = [(item.name, spec.instead_of) for item, spec in specs(cls, "alternative")]
-    for item, spec in specs(cls, "signal"):
-        yield [item.name, *(name for name, stands_for in others if stands_for == item.name)], spec
+    return tuple(
+        ((item.name, *(name for name, stands_for in others if stands_for == item.name)), spec)
+        for item, spec in specs(cls, "signal")
+    )
 
 
 def kinds(role: Role) -> list[str]:

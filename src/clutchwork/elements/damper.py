@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from clutchwork.declare import Node, Passive, Role, component, param, port
 from clutchwork.elements.bases.heating import Heating
 
@@ -14,8 +12,6 @@ class Damper(Heating):
 
     Use it for fluid couplings near synchronous speed, viscous losses and drag in oil.
     """
-
-    lossy: ClassVar[bool] = True
 
     base: Node = port("side that the rate is counted from")
     follower: Node = port("side whose motion counts positive")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import tau
+from collections.abc import Sequence
+from math import remainder, tau
 from typing import ClassVar
 
-from clutchwork.declare import Node, Role, SignalLike, State, component, flag, option, param, port, signal
+from clutchwork.declare import Found, Node, Role, SignalLike, State, Work, component, flag, option, param, port, signal
 from clutchwork.elements.bases.heating import Heating
-from clutchwork.laws.bases.tables import Found
 
 
 @component(
@@ -28,7 +28,8 @@ class DogClutch(Heating):
     Source of the damping: K. H. Hunt, F. R. E. Crossley 1975, doi:10.1115/1.3423596.
     """
 
-    lossy: ClassVar[bool] = True
+    work: ClassVar[Work] = Work.STORE | Work.LOSS
+    jumps: ClassVar[bool] = True
 
     base: Node = port("side that the slip is counted from")
     follower: Node = port("side whose motion counts positive")
@@ -52,6 +53,11 @@ class DogClutch(Heating):
     def initial_states(self) -> tuple[float, ...]:
         """Angle [rad] and place of the sleeve at the start."""
         return (self.initial_angle, 1.0 if self.engaged else 0.0)
+
+    def stored(self, states: Sequence[float], torque: float) -> float:
+        """Energy of the flank that is pressed [J]; none where there is no torque, whatever the angle."""
+        depth = max(abs(remainder(states[0], tau / self.teeth)) - self.gap / 2, 0.0)
+        return 0.5 * self.stiffness * depth**2 if torque else 0.0
 
 
 def gap_problems(gap: float, teeth: int) -> Found:

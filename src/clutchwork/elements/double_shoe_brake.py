@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from math import cos, pi, sin
+from numbers import Real
+from typing import Any
 
 from clutchwork.declare import Law, Node, Role, SignalLike, choice, component, law, option, param, port, signal
 from clutchwork.elements.bases.heating import Heating
@@ -64,7 +66,7 @@ class DoubleShoeBrake(Heating):
 
 def largest_coefficient(friction: Law) -> float:
     """Largest static coefficient that a law names, over all temperatures; 0 where it names none."""
-    static = getattr(friction, "static", getattr(friction, "kinetic", 0.0))
-    if isinstance(static, int | float):
-        return float(static)
-    return max(float(value[1] if hasattr(value, "__len__") else value) for value in static)
+    named: Any = friction.kinetic if friction.static is None else friction.static
+    if named is None or isinstance(named, Real):
+        return float(named or 0.0)
+    return max(float(item if isinstance(item, Real) else item[1]) for item in named)

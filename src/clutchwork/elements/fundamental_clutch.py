@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
-from clutchwork.declare import Law, Node, Role, SignalLike, component, option, port, signal
+from clutchwork.declare import Node, Role, SignalLike, component, option, port, signal
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
 
@@ -19,7 +17,7 @@ class FundamentalClutch(Heating):
     Where all are zero it is open.
     """
 
-    friction: ClassVar[Law] = Coulomb(static=1.0, kinetic=1.0)
+    friction = Coulomb(static=1.0, kinetic=1.0)
 
     base: Node = port("side that the slip is counted from")
     follower: Node = port("side whose motion counts positive: slip = follower - base")

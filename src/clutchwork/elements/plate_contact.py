@@ -61,3 +61,7 @@ class PlateContact(Heating):
         "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
     )
     locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+
+    def fault_warning(self) -> str:
+        """What to warn of when its fault is triggered."""
+        return self.fault.replace("_", " ") if self.report == "warning" else ""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from clutchwork.declare import Node, Role, SignalLike, component, param, port, signal
+from typing import ClassVar
+
+from clutchwork.declare import Node, Role, SignalLike, Work, component, param, port, signal
 from clutchwork.elements.bases.heating import Heating
 
 
@@ -10,8 +12,11 @@ from clutchwork.elements.bases.heating import Heating
 class ResistingTorque(Heating):
     """Torque `-torque * tanh(speed_of_shaft / speed)`: full size against the motion, none at rest.
 
-    Use it for a road load that must not turn the shaft backward. For exact sticking use `BearingFriction`.
+    Use it for a road load that must not turn the shaft backward. For exact sticking use `BearingFriction`. Its work
+    counts as that of a load; what a thermal node takes of it is heat.
     """
+
+    work: ClassVar[Work] = Work.SOURCE
 
     shaft: Node = port("shaft that is braked")
     base: Node | None = port("member that takes the reaction and that the speed is counted from", default=None)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from clutchwork.declare import Component, Node, Passive, Role, State, component, param, port
+from typing import ClassVar
+
+from clutchwork.declare import Component, Node, Passive, Role, State, Work, component, param, port
 
 
 @component(Role.TORQUE, states=(State("spring_torque", "N m", "stiffness times twist"),))
@@ -12,6 +14,9 @@ class Spring(Component):
     Use it where damping does not matter; `SpringDamper` has some.
     The torque on the follower is -stiffness twist, with twist = follower - base - free angle.
     """
+
+    work: ClassVar[Work] = Work.STORE
+    elastic: ClassVar[bool] = True
 
     base: Node = port("side that the twist is counted from")
     follower: Node = port("side whose motion counts positive")

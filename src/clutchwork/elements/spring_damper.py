@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.declare import Node, Passive, Role, State, component, param, port
+from clutchwork.declare import Node, Passive, Role, State, Work, component, param, port
 from clutchwork.elements.bases.heating import Heating
 
 
@@ -16,7 +16,8 @@ class SpringDamper(Heating):
     The torque on the follower is -(stiffness twist + damping rate), with twist = follower - base - free angle.
     """
 
-    lossy: ClassVar[bool] = True
+    work: ClassVar[Work] = Work.STORE | Work.LOSS
+    elastic: ClassVar[bool] = True
 
     base: Node = port("side that the twist is counted from")
     follower: Node = port("side whose motion counts positive")

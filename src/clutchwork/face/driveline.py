@@ -131,13 +131,13 @@ class Driveline:
 
         What is allowed and rarely wanted, such as a friction law that can give energy away, is a `ModelWarning`.
         """
-        from clutchwork.model.problems import model_advice, model_problems
+        from clutchwork.model.findings import findings
 
         with words_of_files(self._model.from_file):
-            problems, advice = model_problems(self._model), model_advice(self._model)
-        for one in advice:
+            found = findings(self._model)
+        for one in found.advice:
             warn(one)
-        return problems
+        return list(found.problems)
 
     @explained("d.assemble")
     def assemble(self, independent: Sequence[str] = ()) -> System:

@@ -20,8 +20,7 @@ class Lines:
     def __init__(self, text: str, suffix: str) -> None:
         self._heads: dict[tuple[str, int], int] = {}
         self._keys: dict[tuple[str, int, str], int] = {}
-        if suffix == ".toml":
-            self._read(text)
+        self._unread = text if suffix == ".toml" else ""
 
     def _read(self, text: str) -> None:
         counts: dict[str, int] = {}
@@ -39,7 +38,9 @@ class Lines:
                 inside = not inside
 
     def placed(self, problem: Problem, data: Any) -> Problem:
-        """A problem with its line, where that is known."""
+        """A problem with its line, where that is known; most files have none, so they are read for the first one."""
+        unread, self._unread = self._unread, ""
+        self._read(unread)
         match = _PATH.match(problem.path)
         if match is None or not self._keys or not isinstance(data, Mapping):
             return problem

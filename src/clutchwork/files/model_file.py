@@ -42,10 +42,11 @@ from clutchwork.declare.speech import words_of_files
 from clutchwork.files.lines import Lines
 from clutchwork.files.reader import FORMAT, Reader
 from clutchwork.files.writer import Writer, toml
+from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
-from clutchwork.model.problems import model_problems
 from clutchwork.model.settings import plain_settings, settings_problems
 from clutchwork.model.thermal import node_kind
+from clutchwork.signals.bases.sheets import one_reading
 
 # more belongs into CSV files
 MOST_BYTES = 10_000_000
@@ -124,9 +125,9 @@ def _no_constant(name: str) -> float:
 def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines | None = None) -> Model:
     """A model from the content of a model file; CSV paths are relative to the folder."""
     reader = Reader(str(folder))
-    with tolerable(source), words_of_files():
+    with tolerable(source), words_of_files(), one_reading():
         model = reader.model(data)
-        problems = reader.problems + model_problems(model, reader.incomplete)
+        problems = reader.problems + findings(model, reader.incomplete).problems
     if problems:
         placed = [lines.placed(problem, data) for problem in problems] if lines else problems
         raise ModelError(placed, source or model.name)

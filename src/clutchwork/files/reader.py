@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import MISSING
+from functools import cache
 from typing import Any
 
 from clutchwork.base.errors import near
@@ -25,6 +26,7 @@ TOP = ("format", "name", "description", "shaft", "mass", "thermal", "ambient", "
 ELEMENTS = tuple(role for role in Role if role not in (Role.LAW, Role.SIGNAL))
 
 
+@cache
 def element_kinds() -> dict[str, Any]:
     """All kinds of elements that a model file may name."""
     return {kind: cls for role in ELEMENTS for kind, cls in REGISTRY[role].items()}
@@ -95,7 +97,7 @@ class Reader(Values):
         # a mistake is reported already: stand-ins let the rest be checked
         values: dict[str, Any] = {"capacity": 1.0} if kind == "thermal" else {}
         for key, spec in known.items():
-            value = self._value(entry[key], spec, at.inner(key, spec.unit)) if key in entry else MISSING
+            value = self._value(entry[key], spec, at, key) if key in entry else MISSING
             if value is MISSING and key == "capacity":
                 self._report(at.inner(key), "is missing", remedy=f"give a value in [{spec.unit}]: {spec.doc}")
             elif value not in (MISSING, BROKEN):
@@ -115,7 +117,7 @@ class Reader(Values):
         elif kind:
             values = self._values(known[kind], entry, At(element_path(name, known[kind]), ""), ("name", "type"))
             if name and len(self.problems) == before:
-                made: Component = known[kind](name, **values)
+                made: Component = self._made(known[kind](name, **values))
                 return made
         self.incomplete += [value for value in entry.values() if isinstance(value, str)]
         return None

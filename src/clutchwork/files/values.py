@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from functools import cache
+from typing import Any, TypeVar
 
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import listed, shown
@@ -12,9 +13,11 @@ from clutchwork.declare.node import HOUSING, Node, ThermalNode
 from clutchwork.declare.quantity import QuantityError, curve_in_si, factor_to_si, in_si, numbers_in_si
 from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
 from clutchwork.files.references import References, is_named, referred
-from clutchwork.model.fields import BROKEN, value_problems
+from clutchwork.model.fields import BROKEN, mark_sound, value_problems
 from clutchwork.model.numbers import At
 from clutchwork.signals.column import Column
+
+T = TypeVar("T")
 
 
 class Values:
@@ -31,7 +34,7 @@ class Values:
         self.problems.append(at.problem(message, value, remedy))
         return BROKEN
 
-    def _unknown(self, data: Mapping[str, Any], known: Any, at: At) -> None:
+    def _unknown(self, data: Iterable[str], known: Any, at: At) -> None:
         for key in data:
             if key not in known:
                 remedy = f"known keys: {listed(known)}"
@@ -39,15 +42,22 @@ class Values:
 
     def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
         """Values of the fields of a declaration, in SI; mistakes are reported."""
-        known = {item.name: _with_gain(item.name, spec, cls, entry) for item, spec in specs(cls)}
-        self._unknown({key: entry[key] for key in entry if key not in taken}, known, at)
+        known = {item.name: spec for item, spec in specs(cls)}
+        self._unknown([key for key in entry if key not in taken], known, at)
         values = {
-            key: self._value(entry[key], spec, _place(at, key, spec)) for key, spec in known.items() if key in entry
+            key: self._value(entry[key], _with_gain(key, spec, cls, entry), at, key)
+            for key, spec in known.items()
+            if key in entry
         }
         self.problems += value_problems(cls, values, at)
-        return values
+        # lists could be changed by their owner, and the reader has none
+        return {key: _in_tuples(value) if type(value) is list else value for key, value in values.items()}
 
-    def _value(self, value: Any, spec: Spec, at: At) -> Any:
+    def _value(self, value: Any, spec: Spec, owner: At, key: str) -> Any:
+        if type(value) is float and spec.what == "param" and spec.unit != "*":
+            # minus zero becomes zero, so that what is written reads back to the same bits
+            return value + 0.0
+        at = _place(owner, key, spec)
         if spec.what in ("port", "thermal"):
             return self._port(value, spec, at)
         if spec.what == "law":
@@ -68,6 +78,9 @@ class Values:
         return self._number(value, spec, at)
 
     def _number(self, value: Any, spec: Spec, at: At) -> Any:
+        if type(value) is float and not spec.whole:
+            # minus zero becomes zero, so that what is written reads back to the same bits
+            return value * at.factor + 0.0
         return self._converted(lambda: in_si(value, at.unit, spec.units, at.factor, whole=spec.whole), at)
 
     def _converted(self, convert: Any, at: At) -> Any:
@@ -113,7 +126,12 @@ class Values:
             return self._report(at.inner("type"), "is an unknown type" + near(kind, known), shown(kind), remedy)
         before = len(self.problems)
         values = self._values(known[kind], value, at, taken)
-        return known[kind](**values) if len(self.problems) == before else BROKEN
+        return self._made(known[kind](**values)) if len(self.problems) == before else BROKEN
+
+    def _made(self, thing: T) -> T:
+        """A declared object whose values were checked as they were read."""
+        mark_sound(thing)
+        return thing
 
     def _signal(self, value: Mapping[str, Any], spec: Spec, at: At) -> Any:
         """A signal; with `unit` its plain numbers are in that unit."""
@@ -130,6 +148,10 @@ class Values:
         return BROKEN if factor is BROKEN else signal
 
 
+def _in_tuples(value: Any) -> Any:
+    return tuple(map(_in_tuples, value)) if isinstance(value, list) else value
+
+
 def _place(at: At, key: str, spec: Spec) -> At:
     """Place of a field; one in the unit of what a signal drives takes over that unit and its factor."""
     return At(at.path, at.inner(key).quantity, at.unit, at.factor) if spec.unit == "*" else at.inner(key, spec.unit)
@@ -137,5 +159,10 @@ def _place(at: At, key: str, spec: Spec) -> At:
 
 def _with_gain(name: str, spec: Spec, cls: type, entry: Mapping[str, Any]) -> Spec:
     """The spec of a gain with only the units that fit what it multiplies: a pressure or a force."""
-    gains = [other.gain for item, other in specs(cls) if other.gain and item.name in entry]
-    return replace(spec, unit=gains[0][0], units=gains[0][1:]) if name == "gain" and len(gains) == 1 else spec
+    gains = [other.gain for item, other in specs(cls) if other.gain and item.name in entry] if name == "gain" else []
+    return _in_units(spec, gains[0]) if len(gains) == 1 else spec
+
+
+@cache
+def _in_units(spec: Spec, units: tuple[str, ...]) -> Spec:
+    return replace(spec, unit=units[0], units=units[1:])

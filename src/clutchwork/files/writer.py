@@ -48,7 +48,7 @@ class Writer:
 
     def element(self, element: Component) -> dict[str, Any]:
         """An element with its type, ports and parameters."""
-        kind = type(element).kind  # type: ignore[attr-defined]
+        kind = type(element).kind
         return {"name": element.name, "type": kind, **self._fields(element, path_of(element))}
 
     def _fields(self, thing: Any, path: str) -> dict[str, Any]:

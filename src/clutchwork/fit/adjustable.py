@@ -67,9 +67,9 @@ def kinetic(law: Law, point: int | None = None) -> float:
     """
     if isinstance(law, Tabulated):
         return ABOVE * max(rivals(law, point or 0))
-    if not hasattr(law, STATIC):
+    if law.static is None:
         return 0.0
-    given = getattr(law, "kinetic", 0.0)
+    given = law.kinetic
     floor = float(given) if isinstance(given, int | float) else 0.0
     if law.sticks:
         found, _ = coefficients(replace(law, **{STATIC: floor or _TINY}), np.zeros(1))

@@ -119,7 +119,7 @@ def _steady(search: Search, u: Array, temperature: float | None) -> Iterator[Exp
     slip = np.abs(search.measured.slip)
     moving = slip[slip > search.model.rest]
     # a law with a band of slip in which it sticks says nothing there
-    band = float(getattr(search.unknowns.law_at(u), "band", 0.0))
+    band = float(search.unknowns.law_at(u).band)
     low, high = max(float(np.min(moving)) * 1e-3, 2.0 * band), max(float(np.max(moving)), 2.0 * band)
     warm = search.measured.temperature
     there = np.ones(len(slip), dtype=bool)

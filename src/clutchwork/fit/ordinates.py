@@ -77,12 +77,12 @@ def rival(law: Tabulated, point: int) -> float:
 
 def static_ones(law: Tabulated) -> list[float]:
     """Static coefficients, one or a table."""
-    return list(ordinates(law, STATIC).values()) if STATIC in tables(type(law)) else [float(getattr(law, STATIC))]
+    return list(ordinates(law, STATIC).values()) if STATIC in tables(type(law)) else [float(law.static)]  # type: ignore[arg-type]
 
 
 def is_outside(law: Law, unit: str, values: Array) -> bool:
     """Whether values are where the tables of a law must not be used."""
-    known = axis(law, unit) if getattr(law, "extrapolation", "") == "error" else []
+    known = axis(law, unit) if law.extrapolation == "error" else []
     if not known:
         return False
     room = _ROUNDING * (known[-1] - known[0])

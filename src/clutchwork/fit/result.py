@@ -130,7 +130,7 @@ class FitResult(Fitted):
     def data(self) -> dict[str, Any]:
         """All of it but the samples, for JSON."""
         return {
-            "law": type(self.law).kind,  # type: ignore[attr-defined]
+            "law": type(self.law).kind,
             "determined": self.determined,
             "message": self.message,
             "notes": self.notes,

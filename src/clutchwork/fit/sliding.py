@@ -32,7 +32,7 @@ def coefficients(law: Law, slips: Array, temperatures: Array | None = None) -> t
     core: Any = import_module("clutchwork._core")
     pools = Pools()
     pools.add(law, "law")
-    number = kinds(Role.LAW).index(type(law).kind)  # type: ignore[attr-defined]
+    number = kinds(Role.LAW).index(type(law).kind)
     params, points = np.array(pools.params, dtype=float), np.array(pools.points, dtype=float).reshape(-1, 3)
     rows = [[]] * len(slips) if temperatures is None else temperatures.reshape(-1, 1).tolist()
     places = zip(slips.tolist(), rows, strict=True)
@@ -52,7 +52,7 @@ class Sliding:
     def __init__(self, measured: Measurement, law: Law, rest: float | None) -> None:
         self.measured = measured
         # a law with a band of slip in which it sticks says no more there
-        self.rest = max(at_rest(measured, rest), float(getattr(law, "band", 0.0)))
+        self.rest = max(at_rest(measured, rest), float(law.band))
         self.slides = np.abs(measured.slip) > self.rest
         if not np.any(self.slides):
             largest = float(np.max(np.abs(measured.slip)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import exp, inf, log, nextafter
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from clutchwork.fit.adjustable import kinetic
 from clutchwork.fit.failure import FitError
@@ -103,7 +103,7 @@ def below_static(law: Law, item: Unknown, free: list[str]) -> Unknown:
             return item
         upper = rival(law, item.point or 0) / ABOVE
         return replace(item, upper=min(item.upper, upper), highest=min(item.highest, upper))
-    static = getattr(law, STATIC, None)
+    static: Any = law.static
     if item.point is not None or item.field == STATIC or STATIC in free or not static:
         return item
     if kinetic(replace(law, **{item.field: 0.9 * static})) != 0.9 * static:

@@ -24,26 +24,23 @@ def component_problems(component: Component) -> Iterator[Problem]:
     found = list(object_problems(component, at))
     found = found or list(_beyond_numbers(component, at))
     yield from found
-    if hasattr(component, "friction"):
-        yield from locked_problems(component, at)
+    yield from locked_problems(component, at)
     # what an element asks of its law is only asked once both make sense
-    if hasattr(component, "law_problems") and not found:
-        for name, message, remedy in component.law_problems():
-            yield at.inner(name).problem(message, remedy=remedy)
+    for name, message, remedy in () if found else component.law_problems():
+        yield at.inner(name).problem(message, remedy=remedy)
 
 
-def _beyond_numbers(component: Any, at: At) -> Iterator[Problem]:
+def _beyond_numbers(component: Component, at: At) -> Iterator[Problem]:
     """Values that are allowed one by one, and from which nothing can be computed."""
     try:
         for part in component.parts():
-            yield from _beyond_numbers(part, at) if isinstance(part, Component) and part.name != component.name else ()
-            capacity = getattr(part, "capacity", None)
-            if capacity is not None and not 0.0 < capacity < inf:
+            if isinstance(part, Component):
+                yield from _beyond_numbers(part, at) if part.name != component.name else ()
+            elif part.capacity is not None and not 0.0 < part.capacity < inf:
                 raise OverflowError
-        if hasattr(component, "initial_states"):
-            starts, scales = component.initial_states(), component.state_scales()
-            if not all(map(isfinite, (*starts, *scales))) or 0.0 in scales:
-                raise OverflowError
+        starts, scales = component.initial_states(), component.state_scales()
+        if not all(map(isfinite, (*starts, *scales))) or 0.0 in scales:
+            raise OverflowError
     except ArithmeticError:
         yield at.problem(
             "has values too large or too small to compute with", remedy="correct the values of unusual magnitude"
@@ -79,7 +76,7 @@ def _never_presses(component: Component) -> Iterator[Problem]:
 
 def _law_advice(component: Component) -> Iterator[Problem]:
     """What the friction law of an element allows and is rarely wanted; nothing where the law has mistakes."""
-    law, place = getattr(component, "friction", None), At(path_of(component), "friction")
+    law, place = component.friction, At(path_of(component), "friction")
     if not isinstance(law, Law) or any(object_problems(law, place)):
         return
     units = {item.name: spec.unit for item, spec in specs(type(law))}
@@ -99,15 +96,15 @@ def _law_advice(component: Component) -> Iterator[Problem]:
 
 def connection_problems(component: Component, nodes: Sequence[Node]) -> Iterator[Problem]:
     """Ports that are on foreign nodes, on one and the same node, or of two kinds of motion."""
-    at, joined = At(path_of(component), ""), ports(component)
+    joined = ports(component)
     if not joined or not all(isinstance(node, Node) for node in joined.values()):
         return
-    known = {id(node) for node in nodes}
-    for name, node in joined.items():
-        if not node.fixed and id(node) not in known:
+    moving = {name: node for name, node in joined.items() if not node.fixed}
+    at = At(path_of(component), "")
+    for name, node in moving.items():
+        if all(node is not other for other in nodes):
             found = near(node.name, [n.name for n in nodes if n.name != node.name])
             yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
-    moving = {name: node for name, node in joined.items() if not node.fixed}
     if not moving:
         yield at.problem("is attached to the housing alone", remedy="attach a port to a shaft")
     elif len(joined) == 2 and len({id(node) for node in joined.values()}) == 1:

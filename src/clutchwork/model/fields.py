@@ -15,7 +15,7 @@ from clutchwork.declare.schema import Role, Spec, inputs, specs
 from clutchwork.declare.speech import kinds_of, say
 from clutchwork.declare.wanted import wanted
 from clutchwork.model.numbers import At as At
-from clutchwork.model.numbers import curve_problems, list_problems
+from clutchwork.model.numbers import curve_problems, is_right, list_problems
 from clutchwork.model.numbers import number_problems as number_problems
 from clutchwork.model.pools import coefficients
 
@@ -29,14 +29,15 @@ BROKEN = Broken()
 
 def object_problems(thing: Any, at: At) -> Iterator[Problem]:
     """All mistakes of a declared object: an element, a law or a signal."""
-    found = list(value_problems(type(thing), vars(thing), at))
+    found = [] if is_sound(thing) else list(value_problems(type(thing), vars(thing), at))
     yield from found
+    if not found and not is_sound(thing):
+        mark_sound(thing)
     # rules between fields only make sense once each field does; what is wrong inside a law is its own affair
     inside = tuple(f"{at.inner(item.name).quantity}." for item, _ in specs(type(thing), "law"))
-    rules = getattr(thing, "problems", None)
-    if rules is not None and all(problem.quantity.startswith(inside) for problem in found):
+    if all(problem.quantity.startswith(inside) for problem in found):
         try:
-            for name, message, remedy in rules():
+            for name, message, remedy in thing.problems():
                 yield at.inner(name).problem(message, remedy=remedy)
         except ArithmeticError:
             yield at.problem(
@@ -44,14 +45,45 @@ def object_problems(thing: Any, at: At) -> Iterator[Problem]:
             )
 
 
+# types whose values never change
+PLAIN = (float, int, bool, str, type(None), Node)
+# in the dictionary of a frozen object: its values are right, and stay so
+SOUND = "_values_are_right"
+
+
+def is_sound(thing: Any) -> bool:
+    """Whether the values of a declared object were found right before."""
+    return SOUND in vars(thing)
+
+
+def mark_sound(thing: Any) -> None:
+    """Remember that the values of a declared object are right; not of one with lists, which may change."""
+    if all(map(_stays, vars(thing).values())):
+        vars(thing)[SOUND] = True
+
+
+def _stays(value: Any) -> bool:
+    if type(value) in PLAIN or (isinstance(value, Law | Signal) and is_sound(value)):
+        return True
+    try:
+        hash(value)
+    except TypeError:
+        return False
+    return True
+
+
 def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
     """Mistakes of the values for the fields of a declaration, some of which may be missing."""
     for item, spec in specs(cls):
-        place = at.inner(item.name, at.unit if spec.unit == "*" else spec.unit)
         value = values.get(item.name, item.default)
+        if (spec.what in NUMBERS and is_right(value, spec)) or (value is None and spec.optional) or value is BROKEN:
+            continue
+        if spec.what == "port" and type(value) is Node and not spec.domain:
+            continue
+        place = at.inner(item.name, at.unit if spec.unit == "*" else spec.unit)
         if value is MISSING:
             yield place.problem("is missing", remedy=f"give {wanted(spec, place.unit)}: {spec.doc}")
-        elif value is not BROKEN and not (value is None and spec.optional):
+        else:
             yield from CHECKS[spec.what](value, spec, place)
     yield from _choice_problems(cls, values, at)
 
@@ -59,12 +91,14 @@ def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Pro
 def _choice_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
     """Signals that can be given in one of several ways: exactly one, or none where there is a default."""
     for names, spec in inputs(cls):
+        if len(names) == 1:
+            continue
         given = [name for name in names if values.get(name) is not None]
-        if len(names) > 1 and len(given) > 1:
+        if len(given) > 1:
             yield at.inner(given[1]).problem(
                 f"cannot be given together with {given[0]!r}", remedy="give only one of them"
             )
-        if len(names) > 1 and not given and spec.otherwise is None:
+        if not given and spec.otherwise is None:
             choice = " or ".join(names)
             yield at.inner(names[0]).problem("is missing", remedy=f"give {choice}: {spec.doc}{within(spec.unit)}")
 
@@ -133,16 +167,15 @@ def law_problems(law: Law, at: At) -> Iterator[Problem]:
     yield from found or (_peak(law, at) if law.sticks else ())
 
 
-def _peak(law: Any, at: At) -> Iterator[Problem]:
+def _peak(law: Law, at: At) -> Iterator[Problem]:
     """A kinetic coefficient above the static one has no motion that follows from it."""
-    # a law over the temperature compares its tables itself
-    if not isinstance(getattr(law, "static", 0.0), Real):
-        return
+    static: Any = law.static
     kinetic = law.sliding()
-    if kinetic is None:
+    # a law over the temperature compares its tables itself
+    if static is not None and not isinstance(static, Real):
+        return
+    if static is None or kinetic is None:
         kinetic, static = coefficients(law, 0.0)
-    else:
-        static = law.static
     # equal values may differ by round-off
     if kinetic > static * (1 + 1e-12):
         message = f"is below the kinetic coefficient at vanishing slip, {kinetic:g}"
@@ -159,6 +192,8 @@ def _function(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield at.problem("must be a Python function", value=shown(value), remedy=spec.doc)
 
 
+# what may be a plain number
+NUMBERS = ("param", "option", "signal", "alternative")
 CHECKS: dict[str, Callable[[Any, Spec, At], Iterator[Problem]]] = {
     "param": _param,
     "option": _param,

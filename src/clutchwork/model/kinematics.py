@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import listed, shown
-from clutchwork.declare.rational import ONE, Echelon, Row, eliminate, plus, smallest
+from clutchwork.declare.rational import MINUS, ONE, Echelon, Row, eliminate, plus, smallest
 from clutchwork.model import massless
 from clutchwork.model.structure import Kinematics, Mechanism, RigidRow
 
@@ -29,7 +29,7 @@ def kinematics(
     problems, places = _wanted_places(model, wanted)
     rows = list(model.rigid_rows())
     order = _order(model, places)
-    echelon = eliminate((row.coefficients for row in rows), order)
+    echelon = eliminate((row.coefficients for row in rows), order, traced=False)
     # what contradicting gears leave is looked at all the same
     problems += _contradictions(model, rows, echelon)
     sound = not problems
@@ -39,12 +39,14 @@ def kinematics(
     if series:
         loose = frozenset(place for speed in series for place in made.moved_by(speed))
         rows += series.values()
-        echelon = eliminate((row.coefficients for row in rows), order)
+        echelon = eliminate((row.coefficients for row in rows), order, traced=False)
         made = _solve(model, echelon)
         made.loose = loose
     problems += [*unbalanced, *(_choice_problems(model, made, wanted) if sound else ())]
     problems += massless.problems(model, made, incomplete)
-    made.notes += _redundant(rows, echelon) + [f"{row.owner}: its springs act in series" for row in series.values()]
+    made.notes += _redundant(rows, order, echelon) + [
+        f"{row.owner}: its springs act in series" for row in series.values()
+    ]
     return (None if problems else made), problems
 
 
@@ -70,7 +72,7 @@ def _solve(model: Mechanism, echelon: Echelon) -> Kinematics:
     speeds: list[Row] = []
     for node in range(len(model.nodes)):
         row = echelon.solved.get(node)
-        speeds.append({node: ONE} if row is None else plus({node: ONE}, -ONE, row))
+        speeds.append({node: ONE} if row is None else plus({node: ONE}, MINUS, row))
     free = [node for node in range(len(model.nodes)) if node not in echelon.solved]
     heavy = {column for row, inertia in zip(speeds, model.inertia, strict=True) if inertia for column in row}
     return Kinematics(speeds, free, set(free) - heavy)
@@ -101,8 +103,12 @@ def _owners(rows: list[RigidRow], places: Sequence[int]) -> str:
     return " and ".join(dict.fromkeys(rows[place].owner for place in places))
 
 
-def _redundant(rows: list[RigidRow], echelon: Echelon) -> list[str]:
+def _redundant(rows: list[RigidRow], order: Sequence[int], echelon: Echelon) -> list[str]:
     """Sums of rows that came out as zero."""
+    if not echelon.spare:
+        return []
+    # only now it counts where they came from
+    echelon = eliminate((row.coefficients for row in rows), order)
     sums = [_owners(rows, sorted(origin)) for origin, left in echelon.spare if not left]
     return [f"{owners}: one of them is redundant" for owners in sums]
 
@@ -122,7 +128,7 @@ def _choice_problems(model: Mechanism, made: Kinematics, wanted: Sequence[str]) 
     if missing:
         yield Problem("independent", "", f"misses {', '.join(missing)}", remedy=f"{len(free)} speeds are independent")
     heavy = (row for row, inertia in zip(made.speeds, model.inertia, strict=True) if inertia)
-    if len(eliminate(heavy, made.independent).solved) < len(free) - len(made.massless):
+    if len(eliminate(heavy, made.independent, traced=False).solved) < len(free) - len(made.massless):
         yield Problem("independent", "", "mixes shafts with and without inertia", remedy="let the package choose")
 
 

@@ -1,29 +1,45 @@
-"""Shafts without inertia: springs in series through them, speeds that damping determines, and what is missing."""
+"""Shafts without inertia: springs in series through them, speeds that damping determines, and what is missing.
+
+See docs/theory/reduction.md, Shafts without inertia.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.errors import Problem
 from clutchwork.declare.node import Domain
-from clutchwork.declare.rational import ZERO, Row, eliminate, exact, plus
+from clutchwork.declare.rational import ONE, ZERO, Row, eliminate, exact, plus
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
 from clutchwork.model.structure import Kinematics, Mechanism, RigidRow
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterable, Iterator
     from fractions import Fraction
 
 # initial twists that were rounded when they were written may differ by this share
 ROUNDING = exact(1e-6)
 
 
-def _acting(model: Mechanism, made: Kinematics, speed: int) -> list[tuple[Any, Row, Fraction]]:
-    """Elements and contacts that an independent speed moves: rate over the nodes, and per that speed."""
-    moved = set(made.moved_by(speed))
-    rates = ((c, row, made.over(row).get(speed, ZERO)) for c, row in model.acting if moved & row.keys())
-    return [(c, row, share) for c, row, share in rates if share and not _is_idle(c)]
+class Acting(NamedTuple):
+    """An element or contact that a motion of shafts without inertia moves."""
+
+    component: Any
+    direction: Row  # its rate over the nodes
+    share: Fraction  # its rate in that motion
+
+
+def _acting(model: Mechanism, made: Kinematics, motion: Row) -> list[Acting]:
+    """Elements and contacts that a motion moves, given as independent speeds without inertia."""
+    moved = {place for speed in motion for place in made.moved_by(speed)}
+    found = list[Acting]()
+    for component, direction in model.acting:
+        if moved & direction.keys() and not _is_idle(component):
+            rate = made.over(direction)
+            share = sum((factor * rate.get(speed, ZERO) for speed, factor in motion.items()), ZERO)
+            found += [Acting(component, direction, share)] if share else []
+    return found
 
 
 def _is_idle(component: Any) -> bool:
@@ -41,43 +57,67 @@ def _damps(component: Any) -> bool:
     return passive is not None and passive.damping > 0.0
 
 
+def _needs_inertia(component: Any) -> bool:
+    return component.role is Role.CONTACT or component.jumps
+
+
+def undamped(model: Mechanism, made: Kinematics) -> dict[int, Row]:
+    """Motions of the speeds without inertia that move no damper, each by the speed that is 1 in it."""
+    if not made.massless:
+        return {}
+    massless = sorted(made.massless)
+    rates = (made.over(direction) for component, direction in model.acting if _damps(component))
+    dampers = ({speed: rate[speed] for speed in massless if speed in rate} for rate in rates)
+    solved = eliminate(dampers, massless, traced=False).solved
+    motions: dict[int, Row] = {}
+    for speed in (speed for speed in massless if speed not in solved):
+        motions[speed] = {speed: ONE, **{other: -row[speed] for other, row in solved.items() if speed in row}}
+    return motions
+
+
 def series_rows(model: Mechanism, made: Kinematics) -> tuple[dict[int, RigidRow], list[Problem]]:
-    """Rows for the speeds without inertia on which only springs act: at all times the springs balance."""
+    """Rows for the motions without inertia and damping on which only springs act: at all times the springs balance."""
     rows, problems = dict[int, RigidRow](), list[Problem]()
-    for speed in sorted(made.massless):
-        acting = _acting(model, made, speed)
-        if acting and all(_is_spring(component) for component, *_ in acting):
+    for speed, motion in undamped(model, made).items():
+        acting = _acting(model, made, motion)
+        if acting and all(_is_spring(spring.component) for spring in acting):
             row: Row = {}
-            for spring, direction, share in acting:
-                row = plus(row, exact(spring.stiffness) * share, direction)
-            rows[speed] = RigidRow(f"{model.node_label(speed)} without inertia", row)
+            for spring in acting:
+                row = plus(row, exact(spring.component.passive().stiffness) * spring.share, spring.direction)
+            names = " and ".join(model.node_label(place) for place in sorted(motion))
+            rows[speed] = RigidRow(f"{names} without inertia", row)
             problems += _unbalanced(rows[speed].owner, acting)
     return rows, problems
 
 
-def _unbalanced(owner: str, acting: list[tuple[Any, Row, Fraction]]) -> Iterator[Problem]:
+def _unbalanced(owner: str, acting: list[Acting]) -> Iterator[Problem]:
     """Springs in series that do not balance at the start."""
-    pulls = [exact(spring.stiffness) * exact(spring.initial_twist) * share for spring, _, share in acting]
+    pulls = [exact(spring.component.initial_states()[0]) * spring.share for spring in acting]
     total = sum(pulls, ZERO)
     if abs(total) > ROUNDING * max(map(abs, pulls)):
         message = f"its springs pull it with {float(-total):.9g} N m at the start"
-        yield Problem(owner, "", message, remedy="choose each initial_twist so that they balance")
+        yield Problem(owner, "", message, remedy="choose the twist of each at the start so that they balance")
 
 
 def problems(model: Mechanism, made: Kinematics, incomplete: frozenset[str]) -> Iterator[Problem]:
-    """Speeds without inertia that no damping determines, or on which a contact acts."""
-    dampers = [made.over(row) for component, row in model.acting if _damps(component)]
-    damped = eliminate(dampers, sorted(made.massless)).solved
+    """Speeds without inertia that nothing determines, or on which something acts whose torque jumps."""
+    motions = undamped(model, made)
     for speed in sorted(made.massless):
         if any(model.nodes[place].name in incomplete for place in made.moved_by(speed)):
             continue
         is_mass = model.nodes[speed].domain is Domain.TRANSLATION
         quantity, more = ("mass", "mass > 0 kg") if is_mass else ("inertia", "inertia > 0 kg m2")
-        contacts = [path_of(c) for c, *_ in _acting(model, made, speed) if c.role is Role.CONTACT]
-        if contacts:
-            message = f"is missing at {' and '.join(contacts)}, whose torque jumps"
+        jumping = _names(_acting(model, made, {speed: ONE}), _needs_inertia)
+        if jumping:
+            message = f"is missing at {jumping}, whose torque jumps"
             yield Problem(model.node_label(speed), quantity, message, remedy=f"give it {more}")
-        elif speed not in damped:
-            remedy = f"give it {more}, or connect it by a gear or a damped spring to a shaft that has some"
+        elif speed in motions:
+            other = _names(_acting(model, made, motions[speed]), lambda component: not _is_spring(component))
             message = "is missing, and nothing else determines its motion"
+            message += f": {other} is neither spring nor damper" if other else ""
+            remedy = f"give it {more}, or connect it by a gear or a damped spring to a shaft that has some"
             yield Problem(model.node_label(speed), quantity, message, remedy=remedy)
+
+
+def _names(acting: Iterable[Acting], which: Callable[[Any], bool]) -> str:
+    return " and ".join(path_of(item.component) for item in acting if which(item.component))

@@ -18,3 +18,9 @@ class Model:
     elements: list[Component] = field(default_factory=list)
     settings: dict[str, Any] = field(default_factory=dict)  # as in [simulation] of a model file: t_end, dt, rtol ...
     from_file: bool = False  # messages use the words of model files
+    # what the checks found, and of which content; `model.findings` alone reads it
+    kept: Any = field(default=None, init=False, repr=False, compare=False)
+
+    def copy(self) -> Model:
+        """The same content, which stays when something is added here."""
+        return Model(self.name, [*self.nodes], [*self.thermal], [*self.elements], {**self.settings}, self.from_file)

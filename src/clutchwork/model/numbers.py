@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from math import inf, isfinite
 from numbers import Real
-from typing import Any
+from typing import Any, NamedTuple
 
 from clutchwork.base.errors import Problem
 from clutchwork.base.shown import listed, shown
@@ -14,8 +13,7 @@ from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Spec
 
 
-@dataclass(frozen=True)
-class At:
+class At(NamedTuple):
     """Place of a value: path of the element, name of the quantity, its SI unit, factor to SI from plain numbers."""
 
     path: str
@@ -34,6 +32,8 @@ class At:
 
 def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A finite number within its bounds."""
+    if is_right(value, spec):
+        return
     if isinstance(value, bool) or not isinstance(value, Real):
         yield at.problem(f"must be a number{within(at.unit)}", value=shown(value), remedy="write a plain number")
         return
@@ -46,6 +46,11 @@ def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield at.problem(f"must be {spec.bound} {unit}".rstrip(), value=given, remedy=_instead(number, spec))
     elif spec.whole and number != int(number):
         yield at.problem("must be a whole number", value=given, remedy=_for("round it", spec))
+
+
+def is_right(value: Any, spec: Spec) -> bool:
+    """Whether a plain number needs no further look, as almost all do."""
+    return type(value) is float and isfinite(value) and spec.allows(value) and not spec.whole
 
 
 def as_float(value: Real) -> float:

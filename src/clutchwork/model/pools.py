@@ -61,7 +61,7 @@ def coefficients(law: Law, slip: float) -> tuple[float, float]:
     """Kinetic and static coefficient of a friction law that sticks at a slip [rad/s], by the compiled core."""
     pools = Pools()
     pools.add(law, "law")
-    number = kinds(Role.LAW).index(type(law).kind)  # type: ignore[attr-defined]
+    number = kinds(Role.LAW).index(type(law).kind)
     points = np.array(pools.points, dtype=float).reshape(-1, 3)
     kinetic, static = core().law(number, np.array(pools.params, dtype=float), points, slip)
     return kinetic, static

@@ -1,4 +1,4 @@
-"""All mistakes of a model: of its nodes, its elements, their names, and its structure."""
+"""The mistakes of what a model is made of: of its nodes, its elements and their names."""
 
 from __future__ import annotations
 
@@ -10,28 +10,23 @@ from clutchwork.declare.node import HOUSING, Component, Domain, Node, ThermalNod
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.speech import path_of, say
 from clutchwork.model.components import component_advice, component_problems, connection_problems
-from clutchwork.model.kinematics import kinematics
 from clutchwork.model.model import Model
-from clutchwork.model.numbers import At, number_problems
-from clutchwork.model.parts import Parts, Sensor, take_apart
-from clutchwork.model.settings import settings_problems
-from clutchwork.model.start import start
-from clutchwork.model.structure import Mechanism
+from clutchwork.model.numbers import At, is_right, number_problems
+from clutchwork.model.parts import Parts, take_apart
 from clutchwork.model.temperatures import temperature_advice
 from clutchwork.model.thermal import Known, Within, node_kind, port_problems, reference_problems, thermal_problems
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
 
-def model_problems(model: Model, incomplete: Sequence[str] = ()) -> list[Problem]:
-    """All mistakes of a model: of single nodes and elements, then of the structure as far as that can be seen.
+def part_problems(model: Model, incomplete: Sequence[str] = ()) -> tuple[list[Problem], Parts, list[str]]:
+    """All mistakes of single nodes and elements, the parts of the elements without, the nodes at those with.
 
-    Nothing is said about the inertia of nodes in `incomplete`, which belong to elements that are not there.
+    Nodes in `incomplete` belong to elements that are not there.
     """
     nodes, elements, thermal = model.nodes, model.elements, model.thermal
     problems = [] if is_name(model.name) else [Problem("driveline", "name", NO_NAME, shown(model.name), GIVE_NAME)]
-    problems += settings_problems(model.settings)
     problems += [problem for node in nodes for problem in node_problems(node)]
     problems += [problem for node in thermal for problem in thermal_problems(node)]
     parts, found = _parts(elements, thermal)
@@ -40,17 +35,13 @@ def model_problems(model: Model, incomplete: Sequence[str] = ()) -> list[Problem
         found[id(element)] += [*connection_problems(element, nodes), *port_problems(element, thermal, within)]
         problems += found[id(element)]
     broken = [element for element in elements if found[id(element)]]
-    sound = take_apart([element for element in elements if not found[id(element)]], thermal)
+    sound = take_apart([element for element in elements if not found[id(element)]], thermal) if broken else parts
     problems += name_problems(nodes, elements, sound)
     # what refers to an element with mistakes is looked at once those are mended
     if not broken and not incomplete:
         known = Known.of(nodes, thermal, elements, sound)
         problems += [problem for part in sound.components for problem in reference_problems(part, known)]
-    moving = [part for part in sound.components if not isinstance(part, Sensor)]
-    try:
-        return problems + structure_problems(nodes, moving, [*incomplete, *_touched(broken)])
-    except ArithmeticError:
-        return [*problems, TOO_FAR_APART]
+    return problems, sound, _touched(broken)
 
 
 def _parts(elements: Sequence[Component], thermal: Sequence[ThermalNode]) -> tuple[Parts, dict[int, list[Problem]]]:
@@ -95,7 +86,7 @@ def node_problems(node: Node) -> list[Problem]:
     values = (node.inertia, node.speed, node.angle)
     problems: list[Problem] = []
     for (name, spec), value in zip(NODE_FIELDS[node.domain].items(), values, strict=True):
-        if not (value is None and spec.optional):
+        if not (is_right(value, spec) or (value is None and spec.optional)):
             problems += number_problems(value, spec, At(path, name, spec.unit))
     return problems
 
@@ -140,15 +131,7 @@ def name_problems(nodes: Sequence[Node], elements: Sequence[Component], parts: P
     return problems
 
 
-def structure_problems(
-    nodes: Sequence[Node], components: Sequence[Component], incomplete: Iterable[str] = ()
-) -> list[Problem]:
-    """What is wrong with the structure of a driveline whose single elements are right."""
-    model = Mechanism(tuple(nodes), tuple(components))
-    if not nodes:
-        remedy = say("add one: [[shaft]]", 'add one: d.shaft("engine", inertia=0.2)')
-        return [Problem("driveline", "", "has no shaft", remedy=remedy)]
-    made, problems = kinematics(model, incomplete=frozenset(incomplete))
-    if made is not None:
-        *_, problems = start(model, made)
-    return problems
+def no_shaft() -> Problem:
+    """A model without nodes."""
+    remedy = say("add one: [[shaft]]", 'add one: d.shaft("engine", inertia=0.2)')
+    return Problem("driveline", "", "has no shaft", remedy=remedy)

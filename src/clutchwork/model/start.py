@@ -53,10 +53,13 @@ def initial_speeds(
     inputs = {len(model.nodes) + number: exact(speed) for number, speed in enumerate(prescribed)}
     given = {node: speed for node, speed in enumerate(model.speed) if speed is not None and node not in made.loose}
     slack = ROUNDING * max([ONE, *map(abs, given.values())])
-    echelon, used, problems = Echelon(made.independent), dict[int, Row](), list[Problem]()
+    echelon, used, problems = Echelon(made.independent, traced=False), dict[int, Row](), list[Problem]()
     # shafts between springs follow from all others, so they come last
     rest = sorted(set(range(len(model.nodes))) - given.keys(), key=lambda node: (node in made.loose, node))
     for node in (*given, *rest):
+        # all speeds are known: those that nobody gave follow
+        if node not in given and len(used) == len(made.independent):
+            break
         row = _row(made.speeds[node], inputs, given.get(node, ZERO))
         left = echelon.rest(row)
         if left.keys() - {KNOWN}:

@@ -9,8 +9,8 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.declare.node import Component, Domain, Node
-from clutchwork.declare.ports import ports
-from clutchwork.declare.rational import ONE, Row, exact, plus
+from clutchwork.declare.ports import ends, ports
+from clutchwork.declare.rational import MINUS, ONE, Row, exact, plus
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
 from clutchwork.model.numbers import as_float
@@ -32,7 +32,7 @@ class Mechanism:
 
     def role(self, role: Role) -> list[Any]:
         """The elements of one role, in order."""
-        return [component for component in self.components if component.role is role]  # type: ignore[attr-defined]
+        return [component for component in self.components if component.role is role]
 
     @cached_property
     def acting(self) -> list[tuple[Any, Row]]:
@@ -56,9 +56,8 @@ class Mechanism:
 
     def direction(self, component: Component) -> Row:
         """Rate of an element over the nodes: follower - base, or shaft - base."""
-        joined = ports(component)
-        made = self._at(joined.get("follower") or joined["shaft"], ONE)
-        return plus(made, ONE, self._at(joined["base"], -ONE)) if "base" in joined else made
+        moving, base = ends(component)
+        return plus(self._at(moving, ONE), ONE, self._at(base, MINUS))
 
     def _at(self, node: Node, factor: Fraction) -> Row:
         return {} if node.fixed else {self.index[id(node)]: factor}
@@ -73,7 +72,7 @@ class Mechanism:
                     row = plus(row, coefficient, self._at(joined[port], ONE))
                 yield RigidRow(path_of(gear), row)
         for number, motion in enumerate(self.role(Role.MOTION), len(self.nodes)):
-            yield RigidRow(path_of(motion), {**self.direction(motion), number: -ONE})
+            yield RigidRow(path_of(motion), {**self.direction(motion), number: MINUS})
 
     def node_label(self, place: int) -> str:
         """Path of a node in messages."""

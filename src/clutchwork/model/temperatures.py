@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
@@ -30,16 +31,22 @@ def temperature_advice(elements: Sequence[Component], thermal: Sequence[ThermalN
     for element in elements:
         at = At(path_of(element), "")
         yield from _inside(element, at)
-        law = getattr(element, "friction", None)
-        if isinstance(law, Law):
-            yield from _inside(law, at.inner("friction"))
+        if isinstance(element.friction, Law):
+            yield from _inside(element.friction, at.inner("friction"))
 
 
 def _inside(thing: Any, at: At) -> Iterator[Problem]:
-    for item, spec in specs(type(thing)):
-        value, place = getattr(thing, item.name), at.inner(item.name, spec.unit)
-        if "K" in (spec.unit, spec.unit_x) and value is not None:
-            yield from _cold(value, spec, place)
+    cls: Any = type(thing)
+    for name, spec in _warm(cls):
+        value = getattr(thing, name)
+        if value is not None:
+            yield from _cold(value, spec, at.inner(name, spec.unit))
+
+
+@cache
+def _warm(cls: Any) -> tuple[tuple[str, Spec], ...]:
+    """Fields that are temperatures, or tables over them."""
+    return tuple((item.name, spec) for item, spec in specs(cls) if "K" in (spec.unit, spec.unit_x))
 
 
 def _cold(value: Any, spec: Spec, at: At) -> Iterator[Problem]:

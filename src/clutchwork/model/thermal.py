@@ -9,7 +9,7 @@ from typing import Any
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import listed, shown
 from clutchwork.declare import units
-from clutchwork.declare.node import Component, Domain, HeatFlow, Law, Node, Rate, ThermalNode, is_reference
+from clutchwork.declare.node import Component, Domain, HeatFlow, Node, Rate, ThermalNode, is_reference
 from clutchwork.declare.ports import thermal_ports
 from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Role, Spec, specs
@@ -59,9 +59,10 @@ class Within:
 
 def port_problems(component: Component, thermal: Sequence[ThermalNode], within: Within) -> Iterator[Problem]:
     """Thermal ports on foreign nodes, or both on one and the same."""
-    at, joined = At(path_of(component), ""), thermal_ports(component)
-    if not all(isinstance(node, ThermalNode) for node in joined.values()):
+    joined = thermal_ports(component)
+    if not joined or not all(isinstance(node, ThermalNode) for node in joined.values()):
         return
+    at = At(path_of(component), "")
     own = {id(other) for other in thermal}
     for name, node in joined.items():
         foreign = node.name in {other.name for other in thermal} and id(node) not in own
@@ -90,7 +91,7 @@ class Known:
         states: dict[str, tuple[str, ...]] = {node.name: ("K",) for node in parts.thermal}
         for process in parts.components:
             if role(process) is Role.PROCESS:
-                states |= {f"{process.name}.{s.name}": (s.unit,) for s in type(process).states}  # type: ignore[attr-defined]
+                states |= {f"{process.name}.{s.name}": (s.unit,) for s in type(process).states}
         acting = frozenset(c.name for c in parts.components if role(c) in (Role.TORQUE, Role.CONTACT))
         added = {id(thing): thing for thing in (*nodes, *thermal, *elements)}
         inner = dict[str, list[Any]]()
@@ -113,20 +114,20 @@ def _inside(component: Component) -> Iterator[Component | ThermalNode]:
 
 def reference_problems(component: Component, known: Known) -> Iterator[Problem]:
     """Inputs that other components give: whether those are there, and give what is wanted."""
-    law = getattr(component, "friction", None)
-    for thing, at in ((component, At(path_of(component), "")), (law, At(path_of(component), "friction"))):
-        if thing is component or isinstance(thing, Law):
-            for item, spec in specs(type(thing), "signal", "alternative"):
-                value, place = getattr(thing, item.name), at.inner(item.name, spec.unit)
-                if is_reference(value):
-                    yield from _reference(value, spec, place, component, known)
-                elif value is None and spec.unit == "K" and isinstance(thing, Law):
-                    yield from _temperature(component, place)
+    law = component.friction
+    for thing, quantity in ((component, ""), (law, "friction")):
+        for item, spec in specs(type(thing), "signal", "alternative") if thing is not None else ():
+            value = getattr(thing, item.name)
+            if is_reference(value):
+                place = At(path_of(component), quantity).inner(item.name, spec.unit)
+                yield from _reference(value, spec, place, component, known)
+            elif value is None and spec.unit == "K" and thing is law:
+                yield from _temperature(component, At(path_of(component), quantity).inner(item.name, spec.unit))
 
 
-def _temperature(component: Any, at: At) -> Iterator[Problem]:
+def _temperature(component: Component, at: At) -> Iterator[Problem]:
     """A friction law without a temperature takes that of the thermal node of its contact."""
-    if getattr(component, "heat", None) is None and role(component) is Role.CONTACT:
+    if component.heat_path() is None and role(component) is Role.CONTACT:
         yield at.problem("is missing", remedy="give a temperature [K], or connect the contact by `heat` to a node")
 
 

@@ -120,12 +120,12 @@ class Channels(Mapping[str, Channel]):
         yield from self._states(branch)
 
     def _states(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
-        for name, unit, index in branch.states:
+        passive = branch.component.passive()
+        for number, (name, unit, index) in enumerate(branch.states):
             column = self._start("state") + index
             yield f"{branch.name}.{name}", _column(column, unit)
-            if name == "spring_torque":
-                twist = Affine(column, 1.0 / branch.component.stiffness)
-                yield f"{branch.name}.twist", Channel(ANGLE[branch.domain], twist)
+            if number == 0 and passive is not None and passive.stiffness:
+                yield f"{branch.name}.twist", Channel(ANGLE[branch.domain], Affine(column, 1.0 / passive.stiffness))
 
     def _contact(self, branch: Branch, index: int) -> Iterator[tuple[str, Channel]]:
         mode = self._start("contact_mode") + index

@@ -20,9 +20,8 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import Branch, Wiring
 from clutchwork.base.text import columns
+from clutchwork.declare.node import Component, Work
 from clutchwork.results.events import Events
-
-SPRING_STATE = "spring_torque"
 
 
 @dataclass(frozen=True)
@@ -100,15 +99,16 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
     """Balance between the first and the last output row."""
     ends = rows[[0, -1]]
     sources, heat, elastic = {}, {}, 0.0
-    for branch, work in _works(wiring, ends, "element_work", wiring.elements):
+    for number, (branch, work) in enumerate(_works(wiring, ends, "element_work", wiring.elements)):
         if branch.hidden:
             continue
-        stored = _elastic(wiring, ends, branch)
+        stored = _stored(wiring, ends, branch, number)
         elastic += stored
-        if is_source(branch):
-            sources[branch.name] = work
-        elif is_lossy(branch):
-            heat[branch.name] = 0.0 - work - stored
+        lost = _lost(branch.component) * (0.0 - work - stored)
+        if Work.SOURCE in branch.component.work:
+            sources[branch.name] = work + stored + lost
+        if _lost(branch.component):
+            heat[branch.name] = lost
     sources |= {branch.name: work for branch, work in _works(wiring, ends, "prescribed_work", wiring.motions)}
     heat |= {branch.name: 0.0 - work for branch, work in _works(wiring, ends, "contact_work", wiring.contacts)}
     # a row at time zero lies behind the impulses of the start, whose work it holds already
@@ -121,14 +121,26 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
         sources[branch.name] += float(work)
     # where sources prescribe speeds, the change of kinetic energy is not what the contacts lost
     named = 0.0 if wiring.motions else _impulses(events)
-    shares = {b.name: _share(b.component) for b in (*wiring.elements, *wiring.contacts) if _share(b.component)}
+    shares = {branch.name: share for branch in wiring.elements if (share := _followed(branch.component))}
+    shares |= {branch.name: share for branch in wiring.contacts if (share := _share(branch.component))}
     thermal = _thermal(wiring, ends, lost)
     return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, named, thermal, shares)
 
 
-def _share(component: Any) -> float:
+def _share(component: Component) -> float:
     """Share of the heat of an element that goes to a thermal node."""
-    return 0.0 if getattr(component, "heat", None) is None else float(component.heat_share)
+    path = component.heat_path()
+    return path.share if path else 0.0
+
+
+def _lost(component: Component) -> float:
+    """Share of the work of an element, less what it stores, that is heat: of a source, what a thermal node takes."""
+    return _share(component) if Work.SOURCE in component.work else float(Work.LOSS in component.work)
+
+
+def _followed(component: Component) -> float:
+    """Share of that heat that goes to a thermal node."""
+    return _share(component) / (_lost(component) or 1.0)
 
 
 def _thermal(wiring: Wiring, ends: NDArray[np.float64], lost: float) -> dict[str, float]:
@@ -136,22 +148,6 @@ def _thermal(wiring: Wiring, ends: NDArray[np.float64], lost: float) -> dict[str
     columns = {node.name: wiring.columns["state"].start + node.states[0][2] for node in wiring.thermal}
     first = np.zeros_like(ends[0]) if lost else ends[0]
     return {name: float(ends[1, column] - first[column]) for name, column in columns.items()}
-
-
-def is_spring(branch: Branch) -> bool:
-    """Whether an element stores elastic energy: its state is stiffness times twist."""
-    passive = branch.component.passive()
-    return passive is not None and bool(passive.stiffness)
-
-
-def is_lossy(branch: Branch) -> bool:
-    """Whether an element turns work into heat: it has a damping, or a thermal node takes what it makes."""
-    return branch.component.lossy or _share(branch.component) > 0.0
-
-
-def is_source(branch: Branch) -> bool:
-    """Whether the work of an element counts as work from outside: drives and loads."""
-    return not (is_spring(branch) or is_lossy(branch))
 
 
 def _impulses(events: Events) -> float:
@@ -174,10 +170,12 @@ def _kinetic(wiring: Wiring, ends: NDArray[np.float64]) -> float:
     return float(0.5 * np.sum(inertia * (speeds[1] - speeds[0]) * (speeds[1] + speeds[0])))
 
 
-def _elastic(wiring: Wiring, ends: NDArray[np.float64], branch: Branch) -> float:
-    total = 0.0
-    for name, _, index in branch.states:
-        if name == SPRING_STATE:
-            torque = ends[:, wiring.columns["state"].start + index]
-            total += 0.5 * (torque[1] - torque[0]) * (torque[1] + torque[0]) / branch.component.stiffness
-    return float(total)
+def _stored(wiring: Wiring, ends: NDArray[np.float64], branch: Branch, number: int) -> float:
+    """Change of what an element of a number stores."""
+    if Work.STORE not in branch.component.work:
+        return 0.0
+    places = [wiring.columns["state"].start + index for *_, index in branch.states]
+    torque = ends[:, wiring.columns["element_torque"].start + number].tolist()
+    states = ends[:, places].tolist()
+    before, after = (float(branch.component.stored(*at)) for at in zip(states, torque, strict=True))
+    return after - before

@@ -29,9 +29,9 @@ def affine(wiring: Wiring) -> Iterator[tuple[str, str, Affine]]:
         for number, flow in enumerate(wiring.flows):
             yield f"{flow}.heat_flow", "W", (wiring.columns["flow"].start + number, 1.0, 0.0)
     for branch in (*wiring.elements, *wiring.contacts):
-        taker = getattr(branch.component, "heat", None)
-        if taker is not None:
-            yield f"{branch.name}.temperature", "K", _temperature(wiring, taker.name)
+        path = branch.component.heat_path()
+        if path is not None:
+            yield f"{branch.name}.temperature", "K", _temperature(wiring, path.node.name)
     yield from _links(wiring)
 
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.assembly.wiring import HOUSING, Wiring, wiring
+from clutchwork.declare.node import Work
 from clutchwork.results.channels import LOCKED
-from clutchwork.results.energy import is_source, is_spring
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,7 +37,7 @@ class Phase:
 
 def input_and_output(parts: Wiring) -> tuple[str, str] | None:
     """The shafts of the first and of the last source in a model: drive and load, when they differ."""
-    sources = [branch for branch in (*parts.motions, *parts.elements) if is_source(branch)]
+    sources = [branch for branch in (*parts.motions, *parts.elements) if Work.SOURCE in branch.component.work]
     moving = [[node for node, factor in b.direction.items() if node != HOUSING and factor > 0.0] for b in sources]
     shafts = [parts.nodes[nodes[0]].name for nodes in moving if nodes]
     return (shafts[0], shafts[-1]) if shafts and shafts[0] != shafts[-1] else None
@@ -110,7 +110,7 @@ def phases(run: Recorded, shafts: tuple[str, str]) -> list[Phase]:
 def _free_motions(system: System, closed: Collection[str]) -> NDArray[np.float64]:
     """Node speeds of all motions that closed contacts and rigid springs leave, one per column."""
     rigid = [contact.name in closed for contact in system.contacts]
-    springs = [is_spring(branch) for branch in wiring(system).elements]
+    springs = [branch.component.elastic for branch in wiring(system).elements]
     contacts = np.hstack([system.contact_rate, system.contact_rate_prescribed])[rigid]
     shafts = np.hstack([system.element_rate, system.element_rate_prescribed])[springs]
     basis = np.hstack([system.basis, system.basis_prescribed])

@@ -43,13 +43,13 @@ class Bench:
         So a lining with a coefficient of 0.12 is compared with the laws of the preset under the same forces.
         ValueError for a law whose static coefficient is a curve.
         """
-        static = getattr(self.law, "static", None)
+        static = self.law.static
         if static is not None and not isinstance(static, Real):
             what = f"the rig has no temperature, and {self.label!r} is a {type(self.law).__name__} over it"
             raise ValueError(f"{what}: give its values at one temperature as a FrictionTable")
         if static is not None:
             return self.preset.force / float(static)
-        kinetic = getattr(self.law, "kinetic", self.preset.kinetic)
+        kinetic: Any = self.preset.kinetic if self.law.kinetic is None else self.law.kinetic
         return self.preset.load * self.preset.kinetic / float(kinetic)
 
     def body(self, d: Driveline, name: str = "body", **start: Any) -> Node:

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from clutchwork.assembly.wiring import wiring
 from clutchwork.results.channels import Channels
 from clutchwork.results.trajectory import SimulationError
-from clutchwork.signals.sampled import Sampled
 
 if TYPE_CHECKING:
     from clutchwork.assembly.records import Input
@@ -62,9 +61,9 @@ class Controller:
 def controllers(inputs: Sequence[Input]) -> tuple[Controller, ...]:
     """The inputs of a System that Python functions set."""
     return tuple(
-        Controller(item.name, index, item.signal.period, item.signal.function)
+        Controller(item.name, index, *sampling)
         for index, item in enumerate(inputs)
-        if isinstance(item.signal, Sampled)
+        if (sampling := item.signal.sampling()) is not None
     )
 
 

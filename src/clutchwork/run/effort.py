@@ -15,8 +15,8 @@ def refuse_endless(inputs: Sequence[Input], t_end: float, max_steps: int) -> Non
     """OptionError for signals that repeat, or are asked for, more often than the run may take steps."""
     found = []
     for item in inputs:
-        # that of a controller is a field, that of a train of pulses how it repeats
-        period = item.signal.repeats() or getattr(item.signal, "period", 0.0)
+        sampling = item.signal.sampling()
+        period = sampling.period if sampling else item.signal.repeats()
         if period > 0.0 and t_end / period > max_steps:
             times = f"more than max_steps = {max_steps} times up to {t_end:g} s"
             found.append(f"{item.name} has a period of {period:g} s, {times}; give a longer period or a shorter run")

@@ -61,7 +61,7 @@ def explain(status: int, component: Any, time: float, value: float, quantity: st
 
 def _covered(component: Any) -> str:
     """Ranges of the tables of a friction law."""
-    law, axes = getattr(component, "friction", None), dict[str, str]()
+    law, axes = component.friction, dict[str, str]()
     for item, spec in specs(type(law), "curve", "numbers"):
         values = [x for x, _ in getattr(law, item.name)] if spec.what == "curve" else getattr(law, item.name)
         if spec.what == "curve" or spec.rising:
@@ -71,9 +71,8 @@ def _covered(component: Any) -> str:
 
 def report_faults(run: Trajectory) -> None:
     """Warn of the faults of a run whose elements report them as a warning."""
-    contacts: dict[str, Any] = {contact.name: contact for contact in run.system.contacts}
+    contacts = {contact.name: contact for contact in run.system.contacts}
     for event in run.events:
-        contact = contacts.get(event.element)
-        if event.cause == "fault" and getattr(contact, "report", "") == "warning":
-            what = str(getattr(contact, "fault", "")).replace("_", " ")
+        what = contacts[event.element].fault_warning() if event.cause == "fault" else ""
+        if what:
             warnings.warn(FaultWarning(f"{event.element!r} {what} from {event.time:.9g} s on"), stacklevel=caller())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from clutchwork.declare import Role, Segment, Signal, component, function, param
+from clutchwork.declare import Role, Sampling, Segment, Signal, component, function, param
 
 
 @component(Role.SIGNAL)
@@ -24,3 +24,7 @@ class Sampled(Signal):
     def segments(self) -> tuple[Segment, ...]:
         """None: the value comes from outside."""
         return ()
+
+    def sampling(self) -> Sampling:
+        """Period and function."""
+        return Sampling(self.period, self.function)

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from clutchwork.declare import Component, ThermalNode, family, option, port
+from typing import ClassVar
+
+from clutchwork.declare import Component, HeatPath, ThermalNode, Work, family, option, port
 
 
 @family
 class Heating(Component):
-    """An element whose heat may go to a thermal node."""
+    """An element that turns work into heat, which may go to a thermal node."""
+
+    work: ClassVar[Work] = Work.LOSS
 
     heat: ThermalNode | None = port("thermal node that takes its heat", default=None, domain="thermal", last=True)
     heat_share: float = option(
         "1", "share of it, the rest is not followed", default=1.0, at_least=0.0, at_most=1.0, last=True
     )
+
+    def heat_path(self) -> HeatPath | None:
+        """Its thermal node, where it has one."""
+        return None if self.heat is None else HeatPath(self.heat, float(self.heat_share))

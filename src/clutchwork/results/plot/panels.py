@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.declare.node import Domain
+from clutchwork.declare.schema import specs
 from clutchwork.results.channels import LOCKED
 from clutchwork.results.plot.style import COLOURS, EVENT_LINE, looks
 
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
 MOST_CURVES = 24
-# inputs of a contact that press it together
-PRESSING = ("pressure", "normal_force", "force")
+# what presses contacts together where they have different words for it
+SEVERAL = "actuating force"
 # (unit in the result, from this size on, unit in the picture, factor)
 SCALES = (("Pa", 1e5, "MPa", 1e-6), ("N m", 5e3, "kN m", 1e-3), ("N", 5e3, "kN", 1e-3))
 
@@ -138,17 +139,25 @@ def carrying(run: Recorded, names: list[str]) -> str:
 
 def driven(run: Recorded) -> list[dict[str, str]]:
     """Contacts that carry torque, with the signal that presses each, those of one unit together."""
-    names = [*(name for name, _ in run.wiring.inputs), *(link.name for link in run.wiring.links)]
-    found = {c: [n for n in names if n in (f"{c}.{word}" for word in PRESSING)] for c in busy(run)}
+    names = {*(name for name, _ in run.wiring.inputs), *(link.name for link in run.wiring.links)}
+    found = {
+        name: [f"{name}.{word}" for word in _pressing(run, name) if f"{name}.{word}" in names] for name in busy(run)
+    }
     signals = {contact: given[0] for contact, given in found.items() if given}
     return [{name: signals[name] for name in group} for group in _by_unit(run, signals)]
 
 
+def _pressing(run: Recorded, contact: str) -> dict[str, str]:
+    """Inputs that press a contact together, and what each presses with."""
+    declared = specs(type(_branch(run, contact).component), "signal", "alternative")
+    # what a gain multiplies is the load
+    return {item.name: item.name.replace("_", " ") for item, spec in declared if spec.presses or spec.gain}
+
+
 def pressing(run: Recorded, names: dict[str, str]) -> str:
     """What presses some contacts together, in one word or two."""
-    if run.units[next(iter(names.values()))] == "Pa":
-        return "pressure"
-    return "actuating force" if any(signal.endswith(".force") for signal in names.values()) else "normal force"
+    words = {_pressing(run, contact)[signal.rpartition(".")[2]] for contact, signal in names.items()}
+    return words.pop() if len(words) == 1 else SEVERAL
 
 
 def _by_unit(run: Recorded, signals: dict[str, str]) -> Iterable[list[str]]:

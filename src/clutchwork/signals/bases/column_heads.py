@@ -49,6 +49,6 @@ def meant(wanted: str, known: list[str]) -> list[Head]:
     A name without a unit means a head with one, and a unit that is given with a name counts where the head has none.
     """
     name, unit = split(wanted)
-    same = [head for head in known if head == wanted]
-    alike = [head for head in known if split(head)[0] == name and "" in (unit, split(head)[1])]
-    return [Head(head, split(head)[1] or unit) for head in same or alike]
+    found = [head for head in known if head == wanted]
+    found = found or [head for head in known if split(head)[0] == name and "" in (unit, split(head)[1])]
+    return [Head(head, split(head)[1] or unit) for head in found]

@@ -1,0 +1,71 @@
+"""Small CSV files that are read once as a whole, while several columns of them are asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from itertools import chain
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# of the text of a file that is kept as numbers
+MOST_BYTES = 1 << 20
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The columns of a file whose cells are all finite numbers."""
+
+    header: list[str]
+    table: Array
+    _plain: dict[int, bool] = field(default_factory=dict)
+
+    def is_plain(self, time: int) -> bool:
+        """Whether the times in a column never fall, and no value changes too fast over them to be computed with."""
+        if time not in self._plain:
+            with np.errstate(all="ignore"):
+                steps = np.diff(self.table, axis=0)
+                width = steps[:, time : time + 1]
+                slopes = np.divide(steps, width, out=np.zeros_like(steps), where=width > 0.0)
+            self._plain[time] = bool(np.all(width >= 0.0) and np.all(np.isfinite(slopes)))
+        return self._plain[time]
+
+
+_SHEETS: ContextVar[dict[Path, Sheet] | None] = ContextVar("sheets", default=None)
+
+
+@contextmanager
+def one_reading() -> Iterator[None]:
+    """What is read inside is of one state of each file."""
+    token = _SHEETS.set({})
+    try:
+        yield
+    finally:
+        _SHEETS.reset(token)
+
+
+def known(path: Path) -> Sheet | None:
+    """The sheet of a file that was read before."""
+    return (_SHEETS.get() or {}).get(path)
+
+
+def keep(path: Path, size: int, header: list[str], lines: Iterator[list[str]]) -> Sheet | None:
+    """The sheet of a file of a size, kept for the next column; None where it has other cells, or nobody reads more."""
+    sheets = _SHEETS.get()
+    if sheets is None or size > MOST_BYTES:
+        return None
+    try:
+        rows = [line for line in lines if line]
+        table = np.fromiter(map(float, chain.from_iterable(rows)), float).reshape(len(rows), len(header))
+    except ValueError:
+        return None
+    if not len(table) or not np.all(np.isfinite(table)):
+        return None
+    sheets[path] = Sheet(header, table)
+    return sheets[path]
