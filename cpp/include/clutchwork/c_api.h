@@ -75,8 +75,8 @@ int64_t cw_detail_row(const cw_run* run);
 
 /* Complete state of a run, bit for bit: bytes of it (-1 for a null pointer); write them to memory of `room` bytes and
    return their number (-1: refused because there is too little room, or a null pointer).
-   The bytes contain no pointers. They carry the versions of core and state, a fingerprint of the system, their size and a
-   checksum. */
+   The bytes contain no pointers. They carry the versions of core and state, a fingerprint of the system, their size and
+   a checksum. */
 int64_t cw_state_size(const cw_run* run);
 int64_t cw_save(const cw_run* run, void* bytes, int64_t room);
 
@@ -85,8 +85,8 @@ int64_t cw_save(const cw_run* run, void* bytes, int64_t room);
    belongs to another system or version, has another size, is damaged, or contains an impossible value. */
 int cw_restore(cw_run* run, const void* bytes, int64_t n);
 
-/* Kinetic coefficient at a slip and static coefficient of a law at its inputs (such as a temperature). 1: done; 0: no such
-   law, or a null pointer for params, kinetic or hold. */
+/* Kinetic coefficient at a slip and static coefficient of a law at its inputs (such as a temperature). 1: done; 0: no
+   such law, or a null pointer for params, kinetic or hold. */
 int cw_law(int number, const double* params, const double* inputs, const double* points, int64_t n_points, double slip,
            double* kinetic, double* hold);
 
