@@ -70,11 +70,12 @@ class Run {
   }
   void set_input(std::int64_t input, double value) {
     if (!cw_set_input(run_, input, value))
-      throw nb::value_error("there is no such signal that is set from outside, or the value is not finite");
+      throw nb::value_error(
+          "unknown input, or the value is not finite; only signals that are set from outside can be set");
   }
   void set_param(std::int64_t offset, double value) {
     if (!cw_set_param(run_, offset, value))
-      throw nb::value_error("there is no such parameter, it is fixed, or the value is not finite");
+      throw nb::value_error("unknown or fixed parameter, or the value is not finite");
   }
 
   /// Whether set_param would take this.

@@ -20,8 +20,8 @@ from clutchwork.declare.schema import Role, component, param, port
 class CubicDamper(Component):
     """Torque on the follower: -(linear rate + cubic rate^3). Use it to see how an element is added."""
 
-    base: Node = port("side that the rate is counted from")
-    follower: Node = port("side whose motion counts positive")
+    base: Node = port("side that the rate is measured from")
+    follower: Node = port("side whose motion is positive")
     linear: float = param("N m s/rad", "viscous part", at_least=0.0)
     cubic: float = param("N m s3/rad3", "cubic part", at_least=0.0)
 '''

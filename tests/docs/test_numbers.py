@@ -19,10 +19,9 @@ CONTACTS = {
     r"R_{cc} = 10^{-10} \, G_{cc}": "double small = 1e-10",
     r"\min\!\left( \frac{T_{\max}}{T_c}, 10^6 \right)": "ratio < 1e6 ? ratio : 1e6",
     "$10^{-12}$ of what all torques together cause, or $10^{-10}$": "larger(1e-10 * scale, 1e-12 * ",
-    "within a millisecond, between prescribed speeds alone within a microsecond": (
-        "? 1e6 * tolerance : arrived ? larger(round_off, 1e3 * tolerance)"
-    ),
-    "at most $4 n + 5$ rounds": "round <= 4 * nc + 4",
+    "leaves the tolerance of within a millisecond": "return arrived ? larger(round_off, 1e3 * tolerance)",
+    "between prescribed speeds alone within a microsecond": "return 1e6 * tolerance",
+    "at most $4 n + 5$ rounds": "round <= 4 * ws.sys.contacts + 4",
     "while time does not advance, to $10^{-9}$ s": "forced_time <= 1e-9",
     r"0 \le \alpha \le 2": "ample = 2",
     "at most $20 n + 50$": "round < 50 + 20 * set.n",

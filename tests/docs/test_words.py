@@ -27,7 +27,8 @@ BANNED = {
     r"\bhas not\b(?! [a-z]+(?:ed|n)\b)": "does not have",
     r"\bwhatever the\b.{0,30}\bsays\b": "regardless of",
 }
-PAGES = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("docs/guide/*.md"), *ROOT.glob("docs/theory/*.md")]
+FOLDERS = ("", "docs", "docs/guide", "docs/theory", "decisions", "examples/*")
+PAGES = [path for folder in FOLDERS for path in sorted(ROOT.glob(f"{folder}/*.md" if folder else "*.md"))]
 PAGES = [path for path in PAGES if path.name != "CHANGELOG.md"]
 PROGRAMS = sorted([*(ROOT / "src").rglob("*.py"), *(ROOT / "tools").glob("*.py")])
 OTHERS = [ROOT / "Makefile", ROOT / "tools" / "prerequisites.sh", *(ROOT / "cpp" / "include").rglob("c_api.h")]

@@ -84,22 +84,6 @@ def test_the_model_files_of_the_guide(elsewhere: Path) -> None:
         assert driveline.simulate(0.1).status == "done"
 
 
-def test_every_status_is_explained() -> None:
-    from clutchwork.declare.layout import STATUS
-
-    page = (ROOT / "docs" / "guide" / "results.md").read_text(encoding="utf-8")
-    internal = {"done", "rows_full", "events_full", "no_mode", "bad_system"}
-    assert [name for name, *_ in STATUS if name not in internal and f"`{name}`" not in page] == []
-
-
-def test_every_cause_is_explained() -> None:
-    from clutchwork.results.events import CAUSES
-
-    page = (ROOT / "docs" / "guide" / "results.md").read_text(encoding="utf-8")
-    # a code that no event has
-    assert [cause for cause in CAUSES if cause != "start" and f"`{cause}`" not in page] == []
-
-
 def test_every_option_has_a_line_on_its_page(monkeypatch: pytest.MonkeyPatch) -> None:
     from clutchwork.declare.options import SIMULATION
 
@@ -147,12 +131,6 @@ def test_links_lead_somewhere(path: Path) -> None:
     assert [link for link in local if not (path.parent / link).exists()] == []
 
 
-def test_the_tests_that_the_validation_page_names_exist() -> None:
-    named_there = re.findall(r"`(tests/[\w./]+)`", (ROOT / "docs" / "validation.md").read_text(encoding="utf-8"))
-    assert named_there
-    assert [name for name in named_there if not (ROOT / name).exists()] == []
-
-
 def labels(path: Path) -> list[str]:
     """Labels of the numbered equations of a page, in order."""
     return re.findall(r"^ *\$\$ \(([a-z-]+-\d+)\)$", path.read_text(encoding="utf-8"), re.MULTILINE)
@@ -175,3 +153,13 @@ def test_cited_equations_exist() -> None:
             if page not in known or any(number > known[page] for number in cited):
                 missing.append(f"{path.name}: {page} {numbers}")
     assert missing == []
+
+
+@pytest.mark.parametrize("name", ["contacts.md", "events.md"])
+def test_every_rule_has_its_number_and_the_code_that_follows_it(name: str) -> None:
+    text = (ROOT / "docs" / "theory" / name).read_text(encoding="utf-8")
+    rules = [int(number) for number in re.findall(r"^\*\*Rule (\d+)\.\*\*", text, re.MULTILINE)]
+    assert rules == list(range(1, len(rules) + 1))
+    core = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "cpp").rglob("*.hpp"))
+    cited = re.findall(rf"docs/theory/{re.escape(name)}, rules? ([\d, ]+)", core)
+    assert {int(number) for numbers in cited for number in re.findall(r"\d+", numbers)} == set(rules)

@@ -96,6 +96,17 @@ PRESSED = [
 ]
 
 
+def test_every_pressure_and_force_on_a_contact_presses() -> None:
+    loads = {
+        (cls, item.name)
+        for cls in samples.declared(Role.CONTACT, Role.COMPOSITE)
+        for item, spec in specs(cls, "signal", "alternative")
+        if spec.unit in ("Pa", "N")
+    }
+    # a negative pressure closes the plates of a synchroniser's other side
+    assert {cls for cls, _ in loads - set(PRESSED)} == {cw.PlateContact}
+
+
 @pytest.mark.parametrize(("cls", "name"), PRESSED)
 def test_a_constant_load_below_zero_is_warned_of(cls: type, name: str) -> None:
     element = samples.driveline(cls).elements[0]

@@ -131,7 +131,8 @@ def test_zero_capacity_is_no_contact() -> None:
             "n", base=d.housing, follower=a, friction=cw.Coulomb(static=1.0, kinetic=1.0), gain=1.0, normal_force=-5.0
         )
     )
-    run = d.simulate(0.5, **TIGHT)
+    with pytest.warns(cw.ModelWarning, match="never presses"):
+        run = d.simulate(0.5, **TIGHT)
     assert len(run.events.changes()) == 0
     for name in ("b", "n"):
         assert set(run[f"{name}.state"]) == {"open"}

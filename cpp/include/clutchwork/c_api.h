@@ -1,12 +1,12 @@
 #ifndef CLUTCHWORK_C_API_H
 #define CLUTCHWORK_C_API_H
 
-/* The narrow line between the core and its doors: Python, FMU, controller. Double precision, SI units.
-   A run lives in memory that the caller gives; the bytes of the system must outlive it. Nothing here allocates.
+/* The interface of the core for Python, controllers and other programs. Double precision, SI units.
+   A run is kept in memory that the caller provides; the bytes of the system must outlive it. Nothing here allocates.
 
-   No call follows a null pointer, an index out of range or a number that is not finite: it is refused, as each call
-   says below, and the run is as it was. Memory must be as long as said. One run belongs to one thread at a time;
-   any number of runs may share the bytes of a system. */
+   A call with a null pointer, an index out of range or a number that is not finite is refused, as documented for each
+   call, and the run is unchanged. Memory must have the stated length. A run may be used by one thread at a time; any
+   number of runs may share the bytes of a system. */
 
 #include <stdint.h>
 
@@ -34,21 +34,20 @@ int cw_set_option(cw_run* run, const char* name, double value);
 int cw_set_input(cw_run* run, int64_t input, double value);
 
 /* A number of the parameter pool, before the run starts or between calls. 1: set; 0: no such number, the value is not
-   finite, or the number is fixed: it says where a curve stands, or which of a few kinds is meant, such as an
-   extrapolation. */
+   finite, or the number is fixed because it locates a curve or selects a variant, such as an extrapolation. */
 int cw_set_param(cw_run* run, int64_t offset, double value);
 
-/* A function that cw_advance asks after every step and every row of a grid; when it returns other than 0, cw_advance
+/* A function that cw_advance calls after every step and every row of a grid; when it returns other than 0, cw_advance
    returns with status interrupted, at most one step later. NULL: none, as at the start. It must not use the run. It is
    not part of a saved state. 1: set; 0: no run. */
 int cw_set_poll(cw_run* run, int (*poll)(void* context), void* context);
 
 /* Integrate to t_end [s]. Grid: `times` holds n requested times, not decreasing, rows are filled for those that were
-   reached. Steps: rows are filled per step, `times` is written. `filled` counts the rows; NULL: it is not wanted.
-   Every row is finite: a run in which a number is not ends with status not_finite before that row; without rows the
-   state alone is looked at.
-   Returns a status code; -1: refused, for t_end is not finite or before the present time, n is negative, or times or
-   rows are NULL though n is not 0. After rows_full, events_full and interrupted it may be called again. */
+   reached. Steps: rows are filled per step, `times` is written. `filled` counts the rows; NULL: not needed.
+   Every row is finite: a run in which a number overflows ends with status not_finite before that row; without rows
+   only the state is checked.
+   Returns a status code; -1: refused because t_end is not finite or before the present time, n is negative, or times
+   or rows are NULL although n is not 0. After rows_full, events_full and interrupted it may be called again. */
 int cw_advance(cw_run* run, double t_end, double* times, double* rows, int64_t n, int steps, int64_t* filled);
 
 /* Present time [s]; NaN for a null pointer. */
@@ -62,8 +61,8 @@ int cw_row(cw_run* run, double* row);
 /* Numbers in one event. */
 int64_t cw_event_size(void);
 
-/* Take the waiting events: writes up to `room` of them, returns how many; -1: refused, for `room` is negative, or
-   `events` NULL though it is not 0. */
+/* Take the pending events: writes up to `room` of them, returns how many; -1: refused because `room` is negative, or
+   `events` is NULL although it is not 0. */
 int64_t cw_take_events(cw_run* run, double* events, int64_t room);
 
 /* Counters: steps, rejected, evaluations, jacobians, events, phases, locations. Nothing for null pointers. */
@@ -76,19 +75,19 @@ int64_t cw_detail(const cw_run* run, double* value);
 int64_t cw_detail_row(const cw_run* run);
 
 /* Complete state of a run, bit for bit: bytes of it (-1 for a null pointer); write them to memory of `room` bytes and
-   return their number (-1: refused, for there is too little room or a null pointer).
-   The bytes hold no pointers. They carry the versions of core and state, a fingerprint of the system, their size and a
-   checksum. */
+   return their number (-1: refused because there is too little room, or a null pointer).
+   The bytes contain no pointers. They carry the versions of core and state, a fingerprint of the system, their size and
+   a checksum. */
 int64_t cw_state_size(const cw_run* run);
 int64_t cw_save(const cw_run* run, void* bytes, int64_t room);
 
-/* Put a run of the same system, in any memory, where cw_save was called: what follows has the same bits. Options,
-   inputs and parameters come back too. 1: done; 0: refused, the run is as it was: the state belongs to another system
-   or version, has another size, is damaged, or holds a value that no run of this system has. */
+/* Restore a run of the same system, in any memory, to the state in which cw_save was called: it continues with the same
+   bits. Options, inputs and parameters are restored too. 1: done; 0: refused and the run unchanged, because the state
+   belongs to another system or version, has another size, is damaged, or contains an impossible value. */
 int cw_restore(cw_run* run, const void* bytes, int64_t n);
 
-/* Kinetic coefficient at a slip and static coefficient of a law at its inputs (as a temperature). 1: done; 0: no such
-   law, or a null pointer for params, kinetic or hold. */
+/* Kinetic coefficient at a slip and static coefficient of a law at its inputs (such as a temperature). 1: done; 0: no
+   such law, or a null pointer for params, kinetic or hold. */
 int cw_law(int number, const double* params, const double* inputs, const double* points, int64_t n_points, double slip,
            double* kinetic, double* hold);
 

@@ -72,7 +72,7 @@ def _run_parser(run: argparse.ArgumentParser) -> None:
     run.add_argument("--csv", type=Path, metavar="FILE", help="write all signals")
     run.add_argument("--events", type=Path, metavar="FILE", help="write the events")
     run.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
-    run.add_argument("--quiet", action="store_true", help="no report and no progress bar")
+    run.add_argument("--quiet", action="store_true", help="print no report and no progress bar")
     add_options(run)
 
 

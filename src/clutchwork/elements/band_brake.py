@@ -24,9 +24,9 @@ class BandBrake(Heating):
     friction: Law = law("friction coefficient over slip, static coefficient at rest")
     radius: float = param("m", "radius of the drum", above=0.0)
     wrap: float = param("rad", "angle over which the band lies on the drum", above=0.0, at_most=3 * tau)
-    reversed: bool = flag("energises itself in backward slip", default=False)
+    reversed: bool = flag("self-energising in backward slip", default=False)
     force: SignalLike = signal("N", "force at the pulled end; below zero counts as zero", presses=True)
     tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
     )
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

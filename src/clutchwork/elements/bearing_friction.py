@@ -19,6 +19,6 @@ class BearingFriction(Heating):
     friction: Law = law("friction coefficient over slip, static coefficient at rest")
     torque: float = param("N m", "torque per unit of coefficient", above=0.0, units=("N",))
     tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
     )
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

@@ -38,7 +38,7 @@ class Brake(Heating):
     )
     normal_force: SignalLike | None = signal(
         "N",
-        "force on the linings, or its share",
+        "force on the linings, or its share, 0 to 1",
         default=None,
         units=("1",),
         gain=GAIN_OF_FORCE,
@@ -46,6 +46,6 @@ class Brake(Heating):
         presses=True,
     )
     tolerance: float = option(
-        "rad/s", "speed below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+        "rad/s", "speed below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
     )
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

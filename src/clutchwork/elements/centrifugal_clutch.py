@@ -25,10 +25,10 @@ class CentrifugalClutch(Heating):
     mass: float = param("kg", "mass of each shoe", above=0.0)
     radius: float = param("m", "distance of the centre of mass of a shoe from the axis", above=0.0)
     drum_radius: float = param("m", "inner radius of the drum", above=0.0)
-    onset: float = param("rad/s", "speed at which the springs let go", at_least=0.0)
+    onset: float = param("rad/s", "speed at which the shoes leave their springs", at_least=0.0)
     lag: float = param("s", "time constant of the shoes", default=5e-3, above=0.0)
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     def parts(self) -> Iterable[Component | ThermalNode]:
         """The shoes and the contact."""

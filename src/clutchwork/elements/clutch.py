@@ -28,8 +28,8 @@ class Clutch(Heating):
     pressure where that is known: in N with a gain in m, or as a share from 0 to 1 with a gain in N m.
     """
 
-    base: Node = port("side that the slip is counted from")
-    follower: Node = port("side whose motion counts positive: slip = follower - base")
+    base: Node = port("side that the slip is measured from")
+    follower: Node = port("side whose motion is positive: slip = follower - base")
     friction: Law = law("friction coefficient over slip, static coefficient at rest")
     gain: float = param(
         "m3", "torque per unit of pressure and coefficient", above=0.0, units=GAIN_OF_FORCE + GAIN_OF_PRESSURE
@@ -39,7 +39,7 @@ class Clutch(Heating):
     )
     normal_force: SignalLike | None = signal(
         "N",
-        "force on the linings, or its share",
+        "force on the linings, or its share, 0 to 1",
         default=None,
         units=("1",),
         gain=GAIN_OF_FORCE,
@@ -47,6 +47,6 @@ class Clutch(Heating):
         presses=True,
     )
     tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
     )
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

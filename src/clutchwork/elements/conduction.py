@@ -13,6 +13,6 @@ class Conduction(Component):
     known. For one that grows with a speed take `Convection`, for the inside of a plate `ThermalPlate`.
     """
 
-    hot: ThermalNode = port("node that the heat leaves where it is warmer", domain="thermal")
+    hot: ThermalNode = port("node that the heat leaves if it is warmer", domain="thermal")
     cold: ThermalNode = port("node that the heat enters", domain="thermal")
     conductance: float = param("W/K", "heat flow per difference of temperature", at_least=0.0)

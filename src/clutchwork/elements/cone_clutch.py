@@ -35,8 +35,8 @@ class ConeClutch(Heating):
     pressure.
     """
 
-    base: Node = port("side that the slip is counted from")
-    follower: Node = port("side whose motion counts positive: slip = follower - base")
+    base: Node = port("side that the slip is measured from")
+    follower: Node = port("side whose motion is positive: slip = follower - base")
     friction: Law = law("friction coefficient over slip, static coefficient at rest")
     radius: float | None = param(
         "m", "effective radius, in place of the diameters", default=None, above=0.0, example=0.05
@@ -46,8 +46,8 @@ class ConeClutch(Heating):
     half_angle: float = param("rad", "angle between the surface and the axis", above=0.0, at_most=pi / 2, example=0.12)
     surfaces: int = param("1", "number of friction surfaces", default=1, above=0.0, whole=True)
     force: SignalLike = signal("N", "axial force; below zero counts as zero", presses=True)
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""

@@ -13,7 +13,7 @@ class Convection(Component):
     conductance stays at its last value.
     """
 
-    hot: ThermalNode = port("node that the heat leaves where it is warmer", domain="thermal")
+    hot: ThermalNode = port("node that the heat leaves if it is warmer", domain="thermal")
     cold: ThermalNode = port("node that the heat enters", domain="thermal")
     conductance: Points | float = curve(
         "rad/s", "W/K", "conductance over abs(speed), or a number", units_x=("m/s",), at_least=0.0, constant=True

@@ -13,8 +13,8 @@ class Damper(Heating):
     Use it for fluid couplings near synchronous speed, viscous losses and drag in oil.
     """
 
-    base: Node = port("side that the rate is counted from")
-    follower: Node = port("side whose motion counts positive")
+    base: Node = port("side that the rate is measured from")
+    follower: Node = port("side whose motion is positive")
     damping: float = param("N m s/rad", "viscous damping", at_least=0.0, units=("N s/m",))
 
     def passive(self) -> Passive:

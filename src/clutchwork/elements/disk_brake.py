@@ -46,8 +46,8 @@ class DiskBrake(Heating):
     normal_force: SignalLike | None = signal(
         "N", "force on each pad", default=None, instead_of="pressure", presses=True
     )
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     @property
     def gain(self) -> float:

@@ -47,8 +47,8 @@ class DiskClutch(Heating):
     Equations: docs/theory/clutches.md.
     """
 
-    base: Node = port("side that the slip is counted from")
-    follower: Node = port("side whose motion counts positive: slip = follower - base")
+    base: Node = port("side that the slip is measured from")
+    follower: Node = port("side whose motion is positive: slip = follower - base")
     friction: Law = law(
         "friction coefficient over slip, static coefficient at rest", default=Coulomb(static=0.35, kinetic=0.3)
     )
@@ -73,27 +73,25 @@ class DiskClutch(Heating):
         choices=("bidirectional", "unidirectional"),
         default="bidirectional",
     )
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: exact zero", default=1e-3, at_least=0.0)
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
-    thermal_mass: float | None = param("J/K", "heat capacity of its own, none by default", default=None, above=0.0)
+    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=1e-3, at_least=0.0)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
+    thermal_mass: float | None = param("J/K", "heat capacity of the clutch, none by default", default=None, above=0.0)
     initial_temperature: float = param("K", "temperature of the thermal mass at the start", default=300.0, above=0.0)
     fault: str = choice(
-        "what fails: nothing, it opens for good, or it stays locked once it is",
+        "what fails: nothing, it opens permanently, or it stays locked once it has locked",
         choices=("none", "cannot_transmit", "cannot_unlock"),
         default="none",
     )
     fault_time: float | None = param("s", "time that triggers the fault", default=None, at_least=0.0)
     fault_signal: SignalLike | None = signal("1", "triggers the fault above 0.5", default=None, otherwise=0.0)
     report: str = choice(
-        "what a fault does: an event, also a warning, or the end of the run",
+        "effect of a fault: an event, a warning as well, or the end of the run",
         choices=("none", "warning", "error"),
         default="warning",
     )
-    wear_rate: float | None = param(
-        "m3/J", "volume worn off per energy of sliding, none by default", default=None, above=0.0
-    )
+    wear_rate: float | None = param("m3/J", "worn volume per sliding energy, none by default", default=None, above=0.0)
     running_in: float = param(
-        "m", "depth in which the derating nears that of uniform wear, by 1/e", default=1e-4, above=0.0
+        "m", "depth of wear over which the derating approaches that of uniform wear, by 1/e", default=1e-4, above=0.0
     )
     touch_shift: float = param("Pa/m", "rise of the threshold with wear", default=0.0, at_least=0.0, units=("N/m",))
 

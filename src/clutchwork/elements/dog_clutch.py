@@ -14,7 +14,7 @@ from clutchwork.elements.bases.heating import Heating
     Role.TORQUE,
     states=(
         State("angle", "rad", "angle of follower - base"),
-        State("sleeve", "1", "place of the sleeve, 0 out, 1 in"),
+        State("sleeve", "1", "position of the sleeve, 0 out, 1 in"),
     ),
 )
 class DogClutch(Heating):
@@ -31,18 +31,18 @@ class DogClutch(Heating):
     work: ClassVar[Work] = Work.STORE | Work.LOSS
     jumps: ClassVar[bool] = True
 
-    base: Node = port("side that the slip is counted from")
-    follower: Node = port("side whose motion counts positive")
+    base: Node = port("side that the slip is measured from")
+    follower: Node = port("side whose motion is positive")
     teeth: int = param("1", "number of teeth around", above=0.0, whole=True, example=24)
-    gap: float = param("rad", "play of a tooth in its gap, the whole backlash", above=0.0, example=0.02)
+    gap: float = param("rad", "total backlash of a tooth in its gap", above=0.0, example=0.02)
     stiffness: float = param("N m/rad", "stiffness of the flanks", above=0.0, example=1e5)
     damping: float = param("s/rad", "damping of the flanks over their force", default=1.0, at_least=0.0)
     speed: float = param("rad/s", "slip above which it does not mesh", default=5.0, above=0.0)
-    reach: float = param("1", "place of the sleeve at which tips meet", default=0.5, above=0.0, below=1.0)
+    reach: float = param("1", "position of the sleeve at which the tips meet", default=0.5, above=0.0, below=1.0)
     lag: float = param("s", "time constant of the sleeve", default=0.02, above=0.0)
-    pointed: bool = flag("pointed teeth, which find their gap by themselves", default=False)
+    pointed: bool = flag("pointed teeth, which are guided into their gap", default=False)
     reversed: bool = flag("a negative command closes it", default=False)
-    command: SignalLike = signal("1", "place where the sleeve is wanted, 0 out, 1 in")
+    command: SignalLike = signal("1", "wanted position of the sleeve, 0 out, 1 in")
     initial_angle: float = option("rad", "angle at the start, 0 in the middle of a gap", default=0.0)
     engaged: bool = option("1", "in mesh at the start", default=False, flag=True)
 

@@ -38,9 +38,9 @@ class DoubleShoeBrake(Heating):
     )
     force: SignalLike = signal("N", "actuating force on each shoe; below zero counts as zero", presses=True)
     tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
     )
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""

@@ -15,8 +15,8 @@ class Flyweights(Component):
     mass: float = param("kg", "mass of each weight", above=0.0)
     radius: float = param("m", "distance of its centre of mass from the axis", above=0.0)
     onset: float = param("rad/s", "speed at which it leaves its spring", default=0.0, at_least=0.0)
-    lag: float = param("s", "time constant of its way outwards", default=5e-3, above=0.0)
-    speed: SignalLike = signal("rad/s", "shaft that throws it, or a speed")
+    lag: float = param("s", "time constant of its motion outwards", default=5e-3, above=0.0)
+    speed: SignalLike = signal("rad/s", "shaft that rotates it, or a speed")
     initial_force: float = option("N", "force at the start", default=0.0)
 
     def initial_states(self) -> tuple[float, ...]:

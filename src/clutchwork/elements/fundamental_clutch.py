@@ -19,14 +19,14 @@ class FundamentalClutch(Heating):
 
     friction = Coulomb(static=1.0, kinetic=1.0)
 
-    base: Node = port("side that the slip is counted from")
-    follower: Node = port("side whose motion counts positive: slip = follower - base")
+    base: Node = port("side that the slip is measured from")
+    follower: Node = port("side whose motion is positive: slip = follower - base")
     kinetic: SignalLike = signal(
         "N m", "torque while it slips, against the slip; below zero counts as zero", units=("N",)
     )
     upper: SignalLike = signal("N m", "largest torque that it holds, at least zero", units=("N",))
     lower: SignalLike = signal("N m", "smallest torque that it holds, at most zero", units=("N",))
     tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: exact zero", default=1e-3, at_least=0.0, units=("m/s",)
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=1e-3, at_least=0.0, units=("m/s",)
     )
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

@@ -14,7 +14,7 @@ class LinearTorque(Component):
     """
 
     shaft: Node = port("shaft that a positive torque accelerates")
-    base: Node | None = port("member that takes the reaction and that the speed is counted from", default=None)
+    base: Node | None = port("member that takes the reaction and that the speed is measured from", default=None)
     nominal_torque: float = param("N m", "torque at nominal speed", units=("N",))
     nominal_speed: float = param("rad/s", "speed of the nominal torque", above=0.0, units=("m/s",))
     same_direction: bool = flag("whether it acts in the same direction at all speeds", default=False)

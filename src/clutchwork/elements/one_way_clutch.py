@@ -32,7 +32,7 @@ class OneWayClutch(Heating):
 
     one_way: ClassVar[bool] = True
 
-    base: Node = port("side that the slip is counted from")
+    base: Node = port("side that the slip is measured from")
     follower: Node = port("side that may run ahead: slip = follower - base is never negative")
     friction: Law = law("friction of the clutch in parallel", default=Coulomb(static=0.1, kinetic=0.1))
     gain: float = param(
@@ -52,7 +52,7 @@ class OneWayClutch(Heating):
     )
     normal_force: SignalLike | None = signal(
         "N",
-        "force on the linings, or its share",
+        "force on the linings, or its share, 0 to 1",
         default=None,
         units=("1",),
         gain=GAIN_OF_FORCE,
@@ -60,6 +60,6 @@ class OneWayClutch(Heating):
         presses=True,
     )
     tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
     )
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

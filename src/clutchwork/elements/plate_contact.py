@@ -29,38 +29,43 @@ class PlateContact(Heating):
     clutch has. The derating falls from 1 to `worn` as the depth of wear passes `running_in`.
     """
 
-    base: Node = port("side that the slip is counted from")
-    follower: Node = port("side whose motion counts positive: slip = follower - base")
+    base: Node = port("side that the slip is measured from")
+    follower: Node = port("side whose motion is positive: slip = follower - base")
     friction: Law = law("friction coefficient over slip, static coefficient at rest")
     gain: float = param(
         "m3", "torque per unit of pressure and coefficient", above=0.0, units=GAIN_OF_FORCE + GAIN_OF_PRESSURE
     )
     threshold: float = param("Pa", "pressure below which it is open", default=0.0, at_least=0.0, units=("N", "1"))
     worn: float = param("1", "derating of worn plates", default=1.0, above=0.0)
-    running_in: float = param("m", "depth of wear in which it nears `worn`, by the factor 1/e", default=1e-4, above=0.0)
+    running_in: float = param("m", "depth of wear over which it nears `worn`, by 1/e", default=1e-4, above=0.0)
     touch_shift: float = param("Pa/m", "rise of the threshold with wear", default=0.0, units=("N/m", "1/m"))
     reversed: bool = flag("a negative pressure closes it", default=False)
     fault: str = choice(
-        "what fails: nothing, it opens for good, or it stays locked once it is",
+        "what fails: nothing, it opens permanently, or it stays locked once it has locked",
         choices=("none", "cannot_transmit", "cannot_unlock"),
         default="none",
     )
     report: str = choice(
-        "what a fault does: an event, also a warning, or the end of the run",
+        "effect of a fault: an event, a warning as well, or the end of the run",
         choices=("none", "warning", "error"),
         default="warning",
     )
     pressure: SignalLike | None = signal("Pa", "pressure on the piston", default=None, gain=GAIN_OF_PRESSURE)
     normal_force: SignalLike | None = signal(
-        "N", "force on the linings, or its share", default=None, units=("1",), gain=GAIN_OF_FORCE, instead_of="pressure"
+        "N",
+        "force on the linings, or its share, 0 to 1",
+        default=None,
+        units=("1",),
+        gain=GAIN_OF_FORCE,
+        instead_of="pressure",
     )
     wear: SignalLike | None = signal("m", "depth of wear, none by default", default=None, otherwise=0.0)
     fault_signal: SignalLike | None = signal("1", "triggers the fault above 0.5", default=None, otherwise=0.0)
-    fault_time: SignalLike | None = signal("1", "triggers it as well", default=None, otherwise=0.0)
+    fault_time: SignalLike | None = signal("1", "triggers it above 0.5 as well", default=None, otherwise=0.0)
     tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
     )
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     def fault_warning(self) -> str:
         """What to warn of when its fault is triggered."""

@@ -15,6 +15,6 @@ class PrescribedSpeed(Component):
     """
 
     shaft: Node = port("shaft whose speed is given")
-    base: Node | None = port("member that takes the reaction and that the speed is counted from", default=None)
+    base: Node | None = port("member that takes the reaction and that the speed is measured from", default=None)
     speed: SignalLike = signal("rad/s", "wanted speed", units=("m/s",))
     cutoff: float | None = option("Hz", "corner frequency of the low pass, none by default", default=None, above=0.0)

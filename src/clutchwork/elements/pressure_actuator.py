@@ -18,10 +18,10 @@ class PressureActuator(Component):
     the pressure on the plates rises with the time constant `lag`. Below the pressure of the spring it empties again.
     """
 
-    command: SignalLike = signal("Pa", "pressure that is wanted in front of the piston")
+    command: SignalLike = signal("Pa", "wanted pressure at the piston")
     lag: float = param("s", "time constant of the pressure", above=0.0)
     fill_time: float = param("s", "time to fill at `fill_pressure`", default=0.0, at_least=0.0)
-    fill_pressure: float = param("Pa", "command above the spring at which it fills so fast", default=1e5, above=0.0)
+    fill_pressure: float = param("Pa", "command above the spring that fills it in `fill_time`", default=1e5, above=0.0)
     spring: float = param("Pa", "pressure that balances the return spring", default=0.0, at_least=0.0)
     rise: float = param("Pa/s", "fastest rise of the pressure, no limit by default", default=1e15, above=0.0)
     fall: float = param("Pa/s", "fastest fall of the pressure, no limit by default", default=1e15, above=0.0)

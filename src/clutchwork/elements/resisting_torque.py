@@ -19,6 +19,6 @@ class ResistingTorque(Heating):
     work: ClassVar[Work] = Work.SOURCE
 
     shaft: Node = port("shaft that is braked")
-    base: Node | None = port("member that takes the reaction and that the speed is counted from", default=None)
+    base: Node | None = port("member that takes the reaction and that the speed is measured from", default=None)
     torque: SignalLike = signal("N m", "size of the torque", units=("N",))
     speed: float = param("rad/s", "speed at which 76 % of it acts", above=0.0, units=("m/s",))

@@ -13,6 +13,6 @@ class SpeedTorque(Component):
     """
 
     shaft: Node = port("shaft that a positive torque accelerates")
-    base: Node | None = port("member that takes the reaction and that the speed is counted from", default=None)
+    base: Node | None = port("member that takes the reaction and that the speed is measured from", default=None)
     torque: Points = curve("rad/s", "N m", "torque on the shaft over speed", units=("N",), units_x=("m/s",))
     gain: float = param("1", "factor on the torque", default=1.0)

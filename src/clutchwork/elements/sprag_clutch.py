@@ -19,7 +19,7 @@ class SpragClutch(Heating):
 
     one_way: ClassVar[bool] = True
 
-    base: Node = port("side that the slip is counted from")
+    base: Node = port("side that the slip is measured from")
     follower: Node = port("side that may run ahead: slip = follower - base is not negative until it rolls over")
     friction: Law = law("drag torque over `drag`", default=Coulomb(static=1.0, kinetic=1.0))
     holding: float = param("N m", "torque at which the sprags roll over", above=0.0, units=("N",))
@@ -27,6 +27,6 @@ class SpragClutch(Heating):
         "N m", "drag while it overruns, and after it has rolled over", default=0.0, at_least=0.0, units=("N",)
     )
     tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
     )
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=False, flag=True)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

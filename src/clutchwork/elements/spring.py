@@ -18,8 +18,8 @@ class Spring(Component):
     work: ClassVar[Work] = Work.STORE
     elastic: ClassVar[bool] = True
 
-    base: Node = port("side that the twist is counted from")
-    follower: Node = port("side whose motion counts positive")
+    base: Node = port("side that the twist is measured from")
+    follower: Node = port("side whose motion is positive")
     stiffness: float = param("N m/rad", "torsional stiffness", above=0.0, units=("N/m",))
     initial_twist: float = param("rad", "twist at the start, free angle taken off", default=0.0, units=("m",))
 

@@ -19,8 +19,8 @@ class SpringDamper(Heating):
     work: ClassVar[Work] = Work.STORE | Work.LOSS
     elastic: ClassVar[bool] = True
 
-    base: Node = port("side that the twist is counted from")
-    follower: Node = port("side whose motion counts positive")
+    base: Node = port("side that the twist is measured from")
+    follower: Node = port("side whose motion is positive")
     stiffness: float = param("N m/rad", "torsional stiffness", above=0.0, units=("N/m",))
     damping: float = param("N m s/rad", "viscous damping", default=0.0, at_least=0.0, units=("N s/m",))
     initial_twist: float = param("rad", "twist at the start, free angle taken off", default=0.0, units=("m",))

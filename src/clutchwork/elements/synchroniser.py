@@ -33,12 +33,12 @@ class Synchroniser(Heating):
     half_angle: float = param("rad", "angle between the surface of the cones and the axis", above=0.0, at_most=pi / 2)
     surfaces: int = param("1", "friction surfaces of each cone", default=1, above=0.0, whole=True)
     teeth: int = param("1", "number of dog teeth", default=36, above=0.0, whole=True)
-    gap: float = param("rad", "play of a tooth in its gap, the whole backlash", default=0.01, above=0.0)
+    gap: float = param("rad", "total backlash of a tooth in its gap", default=0.01, above=0.0)
     stiffness: float = param("N m/rad", "stiffness of the flanks", default=1e5, above=0.0)
     damping: float = param("s/rad", "damping of the flanks over their force", default=1.0, at_least=0.0)
     speed: float = param("rad/s", "slip above which the sleeve is held back", default=1.0, above=0.0)
     lag: float = param("s", "time constant of the sleeve", default=0.02, above=0.0)
-    command: SignalLike = signal("1", "where the sleeve is wanted: 1 forward, 0 neutral, -1 backward")
+    command: SignalLike = signal("1", "wanted position of the sleeve: 1 forward, 0 neutral, -1 backward")
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""

@@ -15,11 +15,11 @@ class TorqueLimiter(Heating):
     away; `Coulomb(static=1.0, kinetic=0.8)` lets it slip with less.
     """
 
-    base: Node = port("side that the slip is counted from")
-    follower: Node = port("side whose motion counts positive: slip = follower - base")
+    base: Node = port("side that the slip is measured from")
+    follower: Node = port("side whose motion is positive: slip = follower - base")
     torque: float = param("N m", "torque at which it slips, per coefficient", above=0.0, units=("N",))
     friction: Law = law("torque over `torque`, one by default", default=Coulomb(static=1.0, kinetic=1.0))
     tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: exact zero", default=0.0, at_least=0.0, units=("m/s",)
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
     )
-    locked: bool = option("1", "locked at the start, with an impulse if need be", default=True, flag=True)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=True, flag=True)

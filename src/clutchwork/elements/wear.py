@@ -15,7 +15,7 @@ class Wear(Component):
     Source: J. F. Archard 1953, doi:10.1063/1.1721448.
     """
 
-    rate: float = param("m3/J", "volume worn off per energy of sliding", above=0.0)
+    rate: float = param("m3/J", "worn volume per sliding energy", above=0.0)
     area: float = param("m2", "area that wears, of all surfaces", above=0.0)
     initial_depth: float = param("m", "depth at the start", default=0.0, at_least=0.0)
     heat: SignalLike = signal("W", "power of sliding, as `HeatFlow(contact)`")

@@ -17,8 +17,8 @@ class WetDrag(Heating):
     doi:10.3390/lubricants13010027.
     """
 
-    base: Node = port("side that the slip is counted from")
-    follower: Node = port("side whose motion counts positive")
+    base: Node = port("side that the slip is measured from")
+    follower: Node = port("side whose motion is positive")
     peak: float = param("N m", "largest drag", at_least=0.0, units=("N",))
     speed: float = param("rad/s", "slip of the largest drag", above=0.0, units=("m/s",))
     scale: SignalLike | None = signal("1", "factor on the drag, 1 by default", default=None, otherwise=1.0)

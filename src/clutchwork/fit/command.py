@@ -29,7 +29,7 @@ def add_command(subparsers: Any) -> None:
         epilog="Exit code 1: the samples do not determine all free parameters; the results are written all the same.",
     )
     fit.set_defaults(command=fit_command)
-    fit.add_argument("file", type=Path, help="CSV file; a unit in brackets behind the name of a column is converted")
+    fit.add_argument("file", type=Path, help="CSV file; a unit in brackets after the name of a column is converted")
     fit.add_argument("--law", required=True, metavar="KIND", help="friction law, such as stribeck")
     fit.add_argument("--slip", required=True, metavar="COL", help="column of the slip [rad/s or m/s]")
     fit.add_argument("--torque", required=True, metavar="COL", help="column of the friction torque [N m or N]")
@@ -45,11 +45,11 @@ def add_command(subparsers: Any) -> None:
         help="start values, points of a curve as x:y/x:y, lists as y/y, rows of lists as y/y//y/y",
     )
     fit.add_argument(
-        "--free", metavar="NAME,...", help="what is searched for; default: all that does not start at zero"
+        "--free", metavar="NAME,...", help="parameters to be fitted; default: all that do not start at zero"
     )
     fit.add_argument("--bounds", metavar="NAME=LOW:HIGH,...", help="narrower bounds; a side may be empty")
     fit.add_argument("--rest", type=float, metavar="SLIP", help="abs(slip) below which a sample counts as at rest")
-    fit.add_argument("--confidence", type=float, default=0.95, help="of the intervals, default 0.95")
+    fit.add_argument("--confidence", type=float, default=0.95, help="confidence of the intervals, default 0.95")
     fit.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "fit"), help="default: out/fit")
     fit.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
 

@@ -32,7 +32,7 @@ def add_command(subparsers: Any) -> None:
     rig.add_argument("--preset", metavar="NAME", help="where the laws take their parameters from")
     rig.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a setting")
     rig.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "rig"), help="default: out/rig")
-    rig.add_argument("--signals", action="store_true", help="write all signals of every run too")
+    rig.add_argument("--signals", action="store_true", help="also write all signals of every run")
     rig.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
 
 

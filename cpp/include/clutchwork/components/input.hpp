@@ -141,6 +141,7 @@ void signal_range(const Workspace<T>& ws, int i, double t, double& low, double& 
 }
 
 /// Whether values of signals may come from outside at time t: what the signals do there waits for them.
+/// docs/theory/events.md, rule 2
 template <class T>
 bool awaits_values(const Workspace<T>& ws, double t) {
   if (ws.in.next_knot < t) return false;

@@ -66,6 +66,7 @@ void follow_slip(Workspace<T>& ws, int c, double slip, double tolerance) {
 }
 
 /// List who may stick; all others get their mode. A freewheel that prescribed speeds turn backward ends it (-1: none).
+/// docs/theory/contacts.md, rule 7
 template <class T>
 int choose_candidates(Workspace<T>& ws, int located, double tolerance) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
@@ -133,13 +134,14 @@ double slope_noise(const Workspace<T>& ws, const BoundedProblem<T>& p, int a, in
 }
 
 /// Whether candidate a is a freewheel that its torque cannot keep from running backward.
+/// docs/theory/contacts.md, rule 3
 template <class T>
 bool overruns(const Workspace<T>& ws, const BoundedProblem<T>& p, int a) {
   return contact_one_way(ws, ws.decision.list[a]) && value(p.slope[a]) < 0;
 }
 
 /// Of the bound torques that cannot hold, the first of a freewheel, else the one that gives way most (-1: all hold).
-/// Candidates on the way are locked.
+/// Candidates on the way are locked. docs/theory/contacts.md, rule 1
 template <class T>
 int weakest(Workspace<T>& ws, const BoundedProblem<T>& p, int located, double tolerance) {
   int first = -1;
@@ -166,7 +168,7 @@ int unheld(const Workspace<T>& ws, const BoundedProblem<T>& p, double tolerance)
 }
 
 /// A contact that was released and then, others having lost torque too, accelerates the other way (-1: none).
-/// It may stick after all; only the first release of a contact is taken back.
+/// It may stick after all; only the first release of a contact is taken back. docs/theory/contacts.md, rule 2
 template <class T>
 int turned_back(Workspace<T>& ws, const BoundedProblem<T>& p) {
   const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements);

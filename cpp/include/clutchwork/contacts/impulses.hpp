@@ -51,6 +51,7 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
 }
 
 /// Contacts that an impulse must bring to rest, and all freewheels, which it must not turn backward.
+/// docs/theory/contacts.md, rule 8
 template <class T, class Stops>
 int impulse_contacts(const Workspace<T>& ws, Stops&& stops, int* list) {
   int n = 0;

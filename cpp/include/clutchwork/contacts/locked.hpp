@@ -208,6 +208,7 @@ CLUTCHWORK_INLINE void locked_torques(Workspace<T>& ws, const T* carried, Give&&
 }
 
 /// Force the contacts of set k to slip the way in which the set gives way at its limit load.
+/// docs/theory/contacts.md, rule 6
 template <class T>
 void break_set(Workspace<T>& ws, int k, const T* carried) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));

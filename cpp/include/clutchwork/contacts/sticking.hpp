@@ -110,6 +110,7 @@ bool is_closed(const Workspace<T>& ws, int c) {
 }
 
 /// Static torque that a contact can use in a decision: one that rises from zero counts as it is a nanosecond later.
+/// docs/theory/events.md, rule 9
 template <class T>
 T usable_capacity(const Workspace<T>& ws, int c, int direction) {
   const System& sys = ws.sys;
@@ -120,7 +121,7 @@ T usable_capacity(const Workspace<T>& ws, int c, int direction) {
                            sys.points);
 }
 
-/// Tolerance under which a slip counts as zero.
+/// Tolerance under which a slip counts as zero. docs/theory/contacts.md (14)
 template <class T>
 double slip_tolerance(const Workspace<T>& ws) {
   double largest = 0;

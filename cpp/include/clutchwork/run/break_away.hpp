@@ -132,7 +132,7 @@ template <class Form, class Integrator>
   }
 }
 
-/// Where prescribed speeds part what locked contacts hold together.
+/// Where prescribed speeds part what locked contacts hold together. docs/theory/events.md, rule 11
 template <class Form, class Integrator>
 void find_parting(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;

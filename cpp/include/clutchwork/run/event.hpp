@@ -23,6 +23,7 @@ void record(Workspace<T>& ws, const Event& e) {
 }
 
 /// Whether something happens more than 50 times within a microsecond; `count` is its own of ws.events.crowd.
+/// docs/theory/events.md, rule 15
 template <class T>
 bool crowds(Workspace<T>& ws, std::int64_t count) {
   constexpr int most = 50;
@@ -53,7 +54,7 @@ bool knots_crowd(Workspace<T>& ws) {
   return false;
 }
 
-/// Forced break-aways last while time stands.
+/// Forced break-aways last while time stands. docs/theory/contacts.md, rule 5
 template <class T>
 void forget_forced(Workspace<T>& ws) {
   if (ws.time - ws.contact.forced_time <= 1e-9 + 1e-12 * abs(ws.time)) return;

@@ -40,6 +40,7 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
                q2 = guard.sign * value(form.rate(k, step.p(2)));
   const double a1 = g1 - g0 + q0, a2 = q1 - q0, a3 = q2 - q1;
   // a guard that starts on its surface must leave it as the motion does, not as the interpolant does
+  // docs/theory/events.md, rule 3
   const bool fresh = abs(g0) <= 1e3 * noise;
   const double leaving = guard.sign * step.h * value(ws.here.slope[k]);
   const double mend = fresh && leaving * a1 <= 0 ? leaving - a1 : 0.0;
@@ -122,7 +123,7 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
   const int nz = form.nz();
-  // round-off of a margin: a state at its limit has not passed it
+  // round-off of a margin: a state at its limit has not passed it. docs/theory/events.md, rule 12
   constexpr double noise = 1e-12;
   for (int i = 0; i < ws.guard.n_switching; ++i) {
     const int k = ws.guard.switching[i];
@@ -159,7 +160,7 @@ CLUTCHWORK_INLINE void find_line(Form& form, Step<Form>& step, Hit& hit) {
     const LineGuard& g = ws.guard.line[i];
     const int k = g.branch;
     double g0 = g.sign * (value(e0.rate[k]) - g.level), g1 = g.sign * (value(e1.rate[k]) - g.level);
-    // a start behind the surface, within what counts as zero, is on it
+    // a start behind the surface, within what counts as zero, is on it: docs/theory/events.md, rule 4
     const double shift = g0 < 0 ? smaller(-g0, 1e3 * noise) : 0.0;
     g0 += shift, g1 += shift;
     const double c0 = g0 + g.sign * h * value(e0.slope[k]) / 3, c1 = g1 - g.sign * h * value(e1.slope[k]) / 3;

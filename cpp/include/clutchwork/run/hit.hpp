@@ -13,6 +13,7 @@ struct Hit {
 };
 
 /// Round-off of a load over its largest size: a load that has passed zero passes it again only from farther away.
+/// docs/theory/events.md, rule 10
 inline constexpr double load_noise = 1e-11;
 
 /// Whether a zero at s comes before what has been found.

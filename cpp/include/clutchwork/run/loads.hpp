@@ -73,7 +73,7 @@ bool refresh_loads(Workspace<T>& ws) {
   return changed;
 }
 
-/// The load of a contact passes zero.
+/// The load of a contact passes zero. docs/theory/events.md, rule 8
 template <class T>
 void turn_load(Workspace<T>& ws, int c) {
   ws.contact.pressed[c] = !ws.contact.pressed[c];

@@ -28,7 +28,7 @@ void export_state(Form& form, const T* y) {
   expand(form, y, ws.v);
 }
 
-/// After a knot: right limits of the signals; true when the modes must be decided again.
+/// After a knot: right limits of the signals; true when the modes must be decided again. docs/theory/events.md, rule 1
 template <class Form>
 bool pass_knot(Form& form, Step<Form>& step) {
   auto& ws = form.ws;
@@ -73,7 +73,7 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
 }
 
 /// Whether a contact whose torque jumps with the sign of its slip reverses again and again within a few steps: it
-/// cannot come to rest.
+/// cannot come to rest. docs/theory/events.md, rule 14
 template <class T>
 bool chatters(Workspace<T>& ws) {
   constexpr int window = 800, most = 40;
@@ -109,7 +109,7 @@ void pass_line(Form& form, const LineGuard& guard) {
   list_lines(ws);
 }
 
-/// Open contacts that were at rest and have started to move get their direction.
+/// Open contacts that were at rest and have started to move get their direction. docs/theory/events.md, rule 5
 template <class Form>
 void direct_open(Form& form, const Edge<typename Form::Scalar>& edge) {
   auto& ws = form.ws;

@@ -156,7 +156,7 @@ class Phase {
   }
 
   /// Whether the step must be repeated to end where a guard was hit, because its own estimate does not speak for that
-  /// point.
+  /// point. docs/theory/events.md, rule 7
   CLUTCHWORK_INLINE bool must_land(const Hit& hit) {
     if (hit.what == Hit::nothing || landings_ >= most_landings || hit.s <= 0 || hit.s >= 1) return false;
     return !(error_until(form_, step_, hit.s) <= most_cut_error);
@@ -280,6 +280,7 @@ class Phase {
   }
 
   /// A contact at its limit slips against its torque; a freewheel overruns, or gives way for good.
+  /// docs/theory/contacts.md, rule 4
   void break_away(const Hit& hit) {
     const int c = ws_.happened.contact;
     if (rolls_over(ws_, c)) return fail(ws_, c);

@@ -60,7 +60,7 @@ double first_step(Form& form, Step<Form>& step, double span) {
 }
 
 /// Longest first step after an element has met another piece: half a radian of the swing of what it joins on its own
-/// stiffness. An implicit step much longer would damp a whole collision away unseen.
+/// stiffness. An implicit step much longer would damp a whole collision away unseen. docs/theory/events.md, rule 13
 template <class T>
 double collision_step(const Workspace<T>& ws, int k) {
   const Branch<T>& b = ws.branch[k];
@@ -76,6 +76,7 @@ double collision_step(const Workspace<T>& ws, int k) {
 
 /// Longest step that resolves the oscillating signals, which the error estimate may not see: with work half a radian
 /// of a sine or half a time constant of a decay, for the quadrature; else what the samples of the guards need.
+/// docs/theory/events.md, rule 6
 template <class T>
 double signal_step(const Workspace<T>& ws) {
   double fastest = 0;

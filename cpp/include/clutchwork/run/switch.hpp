@@ -75,7 +75,7 @@ int backward_freewheel(const Workspace<T>& ws) {
 }
 
 /// Impulses, then modes; the impulse of a stop within a tolerance may bring others to rest, or break them loose.
-/// `running`: all is decided.
+/// `running`: all is decided. docs/theory/contacts.md, rule 9
 template <class T>
 Status decide(Workspace<T>& ws, bool at_start) {
   const int located = ws.happened.contact;

@@ -15,7 +15,7 @@ class Heating(Component):
 
     heat: ThermalNode | None = port("thermal node that takes its heat", default=None, domain="thermal", last=True)
     heat_share: float = option(
-        "1", "share of it, the rest is not followed", default=1.0, at_least=0.0, at_most=1.0, last=True
+        "1", "share of its heat; the rest is not tracked", default=1.0, at_least=0.0, at_most=1.0, last=True
     )
 
     def heat_path(self) -> HeatPath | None:

@@ -1,0 +1,68 @@
+"""Limits, defaults and exit codes on the pages are those of the code."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import fields
+
+import pytest
+
+from clutchwork.base import archive
+from clutchwork.command import main
+from clutchwork.command.main import EXIT_CODES
+from clutchwork.declare.options import Options
+from clutchwork.files import model_file
+from clutchwork.model.problems import LONGEST_NAME
+from clutchwork.model.temperatures import COLDEST
+from clutchwork.signals.bases import column_file
+from support.pages import page, plain, table
+from support.project import ROOT
+
+MODEL_FILES, START = page("guide/model-files.md"), page("guide/start.md")
+SENTENCES = {
+    "model files": (MODEL_FILES, f"{model_file.MOST_BYTES / 1e6:g} MB for a model file"),
+    "CSV files": (MODEL_FILES, f"{column_file.MOST_BYTES / 1e6:g} MB and two million lines for a CSV file"),
+    "archives": (MODEL_FILES, f"{archive.MOST_BYTES / 1e6:g} MB packed and unpacked"),
+    "names": (MODEL_FILES, f"of at most {LONGEST_NAME} characters"),
+    "temperatures": (MODEL_FILES, f"temperature below {COLDEST:g} K"),
+    "temperatures in the changelog": ((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), f"below {COLDEST:g} K"),
+    "interrupts": (page("guide/results.md"), f"exits with {main.INTERRUPTED}"),
+    "early ends": (page("guide/results.md"), f"the exit code is {main.STOPPED}"),
+}
+
+
+@pytest.mark.parametrize("name", SENTENCES)
+def test_a_limit_is_that_of_the_code(name: str) -> None:
+    text, words = SENTENCES[name]
+    assert words in re.sub(r"\[(.*?)\]\(.*?\)", r"\1", plain(text))
+
+
+def test_lines_of_a_csv_file() -> None:
+    assert column_file.MOST_LINES == 2_000_000
+
+
+def test_exit_codes() -> None:
+    assert {int(code): words for code, words in table(MODEL_FILES, "exit code")} == EXIT_CODES
+
+
+def test_defaults_of_options() -> None:
+    rows = {name: cell for row in table(START, "option") for name, cell in _options(row)}
+    assert set(rows) == {item.name for item in fields(Options)}
+    words = {"none": None, "automatic": None, "on": True, "10 million": 10_000_000, "100 000": 100_000}
+    for item in fields(Options):
+        shown = rows[item.name]
+        assert words.get(shown, shown.strip('"')) == item.default or float(shown) == item.default, item.name
+
+
+def _options(row: list[str]) -> list[tuple[str, str]]:
+    """Names and defaults of one row; one default may stand for all names."""
+    names = [name.strip("`") for name in row[0].split(", ")]
+    defaults = [cell.strip("`") for cell in row[1].split(", ")]
+    return list(zip(names, defaults * len(names) if len(defaults) == 1 else defaults, strict=True))
+
+
+def test_the_speed_that_the_readme_claims_is_measured() -> None:
+    """A gear shift takes a fraction of a millisecond."""
+    assert "A gear shift takes a fraction of a millisecond" in plain((ROOT / "README.md").read_text(encoding="utf-8"))
+    (shift,) = [row[1] for row in table(page("benchmarks.md"), "what") if row[0].startswith("shift: Rodas5P, core")]
+    assert float(shift.partition(" us")[0]) < 500.0
