@@ -93,7 +93,7 @@ int cw_set_option(cw_run* run, const char* name, double value) {
              positive = value >= 1e-300 && value <= 1e300;
   if (same(name, "rtol") && positive) return o.rtol = value, 1;
   if (same(name, "atol") && positive) return o.atol = value, 1;
-  if (same(name, "method") && whole && value <= method_count) return o.method = Method(int(value)), 1;
+  if (same(name, "method") && whole && value <= last_method) return o.method = Method(int(value)), 1;
   if (same(name, "first_step")) return o.first_step = value, 1;
   if (same(name, "max_step") && value >= 1e-300) return o.max_step = value, 1;
   if (same(name, "max_steps") && whole) return o.max_steps = std::int64_t(value), 1;

@@ -15,7 +15,7 @@ void describe(W& ws, A& a) {
   const System& s = ws.sys;
   const std::int64_t nc = s.contacts, nd = s.elements + nc;
   auto& o = ws.options;
-  a.number(o.rtol, 1e-300, 1e300), a.number(o.atol, 1e-300, 1e300), a.whole(o.method, 0, method_count);
+  a.number(o.rtol, 1e-300, 1e300), a.number(o.atol, 1e-300, 1e300), a.whole(o.method, 0, last_method);
   a.number(o.first_step, 0, infinity), a.number(o.max_step, 1e-300, infinity);
   a.whole(o.max_steps, 0, most), a.whole(o.max_events, 0, most), a.whole(o.angles, 0, 1), a.whole(o.work, 0, 1);
   auto& n = ws.statistics;
@@ -24,7 +24,7 @@ void describe(W& ws, A& a) {
 
   a.time(ws.time), a.number(ws.last_step, 0, 1e300);
   a.whole(ws.started, 0, 1), a.whole(ws.fresh_phase, 0, 1), a.whole(ws.params_changed, 0, 1);
-  a.whole(ws.reduced.method, 1, method_count), a.number(ws.events.crowd_time), a.number(ws.contact.forced_time),
+  a.whole(ws.reduced.method, 1, last_method), a.number(ws.events.crowd_time), a.number(ws.contact.forced_time),
       a.number(ws.in.next_knot);
   a.whole(ws.guard.n_faulty, 0, nc), a.whole(ws.contact.failed, -1, nc - 1), a.whole(ws.guard.n_loads, 0, nc);
   a.whole(ws.guard.reversals, 0, 1 << 30), a.whole(ws.guard.reversals_since, 0, most);
