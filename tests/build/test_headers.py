@@ -13,8 +13,9 @@ import pytest
 
 from support import project
 
-HEADERS = project.ROOT / "cpp/include/clutchwork"
-# a room may include itself and those before it; files at the root, elements and laws belong to the first one
+HEADERS, SOURCES = project.ROOT / "cpp/include/clutchwork", project.ROOT / "cpp/src"
+# a room may include itself and those before it; files at the root, elements, laws and the parts of the workspace belong
+# to the first one
 ROOMS = ("components", "contacts", "motion", "run")
 REGISTRY = "registry.gen.hpp"
 Includes = Mapping[str, Sequence[str]]
@@ -51,7 +52,7 @@ def includes_of_the_core() -> Includes:
 
 
 def test_every_folder_is_a_room() -> None:
-    assert {path.name for path in HEADERS.iterdir() if path.is_dir()} == {*ROOMS, "elements", "laws"}
+    assert {path.name for path in HEADERS.iterdir() if path.is_dir()} == {*ROOMS, "elements", "laws", "workspace"}
 
 
 def test_includes_run_downward() -> None:
@@ -85,14 +86,14 @@ def compiled_alone(header: Path, generated: Path) -> str:
     """What the compiler says about a unit that includes one header and nothing else; "": nothing."""
     command = [
         "c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-x", "c++",
-        "-I", str(HEADERS.parent), "-I", str(generated), "-",
+        "-I", str(HEADERS.parent), "-I", str(SOURCES), "-I", str(generated), "-",
     ]  # fmt: skip
     unit = f'#include "{header}"\n'
     return subprocess.run(command, input=unit, capture_output=True, text=True, check=False).stderr
 
 
 def test_every_header_compiles_alone(generated: Path) -> None:
-    headers = sorted(HEADERS.rglob("*.h*"))
+    headers = sorted([*HEADERS.rglob("*.h*"), *SOURCES.glob("*.hpp")])
     with ThreadPoolExecutor(2) as pool:
         found = list(pool.map(lambda header: compiled_alone(header, generated), headers))
     assert "".join(found) == ""

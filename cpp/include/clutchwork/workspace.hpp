@@ -27,7 +27,7 @@ struct Workspace {
   Branch<T>* branch = nullptr;
   int* branch_of = nullptr;  ///< of each direction, -1: none
 
-  Inputs<T> in;
+  Signals<T> in;
   Contacts<T> contact;
   Happened<T> happened;
   Held<T> held;

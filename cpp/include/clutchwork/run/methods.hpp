@@ -13,9 +13,9 @@ struct MethodList {
   static constexpr int count = sizeof...(Integrators);
 };
 
-/// In the order of Method, after `automatic`: a new integrator is its header and a line here.
+/// In the order of Method, after `automatic`: a new integrator is its header, a line here and its name.
 using Methods = MethodList<Rodas5P, Dopri5>;
-static_assert(Methods::count == method_count, "run/methods.hpp: as many integrators as Method names");
+static_assert(Methods::count == last_method, "run/methods.hpp: as many integrators as Method names");
 
 /// Call f with the tag of the integrator behind a method; nothing for `automatic`.
 template <class F>

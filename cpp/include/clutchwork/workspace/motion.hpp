@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/workspace/inputs.hpp>
+#include <clutchwork/workspace/signals.hpp>
 
 /// The motion of one mode: geometry, reduced coordinates, derivatives, shared states.
 namespace clutchwork {

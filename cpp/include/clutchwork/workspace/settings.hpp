@@ -11,7 +11,7 @@ inline constexpr double infinity = __builtin_huge_val();
 enum Mode : int { backward = -1, locked = 0, forward = 1, open = 2 };
 enum class Cause : int { initial, slip_zero, torque_limit, input, consequence, impulse, restart, passing, fault };
 enum class Method : int { automatic, rodas5p, dopri5 };
-inline constexpr int method_count = 2;  ///< without `automatic`
+inline constexpr int last_method = 2;  ///< without `automatic`
 
 /// Counters of a run.
 struct Statistics {

@@ -18,7 +18,7 @@ struct Signal {
 /// What components read, through references to signals, shared states, rates and heats; the prescribed speeds come
 /// last.
 template <class T>
-struct Inputs {
+struct Signals {
   Signal* signal = nullptr;
   int n_refs = 0, n_varying = 0;
   int *ref_signal = nullptr, *varying = nullptr;
