@@ -19,7 +19,7 @@ import clutchwork  # noqa: F401  importing the package fills the registry
 import element_figures
 import element_pages
 from clutchwork.declare.schema import REGISTRY, Role, State, specs
-from reference_fields import described, header, linked, summary, table
+from reference_fields import entry, header, linked, summary, table
 
 ROOT = Path(__file__).resolve().parent.parent
 THEORY = ROOT / "docs" / "theory" / "friction-laws.md"
@@ -62,10 +62,10 @@ def _signals() -> Iterator[str]:
     yield SIGNALS
     for kind, cls in sorted(REGISTRY[Role.SIGNAL].items()):
         yield f"\n({kind})=\n## {cls.__name__}\n"
-        yield described(cls)
+        yield entry(cls)
         yield f'In model files: `type = "{kind}"`.\n'
         yield f"{linked(cls, '..')}\n"
-        yield "\n".join(table(cls)).replace("## Fields\n\n", "")
+        yield from table(cls)
 
 
 def _overview(laws: list[tuple[str, Any]]) -> Iterator[str]:
@@ -83,8 +83,9 @@ def _law(kind: str, cls: Any) -> Iterator[str]:
     """One page: what it is, fields, states, an example, equations."""
     sort = "sticks exactly" if cls.sticks else "is compliant: it never locks"
     yield f"({kind})=\n# {cls.__name__}\n"
-    yield described(cls)
+    yield entry(cls)
     yield f'In model files: `type = "{kind}"`. It {sort}.\n\n{linked(cls)}\n'
+    yield "## Fields\n"
     yield from table(cls)
     if cls.states:
         yield f"State: {'; '.join(_states(cls.states))}.{_in_use(cls)}\n"

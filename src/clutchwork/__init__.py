@@ -103,6 +103,9 @@ if TYPE_CHECKING:
     from clutchwork.laws.stribeck import Stribeck as Stribeck
     from clutchwork.laws.tanh import Tanh as Tanh
     from clutchwork.laws.temperature_table import TemperatureTable as TemperatureTable
+    from clutchwork.results.energy import EnergyBalance as EnergyBalance
+    from clutchwork.results.events import Event as Event
+    from clutchwork.results.events import Events as Events
     from clutchwork.results.trajectory import SimulationError as SimulationError
     from clutchwork.results.trajectory import Trajectory as Trajectory
     from clutchwork.run.failure import FaultWarning as FaultWarning
@@ -122,6 +125,9 @@ __version__ = "0.1.0"
 
 # names that are loaded when they are first used, with their module
 _LAZY = {
+    "EnergyBalance": "results.energy",
+    "Event": "results.events",
+    "Events": "results.events",
     "FaultWarning": "run.failure",
     "Interrupted": "run.failure",
     "Options": "declare.options",
