@@ -55,7 +55,7 @@ def pages() -> Iterator[tuple[str, str]]:
 def _overview() -> Iterator[str]:
     yield INTRODUCTION
     for role, heading in ROLES.items():
-        yield f"\n## {heading}\n\n| element | type in files | |\n|---|---|---|"
+        yield f"\n## {heading}\n\n{{.fields}}\n| element | type in files | |\n|---|---|---|"
         for kind, cls in sorted(REGISTRY[role].items()):
             yield f"| [{cls.__name__}](elements/{kind}.md) | `{kind}` | {summary(cls)} |"
     yield "\n```{toctree}\n:hidden:\n:maxdepth: 1\n"
@@ -115,7 +115,7 @@ def _results(cls: Any, example: element_figures.Example) -> Iterator[str]:
         if any(name.endswith(".torque") for name, _ in example.signals)
         else "## Results\n\nOf the example:\n"
     )
-    yield "| signal | unit | |\n|---|---|---|"
+    yield "{.fields}\n| signal | unit | |\n|---|---|---|"
     for name, unit in example.signals:
         last = name.rpartition(".")[2]
         if last not in unused:

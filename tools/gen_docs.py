@@ -32,7 +32,8 @@ What `friction` of a contact may be: the coefficient over slip. Laws that stick 
 are compliant, a function of slip and states of their own; they never lock. The [theory](../theory/friction-laws.md)
 compares them.
 
-| law | type in files | sticks | states | |
+{.fields}
+| law | type in files | at rest | states | |
 |---|---|---|---|---|"""
 
 
@@ -72,8 +73,9 @@ def _overview(laws: list[tuple[str, Any]]) -> Iterator[str]:
     """Table of all friction laws, and their pages."""
     yield LAWS
     for kind, cls in laws:
-        sticks = "yes" if cls.sticks else "no"
-        yield f"| [{cls.__name__}](laws/{kind}.md) | `{kind}` | {sticks} | {len(cls.states) or ''} | {summary(cls)} |"
+        sticks = "sticks" if cls.sticks else "compliant"
+        states = f"{len(cls.states)} state{'s' if len(cls.states) > 1 else ''}" if cls.states else ""
+        yield f"| [{cls.__name__}](laws/{kind}.md) | `{kind}` | {sticks} | {states} | {summary(cls)} |"
     yield "\n```{toctree}\n:hidden:\n:maxdepth: 1\n"
     yield from (f"laws/{kind}" for kind, _ in laws)
     yield "```\n"
