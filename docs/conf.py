@@ -37,7 +37,13 @@ source_suffix = {".md": "markdown"}
 exclude_patterns = ["_build", "elements"]
 nitpicky = False
 
-myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist"]
+myst_enable_extensions = [
+    "dollarmath",
+    "amsmath",
+    "attrs_block",
+    "colon_fence",
+    "deflist",
+]
 myst_heading_anchors = 3
 myst_dmath_double_inline = True
 

@@ -93,12 +93,14 @@ def draw(run: Trajectory, element: Any, path: Path) -> None:
 def _panel(axes: Axes, run: Trajectory, label: str, names: list[str]) -> None:
     factor, unit = scale(run, names)
     for number, name in enumerate(names):
-        values, look = factor * run[name], {"color": COLOURS[number % len(COLOURS)]}
+        values = factor * run[name]
+        look: dict[str, Any] = {"color": COLOURS[number % len(COLOURS)]}
         if name.endswith(".capacity"):
             # on the side on which the torque is
             torque = run[f"{name.removesuffix('capacity')}torque"]
             sign = -1.0 if -torque.min() > torque.max() else 1.0
-            values, look = sign * values, {"color": "#7F7F7F", "linestyle": (0, (4, 2))}
+            values = sign * values
+            look = {"color": "#7F7F7F", "linestyle": (0, (4, 2))}
         axes.plot(run.time, values, label=name, **look)
     for event in run.events.changes():
         axes.axvline(event.time, **EVENT_LINE)

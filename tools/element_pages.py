@@ -9,7 +9,8 @@ from typing import Any
 import element_figures
 import element_programs
 from clutchwork.declare.schema import REGISTRY, Role, Spec, inputs, specs
-from reference_fields import described, linked, summary, table
+from clutchwork.elements.plate_contact import PlateContact
+from reference_fields import entry, linked, summary, table
 
 INTRODUCTION = """# Elements
 
@@ -54,7 +55,7 @@ def pages() -> Iterator[tuple[str, str]]:
 def _overview() -> Iterator[str]:
     yield INTRODUCTION
     for role, heading in ROLES.items():
-        yield f"\n## {heading}\n\n| element | type in files | |\n|---|---|---|"
+        yield f"\n## {heading}\n\n{{.fields}}\n| element | type in files | |\n|---|---|---|"
         for kind, cls in sorted(REGISTRY[role].items()):
             yield f"| [{cls.__name__}](elements/{kind}.md) | `{kind}` | {summary(cls)} |"
     yield "\n```{toctree}\n:hidden:\n:maxdepth: 1\n"
@@ -67,12 +68,13 @@ def _page(kind: str, cls: Any) -> Iterator[str]:
     example = element_figures.example(cls, source)
     before, after, sections = _words(kind)
     yield f"({kind})=\n# {cls.__name__}\n"
-    yield described(cls)
+    yield entry(cls)
     yield f'In model files: `type = "{kind}"`.\n'
     yield f"{linked(cls)}\n"
     yield f"## Example\n\n{before}```python\n{source}```\n\n{after}"
     yield f"```{{figure}} {kind}.svg\n:alt: Result of the example of {cls.__name__}\n:width: 100%\n```\n"
     yield sections or _gain(cls)
+    yield "## Fields\n"
     yield from table(cls)
     yield from _results(cls, example)
     if _has_linings(cls):
@@ -106,27 +108,41 @@ def _shared(name: str) -> str:
 
 def _results(cls: Any, example: element_figures.Example) -> Iterator[str]:
     """The signals that the example reports of the element."""
-    docs = {item.name: spec.doc for item, spec in specs(cls, "signal", "alternative")} | {
-        state.name: state.doc for state in cls.states
-    }
+    docs = _meanings(PlateContact, *_elements()) | _meanings(cls) | MEANINGS
     unused = {name for name, spec in _optional(cls) if name not in example.given}
     yield (
         f'## Results\n\n`run["{example.name}.torque"]` and so on, of the example:\n'
         if any(name.endswith(".torque") for name, _ in example.signals)
         else "## Results\n\nOf the example:\n"
     )
-    yield "| signal | unit | |\n|---|---|---|"
+    yield "{.fields}\n| signal | unit | |\n|---|---|---|"
     for name, unit in example.signals:
         last = name.rpartition(".")[2]
         if last not in unused:
-            meaning = docs.get(last) or MEANINGS.get(last) or _at_port(last)
+            meaning = docs.get(last) or _meanings(cls).get(last.removesuffix("_signal")) or _at_port(last)
             yield f"| `{name}` | {unit} | {meaning} |"
     yield ""
 
 
+def _meanings(*known: Any) -> dict[str, str]:
+    """Meanings of the inputs and states of some elements, the first one that has a name gives its meaning."""
+    found: dict[str, str] = {}
+    for cls in known:
+        for item, spec in specs(cls, "signal", "alternative"):
+            found.setdefault(item.name, spec.doc)
+        for state in cls.states:
+            found.setdefault(state.name, state.doc)
+    return found
+
+
+def _elements() -> Iterator[Any]:
+    for role in ROLES:
+        yield from REGISTRY[role].values()
+
+
 def _optional(cls: type) -> Iterator[tuple[str, Spec]]:
-    """Inputs that count as a number where they are not given, those of the plates inside included."""
-    for known in {cls, *REGISTRY[Role.CONTACT].values()}:
+    """Inputs that count as a number where they are not given, those of plates inside included."""
+    for known in (cls, PlateContact):
         for names, spec in inputs(known):
             if spec.otherwise is not None:
                 yield from ((name, spec) for name in names)

@@ -35,7 +35,7 @@ NODES = {
     "air": 'air = d.ambient("air", temperature=293.0)  # K',
 }
 # what to give where the declaration names no example
-SIGNALS = {"Pa": "2e5", "N": "100.0", "N m": "10.0", "rad/s": "50.0", "K": "300.0", "1": "1.0"}
+USUAL = {"Pa": 2e5, "N": 100.0, "N m": 10.0, "rad/s": 100.0, "K": 300.0, "s": 0.05, "m3": 5e-4}
 
 
 def words(kind: str) -> str:
@@ -76,7 +76,7 @@ def _fields(cls: Any) -> Iterator[tuple[str, str]]:
     for item, spec in specs(cls):
         required = item.default is MISSING or item.name in needed or spec.example is not None
         # teeth may stand in place of a ratio, diameters in place of a radius
-        if required or item.name == "ratio":
+        if required or item.name in ("ratio", "radius"):
             yield item.name, _value(item.name, spec)
 
 
@@ -88,7 +88,7 @@ def _value(name: str, spec: Spec) -> str:
     if spec.what == "curve":
         return repr(list(spec.example or [(0.0, 1.0), (100.0, 0.5)]))
     if spec.what == "signal":
-        return SIGNALS.get(spec.unit, "1.0")
+        return repr(USUAL.get(spec.unit, 1.0))
     return repr(spec.example) if spec.example is not None else _number(spec)
 
 
@@ -96,6 +96,9 @@ def _number(spec: Spec) -> str:
     """A number within the bounds, or the first choice."""
     if spec.choices or spec.flag:
         return repr(spec.choices[0] if spec.choices else True)
+    usual = USUAL.get(spec.unit)
+    if usual is not None and spec.allows(usual):
+        return repr(usual)
     low = max((bound for bound in (spec.above, spec.at_least) if bound is not None), default=0.0)
     if spec.whole:
         return repr(int(low) + 30)

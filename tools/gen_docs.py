@@ -20,7 +20,7 @@ import element_figures
 import element_pages
 import option_page
 from clutchwork.declare.schema import REGISTRY, Role, State, specs
-from reference_fields import described, header, linked, summary, table
+from reference_fields import entry, header, linked, summary, table
 
 ROOT = Path(__file__).resolve().parent.parent
 THEORY = ROOT / "docs" / "theory" / "friction-laws.md"
@@ -33,7 +33,8 @@ What `friction` of a contact may be: the coefficient over slip. Laws that stick 
 are compliant, a function of slip and states of their own; they never lock. The [theory](../theory/friction-laws.md)
 compares them.
 
-| law | type in files | sticks | states | |
+{.fields}
+| law | type in files | at rest | states | |
 |---|---|---|---|---|"""
 
 
@@ -63,18 +64,19 @@ def _signals() -> Iterator[str]:
     yield SIGNALS
     for kind, cls in sorted(REGISTRY[Role.SIGNAL].items()):
         yield f"\n({kind})=\n## {cls.__name__}\n"
-        yield described(cls)
+        yield entry(cls)
         yield f'In model files: `type = "{kind}"`.\n'
         yield f"{linked(cls, '..')}\n"
-        yield "\n".join(table(cls)).replace("## Fields\n\n", "")
+        yield from table(cls)
 
 
 def _overview(laws: list[tuple[str, Any]]) -> Iterator[str]:
     """Table of all friction laws, and their pages."""
     yield LAWS
     for kind, cls in laws:
-        sticks = "yes" if cls.sticks else "no"
-        yield f"| [{cls.__name__}](laws/{kind}.md) | `{kind}` | {sticks} | {len(cls.states) or ''} | {summary(cls)} |"
+        sticks = "sticks" if cls.sticks else "compliant"
+        states = f"{len(cls.states)} state{'s' if len(cls.states) > 1 else ''}" if cls.states else ""
+        yield f"| [{cls.__name__}](laws/{kind}.md) | `{kind}` | {sticks} | {states} | {summary(cls)} |"
     yield "\n```{toctree}\n:hidden:\n:maxdepth: 1\n"
     yield from (f"laws/{kind}" for kind, _ in laws)
     yield "```\n"
@@ -84,8 +86,9 @@ def _law(kind: str, cls: Any) -> Iterator[str]:
     """One page: what it is, fields, states, an example, equations."""
     sort = "sticks exactly" if cls.sticks else "is compliant: it never locks"
     yield f"({kind})=\n# {cls.__name__}\n"
-    yield described(cls)
+    yield entry(cls)
     yield f'In model files: `type = "{kind}"`. It {sort}.\n\n{linked(cls)}\n'
+    yield "## Fields\n"
     yield from table(cls)
     if cls.states:
         yield f"State: {'; '.join(_states(cls.states))}.{_in_use(cls)}\n"
