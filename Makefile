@@ -24,7 +24,7 @@ JOBS ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 # what the compiled core and the type stub are made from; other Python files take effect without a build
 CORE_SOURCES := $(shell find CMakeLists.txt cpp interfaces $(addprefix src/clutchwork/,base declare elements laws signals face/names.py) \
 	-name '*.py' -o -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.txt' 2>/dev/null) \
-	$(wildcard tools/gen_registry.py tools/gen_stubs.py)
+	$(wildcard tools/gen_registry.py tools/registry/*.py tools/gen_stubs.py)
 CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*.cpp' 'interfaces/*.hpp' 'tests/cpp/*.cpp' 'tests/cpp/*.hpp')
 
 .PHONY: help setup demo test test-cpp test-python check format bench docs picture clean

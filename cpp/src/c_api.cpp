@@ -164,9 +164,8 @@ std::int64_t cw_take_events(cw_run* run, double* events, std::int64_t room) {
 
 void cw_statistics(const cw_run* run, std::int64_t counts[7]) {
   if (run == nullptr || counts == nullptr) return;
-  const Statistics& s = run->ws.statistics;
-  const std::int64_t values[7] = {s.steps, s.rejected, s.evaluations, s.jacobians, s.events, s.phases, s.locations};
-  std::memcpy(counts, values, sizeof values);
+  static_assert(n_statistics == 7, "c_api.h: cw_statistics says otherwise how many counters there are");
+  each_statistic(run->ws.statistics, [&](std::int64_t count) { *counts++ = count; });
 }
 
 std::int64_t cw_detail(const cw_run* run, double* value) {
@@ -221,7 +220,7 @@ int cw_law(int number, const double* params, const double* inputs, const double*
     using L = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename L::template Params<double>*>(params);
     int piece = 0;
-    if constexpr (Kinked<L, double>) {
+    if constexpr (Kinked<L>) {
       const int edges = n_points > 0 || !has_curves ? L::edges(p) : 0;
       while (piece < edges && L::edge(p, points, piece) <= slip) ++piece;
     }

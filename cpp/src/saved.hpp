@@ -15,9 +15,7 @@ void describe(W& ws, A& a) {
   const System& s = ws.sys;
   const std::int64_t nc = s.contacts, nd = s.elements + nc;
   visit_options(ws.options, [&](auto& setting, const char*, const OptionRange& range) { a.setting(setting, range); });
-  auto& n = ws.statistics;
-  a.whole(n.steps, 0, most), a.whole(n.rejected, 0, most), a.whole(n.evaluations, 0, most);
-  a.whole(n.jacobians, 0, most), a.whole(n.events, 0, most), a.whole(n.phases, 0, most), a.whole(n.locations, 0, most);
+  each_statistic(ws.statistics, [&](auto& count) { a.whole(count, 0, most); });
 
   a.time(ws.time), a.number(ws.last_step, 0, 1e300);
   a.whole(ws.started, 0, 1), a.whole(ws.fresh_phase, 0, 1), a.whole(ws.params_changed, 0, 1);
@@ -211,7 +209,7 @@ class Check : public Visitor<Check> {
       const std::int64_t column = i % event_size;
       if (i / event_size >= events_ || column > 4) continue;
       const double low[] = {0, 0, backward, backward, 0};
-      const double high[] = {1e300, double(ws_.sys.contacts - 1), open, open, double(int(Cause::fault))};
+      const double high[] = {1e300, double(ws_.sys.contacts - 1), open, open, double(last_cause)};
       good = good && x >= low[column] && x <= high[column] && (column == 0 || x == double(int(x)));
     }
   }

@@ -36,21 +36,21 @@ void visit_fixed(const System& s, Curve&& curve, Choice&& choice) {
   auto choices = [&](int at, int n) { choice(first + at, n); };
   for (std::int64_t i = 0; i < s.elements; ++i) {
     first = s.element_param[i];
-    visit_torque_curves(s.element_kind[i], curves), visit_torque_choices(s.element_kind[i], choices);
+    visit_torque_fixed(s.element_kind[i], curves, choices);
   }
   for (std::int64_t i = 0; i < s.contacts; ++i) {
     first = s.contact_param[i];
-    visit_contact_curves(s.contact_kind[i], curves), visit_contact_choices(s.contact_kind[i], choices);
+    visit_contact_fixed(s.contact_kind[i], curves, choices);
     first = s.contact_law_param[i];
-    visit_law_curves(s.contact_law[i], curves), visit_law_choices(s.contact_law[i], choices);
+    visit_law_fixed(s.contact_law[i], curves, choices);
   }
   for (std::int64_t i = 0; i < s.flows; ++i) {
     first = s.flow_param[i];
-    visit_flow_curves(s.flow_kind[i], curves), visit_flow_choices(s.flow_kind[i], choices);
+    visit_flow_fixed(s.flow_kind[i], curves, choices);
   }
   for (std::int64_t i = 0; i < s.processes; ++i) {
     first = s.process_param[i];
-    visit_process_curves(s.process_kind[i], curves), visit_process_choices(s.process_kind[i], choices);
+    visit_process_fixed(s.process_kind[i], curves, choices);
   }
 }
 
@@ -81,7 +81,7 @@ inline bool tables_fit(const System& s, std::int64_t contact) {
     using L = typename decltype(tag)::type;
     const auto& p =
         *reinterpret_cast<const typename L::template Params<double>*>(s.params + s.contact_law_param[contact]);
-    if constexpr (requires { L::fits(p); }) return L::fits(p);
+    if constexpr (FittedLaw<L>) return L::fits(p);
     return true;
   });
 }
@@ -180,9 +180,8 @@ inline bool contact_fits(const System& s, std::int64_t i, std::int64_t& states) 
   visit_contact_curves(s.contact_kind[i], [&](int at) { good = good && curve_fits(s, s.contact_param[i] + at); });
   visit_law(s.contact_law[i], [&](auto tag) {
     using L = typename decltype(tag)::type;
-    constexpr int inputs = law_inputs<L>();
     good = good && s.contact_law_param[i] + param_count<L> <= s.n_params &&
-           s.contact_law_input[i] + inputs <= s.n_input_refs && plain_inputs(s, s.contact_law_input[i], inputs);
+           s.contact_law_input[i] + L::inputs <= s.n_input_refs && plain_inputs(s, s.contact_law_input[i], L::inputs);
   });
   visit_law_curves(s.contact_law[i], [&](int at) { good = good && curve_fits(s, s.contact_law_param[i] + at); });
   if (!good || !tables_fit(s, i)) return false;

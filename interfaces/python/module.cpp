@@ -4,6 +4,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+#include <clutchwork/layout.gen.hpp>
 
 #include <chrono>
 #include <memory>
@@ -125,12 +126,11 @@ class Run {
   }
 
   nb::dict statistics() const {
-    static constexpr const char* names[7] = {"steps",  "rejected", "evaluations", "jacobians",
-                                             "events", "phases",   "locations"};
-    std::int64_t counts[7];
+    constexpr int n = clutchwork::n_statistics;
+    std::int64_t counts[n];
     cw_statistics(run_, counts);
     nb::dict d;
-    for (int i = 0; i < 7; ++i) d[names[i]] = counts[i];
+    for (int i = 0; i < n; ++i) d[clutchwork::statistic_names[i]] = counts[i];
     return d;
   }
 

@@ -32,14 +32,12 @@ ELEMENT_HEADER = """#pragma once
 namespace clutchwork::elements {
 
 /// Damper whose torque grows with the cube of the rate.
-struct CubicDamper {
+struct CubicDamper : declared::CubicDamper {
   template <class T>
   struct Params {
     T linear;  ///< [N m s/rad]
     T cubic;   ///< [N m s3/rad3]
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 0;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {
@@ -75,14 +73,13 @@ LAW_HEADER = """#pragma once
 namespace clutchwork::laws {
 
 /// Kinetic coefficient that falls hyperbolically.
-struct Hyperbolic {
+struct Hyperbolic : declared::Hyperbolic {
   template <class T>
   struct Params {
     T static_;  ///< [1]
     T slow;     ///< [1]
     T speed;    ///< [rad/s]
   };
-  static constexpr int states = 0;
 
   template <class T, class S>
   static S slide(const Params<T>& p, const At<S>& at) {

@@ -74,10 +74,9 @@ def test_a_circle_is_found() -> None:
 
 @pytest.fixture(scope="module")
 def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder for -I with the generated header."""
+    """A folder for -I with the generated headers."""
     folder = tmp_path_factory.mktemp("generated")
-    (folder / "clutchwork").mkdir()
-    result = project.generate(project.ROOT, folder / "clutchwork" / REGISTRY)
+    result = project.generate(project.ROOT, folder / "clutchwork")
     assert result.returncode == 0, result.stderr
     return folder
 
@@ -93,7 +92,7 @@ def compiled_alone(header: Path, generated: Path) -> str:
 
 
 def test_every_header_compiles_alone(generated: Path) -> None:
-    headers = sorted([*HEADERS.rglob("*.h*"), *SOURCES.glob("*.hpp")])
+    headers = sorted([*HEADERS.rglob("*.h*"), *SOURCES.glob("*.hpp"), *generated.rglob("*.hpp")])
     with ThreadPoolExecutor(2) as pool:
         found = list(pool.map(lambda header: compiled_alone(header, generated), headers))
     assert "".join(found) == ""

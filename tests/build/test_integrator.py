@@ -8,26 +8,21 @@ from pathlib import Path
 import pytest
 
 from support import project
+from support.refused import edit
 
 RUN = "cpp/include/clutchwork/run"
-NAMES = "cpp/include/clutchwork/workspace/settings.hpp"
+NAMES = "src/clutchwork/declare/layout.py"
 
 
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
-    copy = project.copy(tmp_path)
-    assert project.generate(copy, copy / "gen/clutchwork/registry.gen.hpp").returncode == 0
-    return copy
-
-
-def edit(path: Path, old: str, new: str) -> None:
-    text = path.read_text()
-    assert old in text, f"{path} has changed: the test has to follow"
-    path.write_text(text.replace(old, new, 1))
+    return project.copy(tmp_path)
 
 
 def compiled(copy: Path) -> str:
     """What the compiler says about all phases of the sparse form, and about the C API."""
+    made = project.generate(copy)
+    assert made.returncode == 0, made.stderr
     include = [f"-I{copy / folder}" for folder in ("cpp/include", "cpp/src", "gen")]
     units = [str(copy / "cpp/src" / name) for name in ("phases_sparse.cpp", "c_api.cpp")]
     command = ["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", *include, *units]
@@ -37,12 +32,12 @@ def compiled(copy: Path) -> str:
 def write_header(copy: Path) -> None:
     """Ralston's name on the coefficients of another method: what it computes is not asked here."""
     text = (copy / f"{RUN}/integrator/dopri5.hpp").read_text()
-    (copy / f"{RUN}/integrator/ralston.hpp").write_text(text.replace("struct Dopri5", "struct Ralston"))
+    text = text.replace("struct Dopri5", "struct Ralston").replace("Method::dopri5", "Method::ralston")
+    (copy / f"{RUN}/integrator/ralston.hpp").write_text(text)
 
 
 def write_name(copy: Path) -> None:
-    edit(copy / NAMES, "dopri5 }", "dopri5, ralston }")
-    edit(copy / NAMES, "last_method = 2", "last_method = 3")
+    edit(copy / NAMES, '"dopri5": 2', '"dopri5": 2, "ralston": 3')
 
 
 def write_line(copy: Path) -> None:

@@ -15,7 +15,7 @@ inline Model three_shafts() {
   m.element<elements::QuadraticTorque>(housing, c, {-4, 20, 0});
   Numbers law{0.5};
   for (double x : m.curve({0, 5, 40}, {0.4, 0.3, 0.2})) law.push_back(x);
-  law.push_back(double(Extrapolation::nearest));
+  law.push_back(double(choice::Extrapolation::nearest));
   m.contact<elements::Clutch, laws::CoefficientTable>(b, c, {1}, {pressure}, law);
   return m;
 }

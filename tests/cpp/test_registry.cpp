@@ -38,33 +38,23 @@ struct Fields {
   double start[most] = {};
   bool fixed[most] = {};
 
-  template <class E, class Curves>
-  static Fields of(Tag<E>, Curves&& curves) {
+  /// `visit` calls its first argument with the place of each curve, its second with those of words and their number.
+  template <class E, class Visit>
+  static Fields of(Tag<E>, Visit&& visit) {
     using P = typename E::template Params<double>;
     static_assert(sizeof(P) < most * sizeof(double));
     Fields f;
     f.count = int(sizeof(P) / sizeof(double));
     for (int k = 0; k < f.count; ++k) f.start[k] = 1.35 + 0.3 * k;
-    curves([&](int k) {
+    auto curve = [&](int k) {
       f.start[k] = 1, f.start[k + 1] = longest;
       f.fixed[k] = f.fixed[k + 1] = true;
-    });
-    P p{};
-    auto word = [&](const double& field, int values) {
-      const auto k = &field - reinterpret_cast<const double*>(&p);
-      f.words[k] = values, f.start[k] = 0, f.fixed[k] = true;
     };
+    auto word = [&](int k, int values) { f.words[k] = values, f.start[k] = 0, f.fixed[k] = true; };
+    visit(curve, word);
+    P p{};
     // counts, whose derivatives nobody asks for
     if constexpr (requires { p.teeth; }) f.fixed[&p.teeth - reinterpret_cast<const double*>(&p)] = true;
-    if constexpr (requires { p.shape; }) word(p.shape, 4);
-    if constexpr (requires { p.reset; }) word(p.reset, 3);
-    if constexpr (requires { p.passive; }) word(p.passive, 2);
-    if constexpr (requires { p.interpolation; }) word(p.interpolation, 2);
-    if constexpr (requires { p.extrapolation; }) word(p.extrapolation, 3);
-    if constexpr (requires { p.fault; }) word(p.fault, 3);
-    if constexpr (requires { p.report; }) word(p.report, 2);
-    if constexpr (requires { p.pointed; }) word(p.pointed, 2);
-    if constexpr (requires { p.reversed; }) word(p.reversed, 2);
     return f;
   }
   /// The next combination of words; false: all were there.
@@ -104,7 +94,7 @@ void differentiate(F&& f, const double* x, int n, int outputs, const bool* fixed
 /// Pieces of a component on which it is smooth: `visit(piece)`.
 template <class E, class P, class F>
 void over_pieces(const P& p, check::Random& g, F&& visit) {
-  if constexpr (Kinked<E, double>) {
+  if constexpr (Kinked<E>) {
     for (int piece = 0; piece <= E::edges(p); ++piece) visit(piece);
   } else if constexpr (SwitchingLaw<E>) {
     int count = 1;
@@ -162,7 +152,7 @@ void torque_kinds_all() {
   for (int kind = 0; kind < torque_kinds; ++kind) {
     visit_torque(kind, [kind](auto tag) {
       using E = typename decltype(tag)::type;
-      const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_torque_curves(kind, f); });
+      const Fields fields = Fields::of(tag, [kind](auto&&... f) { visit_torque_fixed(kind, f...); });
       auto call = [](const auto& p, const auto& at, auto* out) {
         out[0] = E::torque(p, at);
         E::state_rates(p, at, out + 1);
@@ -177,7 +167,7 @@ void contact_kinds_all() {
   for (int kind = 0; kind < contact_kinds; ++kind) {
     visit_contact(kind, [kind](auto tag) {
       using E = typename decltype(tag)::type;
-      const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_contact_curves(kind, f); });
+      const Fields fields = Fields::of(tag, [kind](auto&&... f) { visit_contact_fixed(kind, f...); });
       auto call = [](const auto& p, const auto& at, auto* out) {
         using S = std::remove_cvref_t<decltype(*out)>;
         *out++ = E::load(p, at);
@@ -199,7 +189,7 @@ void flow_kinds_all() {
   for (int kind = 0; kind < flow_kinds; ++kind) {
     visit_flow(kind, [kind](auto tag) {
       using E = typename decltype(tag)::type;
-      const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_flow_curves(kind, f); });
+      const Fields fields = Fields::of(tag, [kind](auto&&... f) { visit_flow_fixed(kind, f...); });
       auto call = [](const auto& p, const auto& at, auto* out) { out[0] = E::flow(p, at); };
       over_arguments<E>(call, fields, E::inputs, 0, 1);
     });
@@ -210,7 +200,7 @@ void process_kinds_all() {
   for (int kind = 0; kind < process_kinds; ++kind) {
     visit_process(kind, [kind](auto tag) {
       using E = typename decltype(tag)::type;
-      const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_process_curves(kind, f); });
+      const Fields fields = Fields::of(tag, [kind](auto&&... f) { visit_process_fixed(kind, f...); });
       auto call = [](const auto& p, const auto& at, auto* out) { E::state_rates(p, at, out); };
       over_arguments<E>(call, fields, E::inputs, E::states, E::states);
     });
@@ -248,11 +238,11 @@ void law_kinds_all() {
   for (int kind = 0; kind < law_kinds; ++kind) {
     visit_law(kind, [kind](auto tag) {
       using L = typename decltype(tag)::type;
-      const Fields fields = Fields::of(tag, [kind](auto&& f) { visit_law_curves(kind, f); });
+      const Fields fields = Fields::of(tag, [kind](auto&&... f) { visit_law_fixed(kind, f...); });
       auto call = [](const auto& p, const auto& at, auto* out) { law_values<L>(p, at, out); };
       const int states = states_in_use<L>(fields);
       const int outputs = 2 + states + (CompliantLaw<L> && SwitchingLaw<L>);
-      over_arguments<L>(call, fields, law_inputs<L>(), states, outputs);
+      over_arguments<L>(call, fields, L::inputs, states, outputs);
     });
   }
 }
@@ -309,7 +299,7 @@ void switching_laws() {
       b.law = kind;
       CHECK(is_switching(b) == SwitchingLaw<L>);
       CHECK(is_compliant_law(kind) == CompliantLaw<L>);
-      if constexpr (SwitchingLaw<L>) crosses<L>(Fields::of(tag, [kind](auto&& f) { visit_law_curves(kind, f); }));
+      if constexpr (SwitchingLaw<L>) crosses<L>(Fields::of(tag, [kind](auto&&... f) { visit_law_fixed(kind, f...); }));
     });
   }
 }
@@ -332,12 +322,13 @@ struct Probe {
     for (int i = 0; i < most; ++i) state[i] = g.between(-1, 1);
     const int contact = kind - torque_kinds;
     if (contact < 0) {
-      visit_torque(kind, [&](auto tag) { fill(tag, params, [&](auto&& f) { visit_torque_curves(kind, f); }); });
+      visit_torque(kind, [&](auto tag) { fill(tag, params, [&](auto&&... f) { visit_torque_fixed(kind, f...); }); });
       b.inputs = element_inputs(kind);
     } else {
       b.kind = contact / law_kinds, b.law = contact % law_kinds;
-      visit_contact(b.kind, [&](auto tag) { fill(tag, params, [&](auto&& f) { visit_contact_curves(b.kind, f); }); });
-      visit_law(b.law, [&](auto tag) { fill(tag, law, [&](auto&& f) { visit_law_curves(b.law, f); }); });
+      visit_contact(b.kind,
+                    [&](auto tag) { fill(tag, params, [&](auto&&... f) { visit_contact_fixed(b.kind, f...); }); });
+      visit_law(b.law, [&](auto tag) { fill(tag, law, [&](auto&&... f) { visit_law_fixed(b.law, f...); }); });
       b.compliant = is_compliant_law(b.law);
       b.sign = b.compliant || kind % 2 == 0 ? 1 : -1, b.pressed = true;
       b.inputs = contact_inputs(b.kind), b.law_inputs = law_inputs_of(b.law), b.shaped = is_shaped(b.kind);
@@ -349,9 +340,9 @@ struct Probe {
     contact_kind = b.kind, contact_law = b.law;
     b.states = states_of<double>(b.kind, b.law, law);
   }
-  template <class E, class Curves>
-  void fill(Tag<E> tag, double* out, Curves&& curves) {
-    const Fields fields = Fields::of(tag, curves);
+  template <class E, class Visit>
+  void fill(Tag<E> tag, double* out, Visit&& visit) {
+    const Fields fields = Fields::of(tag, visit);
     for (int k = 0; k < fields.count; ++k) out[k] = fields.start[k];
   }
   double torque(double rate) { return branch_torque(ws, b, rate, state, moved_rates); }

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import importlib
-import os
 import re
-import shutil
-import subprocess
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from support import project
 
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = sorted((ROOT / "docs" / "guide").glob("*.md"))
@@ -96,6 +95,14 @@ def test_every_option_has_a_line_on_its_page(monkeypatch: pytest.MonkeyPatch) ->
     assert "reference/options" in (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
 
 
+def test_every_hook_is_explained() -> None:
+    from clutchwork.declare.hooks import HOOKS
+
+    page = (ROOT / "docs" / "extend.md").read_text(encoding="utf-8")
+    names = [name for hook in HOOKS for name in hook.names]
+    assert [name for name in names if f'"{name}"' not in page and f"`{name}`" not in page] == []
+
+
 @pytest.mark.parametrize(
     ("kind", "concept", "arguments"),
     [("laws", "FrictionLaw", "Lorentzian"), ("elements", "TorqueElement", "EddyBrake")],
@@ -103,23 +110,22 @@ def test_every_option_has_a_line_on_its_page(monkeypatch: pytest.MonkeyPatch) ->
 def test_the_component_of_the_extension_page_fits_the_core(
     kind: str, concept: str, arguments: str, tmp_path: Path
 ) -> None:
-    compiler = shutil.which(os.environ.get("CXX", "c++"))
-    assert compiler, "no C++ compiler"
     number = 0 if kind == "laws" else 1
     page = ROOT / "docs" / "extend.md"
-    source = blocks(page, "cpp")[number] + f"\nstatic_assert(clutchwork::{concept}<clutchwork::{kind}::{arguments}>);\n"
+    copy, stem = project.copy(tmp_path), "lorentzian" if kind == "laws" else "eddy_brake"
+    (copy / f"src/clutchwork/{kind}/{stem}.py").write_text(blocks(page, "python")[number])
+    (copy / f"cpp/include/clutchwork/{kind}/{stem}.hpp").write_text(blocks(page, "cpp")[number])
+    made = project.generate(copy)
+    assert made.returncode == 0, made.stderr
     # dual numbers must pass too, for they give the derivatives
     function = "slide" if kind == "laws" else "torque"
-    source += (
+    done = project.compile_registry(
+        copy,
+        f"static_assert(clutchwork::{concept}<clutchwork::{kind}::{arguments}>);\n"
         f"using E = clutchwork::{kind}::{arguments};\nusing D = clutchwork::Dual<double, 2>;\n"
-        f"D probe(const E::Params<double>& p, const clutchwork::At<D>& at) {{ return E::{function}(p, at); }}\n"
+        f"D probe(const E::Params<double>& p, const clutchwork::At<D>& at) {{ return E::{function}(p, at); }}\n",
     )
-    (tmp_path / "probe.cpp").write_text(source)
-    command = [compiler, "-std=c++20", "-fsyntax-only", f"-I{ROOT / 'cpp' / 'include'}", str(tmp_path / "probe.cpp")]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    # the declaration is complete Python
-    compile(blocks(page, "python")[number], "declaration", "exec")
 
 
 @pytest.mark.parametrize("path", PAGES, ids=named)

@@ -157,7 +157,8 @@ def test_the_event_is_told(built: Path) -> None:
 @feature("code: C and C++ of a model that holds the clutch")
 def test_the_folder_holds_all_that_is_needed(folder: Path) -> None:
     """The core with its licence, the layout with units, and nothing that a second export would lose."""
-    assert (folder / "core/include/clutchwork/registry.gen.hpp").is_file()
+    for name in ("layout", "declared", "registry"):
+        assert (folder / f"core/include/clutchwork/{name}.gen.hpp").is_file()
     assert (folder / "core/LICENSE").is_file()
     header = (folder / "model.h").read_text(encoding="utf-8")
     assert "MODEL_ROW_ENGINE_SPEED = 0, /* engine.speed [rad/s] */" in header

@@ -28,22 +28,22 @@ def copy(to: Path) -> Path:
 
 
 def generate(project: Path, to: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """Run the registry generator of a copy; without the site module no editable install gets in its way."""
+    """Run the generator of a copy; without the site module no editable install gets in its way."""
     command = [
         sys.executable,
         "-I",
         "-S",
         str(project / "tools/gen_registry.py"),
         str(project),
-        str(to or project / "gen/registry.gen.hpp"),
+        str(to or project / "gen/clutchwork"),
     ]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
-def compile_registry(project: Path) -> subprocess.CompletedProcess[str]:
-    """Compile the generated header alone, without code."""
+def compile_registry(project: Path, code: str = "") -> subprocess.CompletedProcess[str]:
+    """Compile the generated headers, and a few lines after them, without making code."""
     unit = project / "gen/unit.cpp"
-    unit.write_text('#include "registry.gen.hpp"\n')
+    unit.write_text(f"#include <clutchwork/registry.gen.hpp>\n{code}")
     include = ["-I", str(project / "cpp/include"), "-I", str(project / "gen")]
     command = ["c++", "-std=c++20", "-fsyntax-only", *include, str(unit)]
     return subprocess.run(command, capture_output=True, text=True, check=False)

@@ -10,7 +10,7 @@ from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.codegen.expression import expression
 from clutchwork.codegen.text import comment, enumeration, identifiers, literal, string
-from clutchwork.declare.layout import EVENT, MODES, STATUS
+from clutchwork.declare.layout import CAUSES, EVENT, MODES, STATUS
 from clutchwork.declare.options import OPTIONS, Options
 from clutchwork.results.channels import Channel, Channels
 from clutchwork.results.forms import Mode
@@ -133,6 +133,9 @@ def _enumerations(model: Exported) -> Iterator[str]:
     yield from enumeration("model_param", [*members, ("MODEL_PARAMS", count, "numbers in the pool")])
     yield from ("", "/* Modes of a contact: slip below zero, locked, slip above zero, open. */")
     yield from enumeration("model_mode", [(f"MODEL_MODE_{name.upper()}", k, "") for k, name in MODES.items()])
+    yield from ("", "/* What led to an event. */")
+    causes = [(f"MODEL_CAUSE_{word.replace(' ', '_').upper()}", k, meaning) for k, (word, meaning) in CAUSES.items()]
+    yield from enumeration("model_cause", causes)
     yield from ("", "/* What cw_advance returns. */")
     statuses = [(f"MODEL_STATUS_{name.upper()}", k, message) for k, (name, message, _) in enumerate(STATUS)]
     yield from enumeration("model_status", statuses)

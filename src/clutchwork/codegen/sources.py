@@ -13,7 +13,8 @@ from clutchwork.declare.core import core
 # what the build installs beside the compiled core, CMakeLists.txt
 INSTALLED = "native"
 CHECKOUT = Path(__file__).resolve().parents[3]
-REGISTRY = Path("include", "clutchwork", "registry.gen.hpp")
+GENERATED = Path("include", "clutchwork")
+REGISTRY = GENERATED / "registry.gen.hpp"
 ENDINGS = (".cpp", ".hpp", ".h")
 
 
@@ -23,7 +24,7 @@ def sources() -> dict[Path, bytes]:
     if (installed / REGISTRY).is_file():
         return dict(_below(installed))
     if (CHECKOUT / "cpp" / "src").is_dir():
-        return {**dict(_below(CHECKOUT / "cpp")), Path("LICENSE"): (CHECKOUT / "LICENSE").read_bytes(), **_registry()}
+        return {**dict(_below(CHECKOUT / "cpp")), Path("LICENSE"): (CHECKOUT / "LICENSE").read_bytes(), **_generated()}
     raise FileNotFoundError(f"{installed} does not hold the sources of the core: install clutchwork again")
 
 
@@ -33,14 +34,13 @@ def _below(folder: Path) -> Iterator[tuple[Path, bytes]]:
             yield path.relative_to(folder), path.read_bytes()
 
 
-def _registry() -> dict[Path, bytes]:
-    """The generated header, made by the tool of the checkout."""
+def _generated() -> dict[Path, bytes]:
+    """The generated headers, made by the tool of the checkout."""
     generator = CHECKOUT / "tools" / "gen_registry.py"
     with TemporaryDirectory() as folder:
-        made = Path(folder, "registry.gen.hpp")
         # without the site module no installed clutchwork is in its way
-        command = [sys.executable, "-I", "-S", str(generator), str(CHECKOUT), str(made)]
+        command = [sys.executable, "-I", "-S", str(generator), str(CHECKOUT), folder]
         done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own tool
         if done.returncode != 0:
             raise OSError(f"{generator} failed: {done.stderr.strip()}")
-        return {REGISTRY: made.read_bytes()}
+        return {GENERATED / made.name: made.read_bytes() for made in sorted(Path(folder).glob("*.gen.hpp"))}

@@ -120,10 +120,33 @@ EVENT = (
     ("energy_after", "J"),
 )
 
+# how a contact is, by number
 MODES = {-1: "backward", 0: "locked", 1: "forward", 2: "open"}
 
-# integrators by their number
+# what led to an event, by number: (word, meaning); a number keeps its meaning, so that recorded events stay readable
+CAUSES = {
+    1: ("slip zero", "the slip reached zero"),
+    2: ("torque limit", "a locked contact reached its static capacity"),
+    3: ("input", "a signal has a knot there, which made the contact lock or let go"),
+    4: ("other event", "another contact changed at this instant, and this one had to follow"),
+    5: ("impulse", "speeds jumped"),
+    7: ("passing", "the slip of an open contact passed zero: nothing changes but the direction"),
+    8: ("fault", "a fault of the contact was triggered; it stays for the rest of the run"),
+}
+
+# integrators by name, with their numbers in the core; auto chooses between the others
 METHODS = {"auto": 0, "rodas5p": 1, "dopri5": 2}
+
+# what a run counts, in order: (name, meaning)
+STATISTICS = (
+    ("steps", "accepted steps"),
+    ("rejected", "steps that were taken again with a smaller size"),
+    ("evaluations", "evaluations of the motion"),
+    ("jacobians", "evaluations of its derivatives"),
+    ("events", "events"),
+    ("phases", "smooth phases between them"),
+    ("locations", "searches for the instant of an event"),
+)
 
 # why a run returned: (name, message, remedy)
 STATUS = (
@@ -167,4 +190,5 @@ STATUS = (
 
 def layout_text() -> str:
     """Fingerprint text of the layout."""
-    return repr((COUNTS, FIELDS, ROW, EVENT, [name for name, *_ in STATUS]))
+    named = ([name for name, *_ in table] for table in (STATUS, STATISTICS))
+    return repr((COUNTS, FIELDS, ROW, EVENT, MODES, {n: word for n, (word, _) in CAUSES.items()}, METHODS, *named))

@@ -14,6 +14,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, dataclass_transform
 
 from clutchwork.declare.frozen import freeze
+from clutchwork.declare.hooks import hook_problems
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -133,7 +134,7 @@ def flag(doc: str, *, default: bool = MISSING) -> Any:  # type: ignore[assignmen
 
 
 def choice(doc: str, *, choices: tuple[str, ...], default: str = MISSING) -> Any:  # type: ignore[assignment]
-    """One of several words in Python, a scalar of the C++ `Params`: the place of the word among them, from 0."""
+    """One of several words in Python, a `Word` of the C++ `Params`, whose enum the build writes from the words."""
     return _field(Spec("param", "1", doc, choices=choices), default)
 
 
@@ -191,7 +192,7 @@ def signal(
     """An input: a number, a Signal, a thermal node (its temperature), a process (its first state), or (process, state).
 
     The inputs of flows and processes may also be `Rate` and `HeatFlow` of an element, and a shaft (its speed).
-    The C++ functions get them as `at.input[i]`, in order of declaration.
+    The C++ functions get them by name, as `at.input[Input::pressure]`.
 
     With `instead_of` it is another way to give the signal of that name: exactly one of them is given, or
     none where that signal has a value `otherwise`. With `presses` a constant below zero is warned of; it stands in
@@ -267,15 +268,18 @@ def _check_ports(cls: type) -> None:
     frozen_default=True,
     field_specifiers=(port, param, flag, choice, curve, numbers, signal, law, option, text, function),
 )
-def component(role: Role, *, states: tuple[State, ...] = ()) -> Callable[[C], C]:
-    """Freeze a declaration as a dataclass and register it under its kind, the stem of its module."""
+def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, ...] = ()) -> Callable[[C], C]:
+    """Freeze a declaration, register it under its kind, the stem of its module; `hooks`: clutchwork.declare.hooks."""
 
     def register(cls: C) -> C:
         frozen: Any = freeze(cls)
         kind = cls.__module__.rpartition(".")[2]
+        wrong = hook_problems(role.value, hooks)
+        if wrong:
+            raise ValueError(f"{cls.__module__.replace('.', '/')}.py: {'; '.join(wrong)}")
         if role in RATES:
             _check_ports(cls)
-        frozen.kind, frozen.role, frozen.states = kind, role, states
+        frozen.kind, frozen.role, frozen.states, frozen.hooks = kind, role, states, hooks
         REGISTRY[role][kind] = frozen
         return cls
 

@@ -8,7 +8,7 @@ from clutchwork.declare import Law, Node, Role, SignalLike, component, flag, law
 from clutchwork.elements.bases.heating import Heating
 
 
-@component(Role.CONTACT)
+@component(Role.CONTACT, hooks=("gain",))
 class BandBrake(Heating):
     """Band around a drum, pulled at one end and fixed at the other: it energises itself in one direction.
 

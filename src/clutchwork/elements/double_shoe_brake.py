@@ -11,7 +11,7 @@ from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.bases.tables import Found
 
 
-@component(Role.CONTACT)
+@component(Role.CONTACT, hooks=("gain",))
 class DoubleShoeBrake(Heating):
     """Two long hinged shoes inside a drum, both with the same actuating force.
 

@@ -7,7 +7,7 @@ from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
 
 
-@component(Role.CONTACT)
+@component(Role.CONTACT, hooks=("limit",))
 class FundamentalClutch(Heating):
     """Clutch that slips with a given torque and holds between two given limits.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from clutchwork.declare import Component, Node, Role, component, flag, param, port
 
 
-@component(Role.TORQUE)
+@component(Role.TORQUE, hooks=("edges", "edge"))
 class LinearTorque(Component):
     """Torque `nominal_torque * speed / nominal_speed` on a shaft, speed relative to the base.
 

@@ -21,7 +21,7 @@ from clutchwork.declare import (
 from clutchwork.elements.bases.heating import Heating
 
 
-@component(Role.CONTACT)
+@component(Role.CONTACT, hooks=("fault", "fault_kind", "fault_report"))
 class PlateContact(Heating):
     """Contact with the load `gain * derating * (pressure - threshold)`, that can wear and fail.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from clutchwork.declare import Component, Node, Role, component, flag, param, port
 
 
-@component(Role.TORQUE)
+@component(Role.TORQUE, hooks=("edges", "edge"))
 class QuadraticTorque(Component):
     """Torque `nominal_torque * x abs(x)` on a shaft, x = speed / nominal_speed, speed relative to the base.
 

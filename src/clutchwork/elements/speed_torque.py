@@ -5,7 +5,7 @@ from __future__ import annotations
 from clutchwork.declare import Component, Node, Points, Role, component, curve, param, port
 
 
-@component(Role.TORQUE)
+@component(Role.TORQUE, hooks=("edges", "edge"))
 class SpeedTorque(Component):
     """Torque as a table over the speed of a shaft relative to its base, continued linearly beyond both ends.
 

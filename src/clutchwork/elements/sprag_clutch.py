@@ -9,7 +9,7 @@ from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
 
 
-@component(Role.CONTACT)
+@component(Role.CONTACT, hooks=("holding",))
 class SpragClutch(Heating):
     """Freewheel with a drag that gives way when its sprags roll over, at the torque `holding`.
 

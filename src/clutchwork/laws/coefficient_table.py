@@ -6,7 +6,7 @@ from clutchwork.declare import Law, Points, Role, component, curve, param
 from clutchwork.laws.bases.tables import Found, beyond_the_ends, continued, slip_axis
 
 
-@component(Role.LAW)
+@component(Role.LAW, hooks=("edges", "edge", "outside"))
 class CoefficientTable(Law):
     """Kinetic coefficient linear between the points of a table over abs(slip).
 

@@ -6,7 +6,7 @@ from clutchwork.declare import Points, Role, component, curve, param
 from clutchwork.laws.bases.tables import Found, Tabulated, continued, crossing, few_points, not_positive, slip_axis
 
 
-@component(Role.LAW)
+@component(Role.LAW, hooks=("edges", "edge", "outside"))
 class FrictionTable(Tabulated):
     """Kinetic coefficient over abs(slip) as a table, linear or smooth, and one static coefficient above all of it.
 

@@ -13,6 +13,7 @@ FEWEST, LARGEST = 4, 10
 @component(
     Role.LAW,
     states=tuple(State(f"element_{i}", "1", f"coefficient of element {i}") for i in range(1, LARGEST + 1)),
+    hooks=("margin", "cross", "turns", "runs_on", "count"),
 )
 class GMS(StribeckCurve):
     """Elastic elements in parallel, each of which sticks or slides on its own share of the Stribeck curve.

@@ -6,7 +6,7 @@ from clutchwork.declare import Role, component, param
 from clutchwork.laws.bases.stribeck import StribeckCurve
 
 
-@component(Role.LAW)
+@component(Role.LAW, hooks=("edges", "edge"))
 class Karnopp(StribeckCurve):
     """As `Stribeck` outside a band of slip; inside it counts as stuck and locks.
 

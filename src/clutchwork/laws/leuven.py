@@ -13,6 +13,7 @@ LARGEST = 10
 @component(
     Role.LAW,
     states=tuple(State(f"element_{i}", "1", f"coefficient of element {i}") for i in range(1, LARGEST + 1)),
+    hooks=("margin", "cross", "turns", "runs_on", "count"),
 )
 class Leuven(StribeckCurve):
     """Hysteresis force `h` with non-local memory, the sum of elastic elements that saturate one after the other.

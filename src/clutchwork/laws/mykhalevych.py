@@ -12,7 +12,9 @@ from clutchwork.laws.bases.stribeck import Found, static_problems
 AT_REST, AT_THE_ANGLE = 0.638, 1.52
 
 
-@component(Role.LAW, states=(State("wind_up", "1", "wind-up over the elastic angle"),))
+@component(
+    Role.LAW, states=(State("wind_up", "1", "wind-up over the elastic angle"),), hooks=("margin", "cross", "turns")
+)
 class Mykhalevych(Law):
     """Elastic wind-up under a hyperbolic tangent, and a Stribeck fall beside it.
 

@@ -8,7 +8,7 @@ from clutchwork.declare import Role, component
 from clutchwork.laws.bases.stribeck import StribeckCurve
 
 
-@component(Role.LAW)
+@component(Role.LAW, hooks=("chatters",))
 class NaiveSign(StribeckCurve):
     """Coefficient `sign(slip) s(slip) + viscous slip`, zero at zero slip.
 

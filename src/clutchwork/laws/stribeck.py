@@ -6,7 +6,7 @@ from clutchwork.declare import Role, component
 from clutchwork.laws.bases.stribeck import StribeckCurve
 
 
-@component(Role.LAW)
+@component(Role.LAW, hooks=("edges", "edge"))
 class Stribeck(StribeckCurve):
     """Kinetic coefficient `s(slip) + viscous slip`, static coefficient at rest; it sticks exactly.
 

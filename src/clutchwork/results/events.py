@@ -14,9 +14,7 @@ from numpy.typing import NDArray
 from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import columns
-from clutchwork.declare.layout import EVENT, MODES
-
-CAUSES = ("start", "slip zero", "torque limit", "input", "other event", "impulse", "restart", "passing", "fault")
+from clutchwork.declare.layout import CAUSES, EVENT, MODES
 
 
 @dataclass(frozen=True)
@@ -27,7 +25,7 @@ class Event:
     element: str  # name of the contact; "" when the event belongs to no contact
     before: str  # forward, backward, locked or open
     after: str
-    cause: str  # one of CAUSES
+    cause: str  # a word of CAUSES in clutchwork.declare.layout
     slip_acceleration: float  # rad/s2 after the event
     torque_before: float  # N m on the follower
     torque_after: float  # N m on the follower
@@ -78,9 +76,8 @@ class Events(Sequence[Event]):
         return Events([event for event in self if event.element == element], self._contacts)
 
     def changes(self) -> Events:
-        """Without entries that change no torque: the state at the start, an open contact whose slip passes zero."""
-        quiet = ("start", "passing")
-        chosen = [event for event in self if event.before != event.after and event.cause not in quiet]
+        """Without entries that change no torque: an open contact whose slip passes zero."""
+        chosen = [event for event in self if event.before != event.after and event.cause != "passing"]
         return Events(chosen, self._contacts)
 
     def at_start(self) -> Events:
@@ -127,7 +124,7 @@ def _event(row: NDArray[np.float64], at: dict[str, int], contacts: Sequence[str]
         element=contacts[contact] if 0 <= contact < len(contacts) else "",
         before=MODES.get(int(row[at["from"]]), "open"),
         after=MODES.get(int(row[at["to"]]), "open"),
-        cause=CAUSES[cause] if 0 <= cause < len(CAUSES) else str(cause),
+        cause=CAUSES[cause][0],
         slip_acceleration=float(row[at["slip_acceleration"]]),
         torque_before=float(row[at["torque_before"]]),
         torque_after=float(row[at["torque_after"]]),

@@ -8,8 +8,6 @@ namespace clutchwork {
 
 template <class Law>
 struct Bristles {
-  static constexpr int states = 1;
-
   template <class P, class S>
   static S coefficient(const P& p, const At<S>& at) {
     return at.state[0] + p.damping * Law::bending(p, at) + p.viscous * at.rate;

@@ -1,7 +1,9 @@
 #pragma once
 #include <clutchwork/components/dual.hpp>
+#include <clutchwork/declared.gen.hpp>
 
 #include <concepts>
+#include <type_traits>
 
 /// What an element or a friction law provides: parameters and pure functions of one rate, own states and inputs.
 namespace clutchwork {
@@ -21,12 +23,31 @@ struct Curve {
   T count;  ///< [1] number of points
 };
 
+/// Parameter that is one of several words: the place of the word in its enum, which stands for it.
+template <class T, class Words>
+struct Word {
+  T number;  ///< [1]
+  CLUTCHWORK_INLINE operator Words() const { return Words(int(value(number))); }
+};
+
+/// Own inputs, by the names of the declaration: `at.input[Input::...]`.
+template <class S>
+struct OwnInputs {
+  const S* first;
+  CLUTCHWORK_INLINE OwnInputs(const S* inputs) : first(inputs) {}
+  template <class Name>
+  CLUTCHWORK_INLINE const S& operator[](Name name) const {
+    static_assert(std::is_enum_v<Name>, "an input is read by its name, as at.input[Input::...]");
+    return first[int(name)];
+  }
+};
+
 /// Where a component is evaluated.
 template <class S>
 struct At {
   S rate;                ///< [rad/s] rate of an element; slip of a contact in the direction in which it slips
   const S* state;        ///< own states
-  const S* input;        ///< own inputs, in the order of declaration
+  OwnInputs<S> input;    ///< own inputs
   int piece;             ///< number of the smooth piece of the rate
   const double* points;  ///< pool of curves: x, y, slope to the next point
 };
@@ -90,10 +111,15 @@ concept YieldingContact = requires(const typename E::template Params<double>& p)
 template <class E>
 concept FaultyContact = requires(const typename E::template Params<double>& p, const At<double>& at) {
   { E::fault(p, at) } -> std::same_as<double>;
-  { E::fault_kind(p) } -> std::same_as<int>;
-  { E::fault_report(p) } -> std::same_as<int>;
+  { E::fault_kind(p) } -> std::same_as<choice::Fault>;
+  { E::fault_report(p) } -> std::same_as<choice::Report>;
 };
-enum Fault : int { sound, cannot_transmit, cannot_unlock };
+/// What has failed in a contact, as the number that a run keeps.
+enum Fault : int {
+  sound = int(choice::Fault::none),
+  cannot_transmit = int(choice::Fault::cannot_transmit),
+  cannot_unlock = int(choice::Fault::cannot_unlock)
+};
 
 /// Element that turns only a part of its work into heat.
 template <class E>
@@ -101,7 +127,7 @@ concept HeatingElement = requires(const typename E::template Params<double>& p, 
   { E::heat(p, at) } -> std::same_as<double>;
 };
 
-/// Flow between two shared states: inputs 0 and 1 are their values.
+/// Flow between two shared states, whose values are its first two inputs.
 template <class E>
 concept FlowElement = requires(const typename E::template Params<double>& p, const At<double>& at) {
   { E::flow(p, at) } -> std::same_as<double>;
@@ -131,7 +157,16 @@ concept CompliantLaw = requires(const typename L::template Params<double>& p, co
 };
 
 template <class L>
-concept FrictionLaw = StickingLaw<L> != CompliantLaw<L>;
+concept FrictionLaw = (StickingLaw<L> != CompliantLaw<L>) && requires {
+  { L::states } -> std::convertible_to<int>;
+  { L::inputs } -> std::convertible_to<int>;
+};
+
+/// Law that jumps with the sign of the slip and has no state of rest.
+template <class L>
+concept ChatteringLaw = requires {
+  { L::chatters } -> std::convertible_to<bool>;
+};
 
 /// Compliant law, or torque element, that changes between smooth pieces by its own states. `margin` is positive inside
 /// `at.piece` and tells who is closest to leaving; `cross` gives the next piece and may move states (who = turned: the
@@ -145,21 +180,22 @@ concept SwitchingLaw =
     };
 inline constexpr int turned = -1;
 
-/// Law whose coefficient depends on more than the slip, as on a temperature.
+/// Switching law that may leave a piece on the way back: whether a state that has just crossed goes on.
 template <class L>
-concept DrivenLaw = requires {
-  { L::inputs } -> std::convertible_to<int>;
+concept RunningOn = requires {
+  { L::runs_on(0, 0) } -> std::same_as<bool>;
 };
-template <class L>
-consteval int law_inputs() {
-  if constexpr (DrivenLaw<L>) return L::inputs;
-  return 0;
-}
 
 /// Law that is not known everywhere: `outside` is below zero where a table is left; `seen` is what left it.
 template <class L>
 concept BoundedLaw = requires(const typename L::template Params<double>& p, const At<double>& at, double& seen) {
   { L::outside(p, at, seen) } -> std::same_as<double>;
+};
+
+/// Law whose tables have sizes that must belong together.
+template <class L>
+concept FittedLaw = requires(const typename L::template Params<double>& p) {
+  { L::fits(p) } -> std::same_as<bool>;
 };
 
 /// Law whose number of states depends on its parameters; `states` is the most.
@@ -169,7 +205,7 @@ concept SizedLaw = requires(const typename L::template Params<double>& p) {
 };
 
 /// A component whose function of the rate has kinks.
-template <class E, class T>
+template <class E, class T = double>
 concept Kinked = requires(const typename E::template Params<T>& p, const double* points) {
   { E::edges(p) } -> std::same_as<int>;
   { E::edge(p, points, 0) } -> std::same_as<double>;

@@ -5,28 +5,24 @@
 /// docs/theory/clutches.md
 namespace clutchwork {
 
-enum class Interpolation : int { linear, smooth };
-enum class Extrapolation : int { linear, nearest, error };
-
 /// Parameters that every law with tables has; the first ones of it.
 template <class T>
 struct Tabulated {
-  T interpolation;  ///< [1]
-  T extrapolation;  ///< [1]
+  Word<T, choice::Interpolation> interpolation;  ///< [1]
+  Word<T, choice::Extrapolation> extrapolation;  ///< [1]
 };
 
 /// What a table does between its points and beyond them.
 struct Manner {
-  Interpolation interpolation;
-  Extrapolation extrapolation;
+  choice::Interpolation interpolation;
+  choice::Extrapolation extrapolation;
 
   template <class T>
-  explicit Manner(const Tabulated<T>& p)
-      : interpolation(Interpolation(int(value(p.interpolation)))),
-        extrapolation(Extrapolation(int(value(p.extrapolation)))) {}
-  constexpr Manner(Interpolation between, Extrapolation beyond) : interpolation(between), extrapolation(beyond) {}
-  bool smooth() const { return interpolation == Interpolation::smooth; }
-  bool kept() const { return extrapolation == Extrapolation::nearest; }
+  explicit Manner(const Tabulated<T>& p) : interpolation(p.interpolation), extrapolation(p.extrapolation) {}
+  constexpr Manner(choice::Interpolation between, choice::Extrapolation beyond)
+      : interpolation(between), extrapolation(beyond) {}
+  bool smooth() const { return interpolation == choice::Interpolation::smooth; }
+  bool kept() const { return extrapolation == choice::Extrapolation::nearest; }
 };
 
 /// Points of one row of a table, inside the pool.
@@ -149,7 +145,7 @@ struct Kinks {
 
   int inner() const { return axis.count < 3 ? 0 : axis.count - 2; }
   int ends() const { return int(manner.kept() && axis.count > 1); }
-  int zeros() const { return int(falls && manner.extrapolation == Extrapolation::linear); }
+  int zeros() const { return int(falls && manner.extrapolation == choice::Extrapolation::linear); }
   int count() const { return inner() + 2 * ends() + zeros(); }
   double at(int i) const {
     // an end at zero is no kink, for slips are not below
@@ -191,7 +187,7 @@ struct SlipTable {
   template <class P, class T>
   static T outside(const P& p, const At<T>& at, T& seen) {
     seen = at.rate;
-    if (Law::manner(p).extrapolation != Extrapolation::error) return T(1);
+    if (Law::manner(p).extrapolation != choice::Extrapolation::error) return T(1);
     return T(room_for_slip(axis_of(p.kinetic, at.points), value(at.rate)));
   }
   template <class P>

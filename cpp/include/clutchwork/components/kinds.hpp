@@ -28,7 +28,7 @@ inline int contact_inputs(int kind) {
   return visit_contact(kind, [](auto tag) { return int(decltype(tag)::type::inputs); });
 }
 inline int law_inputs_of(int law) {
-  return visit_law(law, [](auto tag) { return law_inputs<typename decltype(tag)::type>(); });
+  return visit_law(law, [](auto tag) { return int(decltype(tag)::type::inputs); });
 }
 inline bool is_shaped(int kind) {
   return visit_contact(kind, [](auto tag) { return ShapedContact<typename decltype(tag)::type>; });

@@ -62,7 +62,7 @@ template <class T>
 bool law_runs_on(const Branch<T>& b, int who) {
   return visit_branch(b, [&](auto tag, const T*, const T*, const T*, int) {
     using L = typename decltype(tag)::type;
-    if constexpr (requires { L::runs_on(0, 0); }) return L::runs_on(b.piece, who);
+    if constexpr (RunningOn<L>) return L::runs_on(b.piece, who);
     return true;
   });
 }
@@ -94,7 +94,7 @@ inline bool is_bounded_law(int law) {
 
 /// Whether a law jumps with the sign of the slip.
 inline bool is_chattering_law(int law) {
-  return visit_law(law, [](auto tag) { return requires { decltype(tag)::type::chatters; }; });
+  return visit_law(law, [](auto tag) { return ChatteringLaw<typename decltype(tag)::type>; });
 }
 
 /// Number of kinks of the function behind a direction, over its rate or its slip.
@@ -103,7 +103,7 @@ int edge_count(const Workspace<T>& ws, int direction) {
   const System& sys = ws.sys;
   auto count = [&](auto tag, const T* params) {
     using E = typename decltype(tag)::type;
-    if constexpr (Kinked<E, T>) {
+    if constexpr (Kinked<E>) {
       return E::edges(*reinterpret_cast<const typename E::template Params<T>*>(params));
     } else {
       return 0;
@@ -123,7 +123,7 @@ double edge_at(const Workspace<T>& ws, int direction, int i) {
   const System& sys = ws.sys;
   auto at = [&](auto tag, const T* params) {
     using E = typename decltype(tag)::type;
-    if constexpr (Kinked<E, T>) {
+    if constexpr (Kinked<E>) {
       return E::edge(*reinterpret_cast<const typename E::template Params<T>*>(params), sys.points, i);
     } else {
       return 0.0;

@@ -5,17 +5,15 @@
 /// The Stribeck curve that many laws share: docs/theory/friction-laws.md.
 namespace clutchwork {
 
-enum class Shape : int { gaussian, tustin, lorentz, power };
-
 /// Parameters of a Stribeck curve; the first ones of every law that has one.
 template <class T>
 struct StribeckCurve {
-  T static_;   ///< [1]
-  T kinetic;   ///< [1]
-  T speed;     ///< [rad/s]
-  T shape;     ///< [1] number of the shape
-  T exponent;  ///< [1]
-  T viscous;   ///< [s/rad]
+  T static_;                     ///< [1]
+  T kinetic;                     ///< [1]
+  T speed;                       ///< [rad/s]
+  Word<T, choice::Shape> shape;  ///< [1]
+  T exponent;                    ///< [1]
+  T viscous;                     ///< [s/rad]
 };
 
 /// |x|^n, finite with its derivative at zero.
@@ -34,12 +32,12 @@ CLUTCHWORK_INLINE S fading(S x) {
 /// Share of the static excess that is left at x = slip / speed: 1 at rest, falling to 0.
 template <class T, class S>
 CLUTCHWORK_INLINE S stribeck_share(const StribeckCurve<T>& c, S x) {
-  switch (Shape(int(value(c.shape)))) {
-    case Shape::tustin:
+  switch (c.shape) {
+    case choice::Shape::tustin:
       return fading(x);
-    case Shape::lorentz:
+    case choice::Shape::lorentz:
       return S(1) / (S(1) + x * x);
-    case Shape::power:
+    case choice::Shape::power:
       return fading(power_of_size(x, c.exponent));
     default:
       return fading(x * x);
@@ -50,12 +48,12 @@ CLUTCHWORK_INLINE S stribeck_share(const StribeckCurve<T>& c, S x) {
 template <class T>
 CLUTCHWORK_INLINE double stribeck_reach(const StribeckCurve<T>& c) {
   const double speed = value(c.speed);
-  switch (Shape(int(value(c.shape)))) {
-    case Shape::tustin:
+  switch (c.shape) {
+    case choice::Shape::tustin:
       return 12 * speed;
-    case Shape::lorentz:
+    case choice::Shape::lorentz:
       return 10 * speed;
-    case Shape::power:
+    case choice::Shape::power:
       return pow(12, 1 / value(c.exponent)) * speed;
     default:
       return 3.5 * speed;

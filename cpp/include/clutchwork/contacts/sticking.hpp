@@ -51,12 +51,12 @@ double fault_trigger(const Workspace<T>& ws, int c) {
 /// What a failure does to a contact, and how it is reported.
 template <class T>
 void fault_of(const Workspace<T>& ws, int c, int& kind, int& report) {
-  kind = sound, report = 1;
+  kind = sound, report = int(choice::Report::warning);
   visit_contact(ws.sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     if constexpr (FaultyContact<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + ws.sys.contact_param[c]);
-      kind = E::fault_kind(p), report = E::fault_report(p);
+      kind = int(E::fault_kind(p)), report = int(E::fault_report(p));
     }
   });
 }

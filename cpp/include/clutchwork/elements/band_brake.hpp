@@ -4,20 +4,18 @@
 namespace clutchwork::elements {
 
 /// Band around a drum, pulled at one end and fixed at the other. docs/theory/clutches.md
-struct BandBrake {
+struct BandBrake : declared::BandBrake {
   template <class T>
   struct Params {
     T radius;    ///< [m]
     T wrap;      ///< [rad]
     T reversed;  ///< [1]
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 1;
   static constexpr bool one_way = false;
 
   template <class T, class S>
   static S load(const Params<T>& p, const At<S>& at) {
-    return p.radius * at.input[0];
+    return p.radius * at.input[Input::force];
   }
   /// Torque over radius and force: the drum pulls the band on in one direction, and off in the other.
   template <class T, class S>

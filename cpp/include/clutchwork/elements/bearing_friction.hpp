@@ -4,13 +4,11 @@
 namespace clutchwork::elements {
 
 /// Friction of a bearing: constant load.
-struct BearingFriction {
+struct BearingFriction : declared::BearingFriction {
   template <class T>
   struct Params {
     T torque;  ///< [N m]
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 0;
   static constexpr bool one_way = false;
 
   template <class T, class S>

@@ -4,18 +4,16 @@
 namespace clutchwork::elements {
 
 /// Friction clutch: load = gain * pressure (or normal force).
-struct Clutch {
+struct Clutch : declared::Clutch {
   template <class T>
   struct Params {
     T gain;  ///< [m3]
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 1;
   static constexpr bool one_way = false;
 
   template <class T, class S>
   static S load(const Params<T>& p, const At<S>& at) {
-    return p.gain * at.input[0];
+    return p.gain * at.input[Input::pressure];
   }
 };
 

@@ -4,18 +4,16 @@
 namespace clutchwork::elements {
 
 /// Heat convection whose conductance is a table over abs(speed), constant beyond its ends. docs/theory/thermal.md
-struct Convection {
+struct Convection : declared::Convection {
   template <class T>
   struct Params {
     Curve<T> conductance;  ///< rad/s -> W/K
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 3;
 
   /// Heat flow from the first to the second node [W]; inputs: their temperatures [K], the speed [rad/s].
   template <class T, class S>
   static S flow(const Params<T>& p, const At<S>& at) {
-    return (at.input[0] - at.input[1]) * over(p, at.points, abs(at.input[2]));
+    return (at.input[Input::hot] - at.input[Input::cold]) * over(p, at.points, abs(at.input[Input::speed]));
   }
 
  private:

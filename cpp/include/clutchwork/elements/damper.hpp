@@ -4,13 +4,11 @@
 namespace clutchwork::elements {
 
 /// Linear viscous damper.
-struct Damper {
+struct Damper : declared::Damper {
   template <class T>
   struct Params {
     T damping;  ///< [N m s/rad]
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 0;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {

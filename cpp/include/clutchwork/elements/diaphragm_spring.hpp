@@ -4,26 +4,24 @@
 namespace clutchwork::elements {
 
 /// Clamp force over the travel of the release bearing, which follows the pedal. docs/theory/clutches.md
-struct DiaphragmSpring {
+struct DiaphragmSpring : declared::DiaphragmSpring {
   template <class T>
   struct Params {
-    Curve<T> force;   ///< m -> N
-    T ratio;          ///< [1]
-    T free_travel;    ///< [m]
-    T wear_ratio;     ///< [1]
-    T lag;            ///< [s]
-    T interpolation;  ///< [1]
+    Curve<T> force;                                ///< m -> N
+    T ratio;                                       ///< [1]
+    T free_travel;                                 ///< [m]
+    T wear_ratio;                                  ///< [1]
+    T lag;                                         ///< [s]
+    Word<T, choice::Interpolation> interpolation;  ///< [1]
   };
-  enum Input : int { travel, wear };
-  static constexpr int states = 1;
-  static constexpr int inputs = 2;
 
   /// Force at the present travel [N]; wear takes the fingers towards the bearing.
   template <class T, class S>
   static S wanted(const Params<T>& p, const At<S>& at) {
     const Axis axis = axis_of(p.force, at.points);
-    const Manner manner{Interpolation(int(value(p.interpolation))), Extrapolation::nearest};
-    const S pressed = larger(p.ratio * at.input[travel] - p.free_travel, S(0)) + p.wear_ratio * at.input[wear];
+    const Manner manner{p.interpolation, choice::Extrapolation::nearest};
+    const S pressed =
+        larger(p.ratio * at.input[Input::travel] - p.free_travel, S(0)) + p.wear_ratio * at.input[Input::wear];
     auto force = [&](int i) { return S(axis.x[3 * i + 1]); };
     return value_over<S>(axis, manner, force, pressed);
   }

@@ -4,7 +4,7 @@
 namespace clutchwork::elements {
 
 /// Teeth that mesh when they are aligned and close to synchronous. docs/theory/clutches.md
-struct DogClutch {
+struct DogClutch : declared::DogClutch {
   template <class T>
   struct Params {
     T teeth;      ///< [1]
@@ -17,12 +17,9 @@ struct DogClutch {
     T pointed;    ///< [1]
     T reversed;   ///< [1]
   };
-  enum State : int { angle, sleeve };
   // apart: the sleeve moves freely; fast: it is held back, the slip is too high; blocked: tooth stands on tooth; then
   // in mesh: no flank, one flank, the other
   enum Piece : int { apart, fast, blocked, loose, ahead, behind };
-  static constexpr int states = 2;
-  static constexpr int inputs = 1;
 
   template <class T>
   static double pitch(const Params<T>& p) {
@@ -31,7 +28,7 @@ struct DogClutch {
   /// Where the sleeve is wanted: above `reach` the teeth are to mesh.
   template <class T, class S>
   static S command(const Params<T>& p, const At<S>& at) {
-    return at.input[0] * T(value(p.reversed) != 0 ? -1 : 1);
+    return at.input[Input::command] * T(value(p.reversed) != 0 ? -1 : 1);
   }
   /// Angle from the middle of the nearest gap [rad].
   template <class T, class S>

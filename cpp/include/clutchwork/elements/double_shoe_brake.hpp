@@ -4,24 +4,21 @@
 namespace clutchwork::elements {
 
 /// Two long hinged shoes inside a drum. docs/theory/clutches.md
-struct DoubleShoeBrake {
+struct DoubleShoeBrake : declared::DoubleShoeBrake {
   template <class T>
   struct Params {
-    T radius;   ///< [m]
-    T hinge;    ///< [m]
-    T arm;      ///< [m]
-    T start;    ///< [rad]
-    T end;      ///< [rad]
-    T leading;  ///< [1] number of the arrangement
+    T radius;                          ///< [m]
+    T hinge;                           ///< [m]
+    T arm;                             ///< [m]
+    T start;                           ///< [rad]
+    T end;                             ///< [rad]
+    Word<T, choice::Leading> leading;  ///< [1]
   };
-  enum Arrangement : int { simplex, duplex };
-  static constexpr int states = 0;
-  static constexpr int inputs = 1;
   static constexpr bool one_way = false;
 
   template <class T, class S>
   static S load(const Params<T>&, const At<S>& at) {
-    return at.input[0];
+    return at.input[Input::force];
   }
   /// Torque of one shoe over its force; a leading one presses itself on.
   template <class T, class S>
@@ -34,7 +31,7 @@ struct DoubleShoeBrake {
   }
   template <class T, class S>
   static S gain(const Params<T>& p, const S& mu, int direction) {
-    if (int(value(p.leading)) == simplex) return shoe(p, mu, true) + shoe(p, mu, false);
+    if (p.leading == choice::Leading::simplex) return shoe(p, mu, true) + shoe(p, mu, false);
     return S(2) * shoe(p, mu, direction > 0);
   }
 };

@@ -4,15 +4,13 @@
 namespace clutchwork::elements {
 
 /// Torque linear in speed: odd in the speed, or even when it acts in the same direction at all speeds.
-struct LinearTorque {
+struct LinearTorque : declared::LinearTorque {
   template <class T>
   struct Params {
     T nominal_torque;  ///< [N m]
     T nominal_speed;   ///< [rad/s]
     T same_direction;  ///< [1]
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 0;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {

@@ -4,19 +4,17 @@
 namespace clutchwork::elements {
 
 /// Heat carried away by a flow of oil. docs/theory/thermal.md
-struct OilFlow {
+struct OilFlow : declared::OilFlow {
   template <class T>
   struct Params {
     T heat_capacity;  ///< [J/(kg K)]
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 3;
 
   /// Heat flow from the node to the inlet [W]; inputs: their temperatures [K], the flow of oil [kg/s].
   template <class T, class S>
   static S flow(const Params<T>& p, const At<S>& at) {
-    const S carried = value(at.input[2]) > 0 ? at.input[2] : S(0);
-    return (at.input[0] - at.input[1]) * carried * p.heat_capacity;
+    const S carried = value(at.input[Input::flow]) > 0 ? at.input[Input::flow] : S(0);
+    return (at.input[Input::hot] - at.input[Input::inlet]) * carried * p.heat_capacity;
   }
 };
 

@@ -4,21 +4,19 @@
 namespace clutchwork::elements {
 
 /// Load that opposes the motion, smoothed around standstill.
-struct ResistingTorque {
+struct ResistingTorque : declared::ResistingTorque {
   template <class T>
   struct Params {
     T speed;  ///< [rad/s]
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 1;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {
     // beyond 20 the hyperbolic tangent is one to the last bit
     const S x = at.rate / p.speed;
-    if (x > S(20)) return -at.input[0];
-    if (x < S(-20)) return at.input[0];
-    return -(at.input[0] * tanh(x));
+    if (x > S(20)) return -at.input[Input::torque];
+    if (x < S(-20)) return at.input[Input::torque];
+    return -(at.input[Input::torque] * tanh(x));
   }
   template <class T, class S>
   static void state_rates(const Params<T>&, const At<S>&, S*) {}

@@ -4,14 +4,12 @@
 namespace clutchwork::elements {
 
 /// Torque over speed as a table, continued linearly beyond its ends.
-struct SpeedTorque {
+struct SpeedTorque : declared::SpeedTorque {
   template <class T>
   struct Params {
     Curve<T> torque;  ///< rad/s -> N m
     T gain;           ///< [1]
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 0;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {

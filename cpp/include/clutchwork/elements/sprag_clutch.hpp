@@ -4,14 +4,12 @@
 namespace clutchwork::elements {
 
 /// Freewheel that rolls over above a torque; its drag is the load.
-struct SpragClutch {
+struct SpragClutch : declared::SpragClutch {
   template <class T>
   struct Params {
     T holding;  ///< [N m]
     T drag;     ///< [N m]
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 0;
   static constexpr bool one_way = true;
 
   template <class T, class S>

@@ -4,14 +4,12 @@
 namespace clutchwork::elements {
 
 /// Linear spring; its state is the spring torque [N m].
-struct Spring {
+struct Spring : declared::Spring {
   template <class T>
   struct Params {
     T stiffness;      ///< [N m/rad]
     T initial_twist;  ///< [rad]
   };
-  static constexpr int states = 1;
-  static constexpr int inputs = 0;
 
   template <class T, class S>
   static S torque(const Params<T>&, const At<S>& at) {

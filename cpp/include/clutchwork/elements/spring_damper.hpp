@@ -4,15 +4,13 @@
 namespace clutchwork::elements {
 
 /// Linear spring and damper in parallel; its state is the spring torque [N m]. docs/theory/reduction.md
-struct SpringDamper {
+struct SpringDamper : declared::SpringDamper {
   template <class T>
   struct Params {
     T stiffness;      ///< [N m/rad]
     T damping;        ///< [N m s/rad]
     T initial_twist;  ///< [rad]
   };
-  static constexpr int states = 1;
-  static constexpr int inputs = 0;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {

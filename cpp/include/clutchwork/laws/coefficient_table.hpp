@@ -4,18 +4,17 @@
 namespace clutchwork::laws {
 
 /// Coefficient over slip as a table, linear between its points. docs/theory/clutches.md
-struct CoefficientTable : SlipTable<CoefficientTable> {
+struct CoefficientTable : SlipTable<CoefficientTable>, declared::CoefficientTable {
   template <class T>
   struct Params {
-    T static_;         ///< [1]
-    Curve<T> kinetic;  ///< rad/s -> 1
-    T extrapolation;   ///< [1]
+    T static_;                                     ///< [1]
+    Curve<T> kinetic;                              ///< rad/s -> 1
+    Word<T, choice::Extrapolation> extrapolation;  ///< [1]
   };
-  static constexpr int states = 0;
 
   template <class T>
   static Manner manner(const Params<T>& p) {
-    return {Interpolation::linear, Extrapolation(int(value(p.extrapolation)))};
+    return {choice::Interpolation::linear, p.extrapolation};
   }
 };
 

@@ -4,13 +4,12 @@
 namespace clutchwork::laws {
 
 /// Coulomb friction with a static level.
-struct Coulomb {
+struct Coulomb : declared::Coulomb {
   template <class T>
   struct Params {
     T static_;  ///< [1]
     T kinetic;  ///< [1]
   };
-  static constexpr int states = 0;
 
   template <class T, class S>
   static S slide(const Params<T>& p, const At<S>&) {

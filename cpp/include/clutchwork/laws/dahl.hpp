@@ -4,14 +4,13 @@
 namespace clutchwork::laws {
 
 /// Rate-independent elastic-plastic friction; its state is the coefficient itself.
-struct Dahl {
+struct Dahl : declared::Dahl {
   template <class T>
   struct Params {
     T kinetic;    ///< [1]
     T stiffness;  ///< [1/rad]
     T exponent;   ///< [1]
   };
-  static constexpr int states = 1;
 
   template <class T, class S>
   static S coefficient(const Params<T>&, const At<S>& at) {

@@ -4,7 +4,7 @@
 namespace clutchwork::laws {
 
 /// LuGre with a range of deflection that is purely elastic: no drift below it.
-struct ElastoPlastic : Bristles<ElastoPlastic> {
+struct ElastoPlastic : Bristles<ElastoPlastic>, declared::ElastoPlastic {
   template <class T>
   struct Params : StribeckCurve<T> {
     T stiffness;  ///< [1/rad]

@@ -4,7 +4,7 @@
 namespace clutchwork::laws {
 
 /// Coefficient that falls exponentially with slip.
-struct Exponential {
+struct Exponential : declared::Exponential {
   template <class T>
   struct Params {
     T static_;  ///< [1]
@@ -12,7 +12,6 @@ struct Exponential {
     T fast;     ///< [1]
     T speed;    ///< [rad/s]
   };
-  static constexpr int states = 0;
 
   template <class T, class S>
   static S slide(const Params<T>& p, const At<S>& at) {

@@ -4,7 +4,7 @@
 namespace clutchwork::laws {
 
 /// Static coefficient over the temperature, kinetic coefficient over temperature and slip. docs/theory/clutches.md
-struct FrictionMap {
+struct FrictionMap : declared::FrictionMap {
   template <class T>
   struct Params : Tabulated<T> {
     Curve<T> temperatures;  ///< K
@@ -12,8 +12,6 @@ struct FrictionMap {
     Curve<T> static_;       ///< 1, one for each temperature
     Curve<T> kinetic;       ///< 1, a row over the speeds for each temperature
   };
-  static constexpr int states = 0;
-  static constexpr int inputs = 1;
 
   /// Whether the sizes of the tables belong together.
   template <class T>
@@ -36,7 +34,7 @@ struct FrictionMap {
   template <class T, class S, class Row>
   static S over_temperature(const Params<T>& p, const At<S>& at, Row&& row) {
     const Axis axis = axis_of(p.temperatures, at.points);
-    const S x = within(axis, manner(p), at.input[0]);
+    const S x = within(axis, manner(p), at.input[Input::temperature]);
     const int k = interval_of(axis, value(x));
     const S low = row(k), high = row(k + 1), s = (x - S(axis[k])) / S(axis.width(k));
     if (!manner(p).smooth()) return not_negative(low + (high - low) * s);
@@ -70,10 +68,10 @@ struct FrictionMap {
   template <class T>
   static T outside(const Params<T>& p, const At<T>& at, T& seen) {
     seen = at.rate;
-    if (manner(p).extrapolation != Extrapolation::error) return T(1);
+    if (manner(p).extrapolation != choice::Extrapolation::error) return T(1);
     const double slip = room_for_slip(axis_of(p.speeds, at.points), value(at.rate));
-    const double temperature = room_inside(axis_of(p.temperatures, at.points), value(at.input[0]));
-    if (temperature < slip) seen = at.input[0];
+    const double temperature = room_inside(axis_of(p.temperatures, at.points), value(at.input[Input::temperature]));
+    if (temperature < slip) seen = at.input[Input::temperature];
     return T(smaller(slip, temperature));
   }
 

@@ -5,13 +5,13 @@ namespace clutchwork::laws {
 
 /// Generalised Maxwell-slip: elements in parallel that stick and slip, each with its share of the Stribeck curve; the
 /// states are their coefficients.
-struct GMS {
+struct GMS : declared::GMS {
   template <class T>
   struct Params : StribeckCurve<T> {
     Curve<T> elements;  ///< rad -> 1
     T attraction;       ///< [1/s]
   };
-  static constexpr int states = most_elements;
+  static_assert(states == most_elements);
   // an element on its way back is below its limit when it is so far inside
   static constexpr double slack = 1e-7;
 

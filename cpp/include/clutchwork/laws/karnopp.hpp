@@ -4,12 +4,11 @@
 namespace clutchwork::laws {
 
 /// Dead band of slip in which the static coefficient acts; it locks as soon as the slip falls to the band.
-struct Karnopp {
+struct Karnopp : declared::Karnopp {
   template <class T>
   struct Params : StribeckCurve<T> {
     T band;  ///< [rad/s]
   };
-  static constexpr int states = 0;
 
   template <class T, class S>
   static S slide(const Params<T>& p, const At<S>& at) {

@@ -4,14 +4,14 @@
 namespace clutchwork::laws {
 
 /// Hysteresis with non-local memory from Maxwell-slip elements; the states are the coefficients of the elements.
-struct Leuven {
+struct Leuven : declared::Leuven {
   template <class T>
   struct Params : StribeckCurve<T> {
     Curve<T> elements;  ///< rad -> 1
     T order;            ///< [1]
     T damping;          ///< [s/rad]
   };
-  static constexpr int states = most_elements;
+  static_assert(states == most_elements);
   // an element has left its limit when it is so far inside; the Stribeck level may push it back and forth
   static constexpr double slack = 1e-7;
 

@@ -4,7 +4,7 @@
 namespace clutchwork::laws {
 
 /// Bristles that bend and slip; the state is the elastic part of the coefficient, stiffness times deflection.
-struct LuGre : Bristles<LuGre> {
+struct LuGre : Bristles<LuGre>, declared::LuGre {
   template <class T>
   struct Params : StribeckCurve<T> {
     T stiffness;  ///< [1/rad]

@@ -4,21 +4,19 @@
 namespace clutchwork::laws {
 
 /// Wind-up of the contact under a tanh, with the Stribeck fall on top; the state is the wind-up over the elastic angle.
-struct Mykhalevych {
+struct Mykhalevych : declared::Mykhalevych {
   template <class T>
   struct Params {
-    T static_;  ///< [1]
-    T kinetic;  ///< [1]
-    T elastic;  ///< [rad]
-    T speed;    ///< [rad/s]
-    T viscous;  ///< [1]
-    T reset;    ///< [1] number of the kind of reset
-    T range;    ///< [1]
-    T passive;  ///< [1]
+    T static_;                     ///< [1]
+    T kinetic;                     ///< [1]
+    T elastic;                     ///< [rad]
+    T speed;                       ///< [rad/s]
+    T viscous;                     ///< [1]
+    Word<T, choice::Reset> reset;  ///< [1]
+    T range;                       ///< [1]
+    T passive;                     ///< [1]
   };
-  enum Reset : int { saturate, clip, literal };
   enum Piece : int { winding, full };
-  static constexpr int states = 1;
 
   template <class T, class S>
   static S coefficient(const Params<T>& p, const At<S>& at) {
@@ -39,24 +37,23 @@ struct Mykhalevych {
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
     who = 0;
-    if (int(value(p.reset)) != saturate || at.piece == full) return S(1);
+    if (p.reset != choice::Reset::saturate || at.piece == full) return S(1);
     return S(1) - abs(at.state[0]) / p.range;
   }
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
     const T side = T(value(state[0]) < 0 ? -1 : value(state[0]) > 0 ? 1 : 0);
-    const int reset = int(value(p.reset));
-    if (reset == saturate) {
+    if (p.reset == choice::Reset::saturate) {
       if (who == turned) return winding;
       state[0] = side * p.range;
       return full;
     }
-    if (reset == literal || abs(value(state[0])) > 1) state[0] = side;
+    if (p.reset == choice::Reset::literal || abs(value(state[0])) > 1) state[0] = side;
     return at.piece;
   }
   template <class T>
   static bool turns(const Params<T>& p, int piece) {
-    return int(value(p.reset)) != saturate || piece == full;
+    return p.reset != choice::Reset::saturate || piece == full;
   }
 };
 

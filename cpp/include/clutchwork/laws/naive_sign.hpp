@@ -4,10 +4,9 @@
 namespace clutchwork::laws {
 
 /// Stribeck curve times the sign of the slip, without a state of rest: shows how solvers stall.
-struct NaiveSign {
+struct NaiveSign : declared::NaiveSign {
   template <class T>
   struct Params : StribeckCurve<T> {};
-  static constexpr int states = 0;
   static constexpr bool chatters = true;
 
   template <class T, class S>

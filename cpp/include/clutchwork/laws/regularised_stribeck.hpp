@@ -4,12 +4,11 @@
 namespace clutchwork::laws {
 
 /// Stribeck curve with its jump smoothed: it creeps under any load.
-struct RegularisedStribeck {
+struct RegularisedStribeck : declared::RegularisedStribeck {
   template <class T>
   struct Params : StribeckCurve<T> {
     T width;  ///< [rad/s]
   };
-  static constexpr int states = 0;
 
   template <class T, class S>
   static S coefficient(const Params<T>& p, const At<S>& at) {

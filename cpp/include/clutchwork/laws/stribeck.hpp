@@ -4,10 +4,9 @@
 namespace clutchwork::laws {
 
 /// Stribeck curve with exact sticking.
-struct Stribeck {
+struct Stribeck : declared::Stribeck {
   template <class T>
   struct Params : StribeckCurve<T> {};
-  static constexpr int states = 0;
 
   template <class T, class S>
   static S slide(const Params<T>& p, const At<S>& at) {

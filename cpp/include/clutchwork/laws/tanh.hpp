@@ -4,13 +4,12 @@
 namespace clutchwork::laws {
 
 /// Coulomb friction with its jump smoothed: it creeps under any load.
-struct Tanh {
+struct Tanh : declared::Tanh {
   template <class T>
   struct Params {
     T kinetic;  ///< [1]
     T speed;    ///< [rad/s]
   };
-  static constexpr int states = 0;
 
   template <class T, class S>
   static S coefficient(const Params<T>& p, const At<S>& at) {

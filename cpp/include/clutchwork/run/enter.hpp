@@ -52,7 +52,7 @@ Method choose_method(Workspace<T>& ws) {
   const Method wanted = ws.options.method;
   // speeds without inertia are algebraic: only a method for stiff motion carries them
   if (has_massless(ws)) return is_for_stiff(wanted) ? wanted : first_method(true);
-  if (wanted != Method::automatic) return wanted;
+  if (wanted != Method::auto_) return wanted;
   // shared states may be stiff
   return first_method(ws.sys.shared > 0 || !is_soft(ws));
 }

@@ -46,7 +46,7 @@ void fail(Workspace<T>& ws, int c) {
   ws.contact.fault[c] = kind;
   const double e = kinetic_energy(ws), torque = value(ws.happened.torque[c]);
   record(ws, {c, ws.contact.mode[c], ws.contact.mode[c], Cause::fault, 0.0, torque, torque, e, e});
-  if (report == 2) ws.contact.failed = c;
+  if (report == int(choice::Report::error)) ws.contact.failed = c;
   if (kind == cannot_transmit) ws.contact.loaded[c] = ws.contact.pressed[c] = 0;
 }
 

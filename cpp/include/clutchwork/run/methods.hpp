@@ -13,16 +13,15 @@ struct MethodList {
   static constexpr int count = sizeof...(Integrators);
 };
 
-/// In the order of Method, after `automatic`: a new integrator is its header, a line here and its name.
+/// Every Method but `auto`: a new integrator is its header, a line here and its name in declare/layout.py.
 using Methods = MethodList<Rodas5P, Dopri5>;
 static_assert(Methods::count == last_method, "run/methods.hpp: as many integrators as Method names");
 
-/// Call f with the tag of the integrator behind a method; nothing for `automatic`.
+/// Call f with the tag of the integrator behind a method; nothing for `auto`.
 template <class F>
 void visit_method(Method method, F&& f) {
   auto visit = [&]<class... Integrators>(MethodList<Integrators...>) {
-    int number = int(Method::automatic);
-    ((int(method) == ++number ? f(Tag<Integrators>{}) : void()), ...);
+    ((method == Integrators::method ? f(Tag<Integrators>{}) : void()), ...);
   };
   visit(Methods{});
 }

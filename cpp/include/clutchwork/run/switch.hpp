@@ -114,7 +114,7 @@ void report_changes(Workspace<T>& ws, bool at_start, double energy_before) {
     const int mode = ws.contact.mode[c];
     if (mode == before.mode[c] || (at_start && !ws.contact.impulse[c])) continue;
     const bool own = c == before.contact || before.contact < 0;
-    const Cause cause = at_start ? Cause::impulse : own ? before.cause : Cause::consequence;
+    const Cause cause = at_start ? Cause::impulse : own ? before.cause : Cause::other_event;
     const double hits = value(mode == locked ? before.slope[c] : ws.decision.acceleration[c]);
     const double torque_before = value(before.torque[c]), torque = value(torque_after(ws, c));
     record(ws, {c, before.mode[c], mode, cause, hits, torque_before, torque, energy_before, energy_after});

@@ -20,7 +20,7 @@ struct Contacts {
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.keep(p.mode, n.contacts, backward, open), a.keep(p.forced, n.contacts, backward, forward);
     a.keep(p.pressed, n.contacts, 0, 1), a.keep(p.loaded, n.contacts, 0, 1);
-    a.take(p.compliant, n.contacts), a.keep(p.fault, n.contacts, sound, cannot_unlock);
+    a.take(p.compliant, n.contacts), a.keep(p.fault, n.contacts, 0, choice::words<choice::Fault> - 1);
     a.keep(p.impulse, n.contacts, 0, 1);
   }
 };

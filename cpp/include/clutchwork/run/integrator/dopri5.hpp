@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/scalar.hpp>
+#include <clutchwork/layout.gen.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 
@@ -9,6 +10,7 @@
 namespace clutchwork {
 
 struct Dopri5 {
+  static constexpr Method method = Method::dopri5;
   static constexpr bool stiff = false, small = false;
   static constexpr double a[7][6] = {{0},
                                      {1. / 5},

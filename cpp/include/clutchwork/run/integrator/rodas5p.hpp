@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/dense.hpp>
+#include <clutchwork/layout.gen.hpp>
 #include <clutchwork/motion/border.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
@@ -10,6 +11,7 @@
 namespace clutchwork {
 
 struct Rodas5P {
+  static constexpr Method method = Method::rodas5p;
   static constexpr bool stiff = true, small = true;
   static constexpr double gamma = 0.21193756319429014;
   static constexpr double a[6][5] = {

@@ -1,0 +1,1 @@
+"""What tools/gen_registry.py writes and asks for, one module each."""
