@@ -39,8 +39,8 @@ def main() -> int:
         print(f"error: {error}", file=sys.stderr)
         return 1
     # the modules beside this file know the declarations, which can be imported only now
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-    from tools.registry import declared, layout, pairs, switches
+    sys.path.insert(0, str(Path(__file__).resolve().parent))
+    from registry import declared, layout, pairs, switches
 
     problems = list(pairs.problems(root))
     for line in problems:

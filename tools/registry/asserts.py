@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from clutchwork.declare.hooks import hooks_of
 from clutchwork.declare.schema import Role
-from tools.registry.components import CONCEPT, Component, cpp_name
+from registry.components import CONCEPT, Component, cpp_name
 
 
 def asserts(component: Component) -> Iterator[str]:

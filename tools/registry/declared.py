@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from tools.registry.components import Component, components, cpp_name, enum_name
+from registry.components import Component, components, cpp_name, enum_name
 
 FILE = "declared.gen.hpp"
 

@@ -17,8 +17,8 @@ from clutchwork.declare.layout import (
     layout_text,
 )
 from clutchwork.declare.schema import schema_hash
-from tools.registry.components import cpp_name
-from tools.registry.options import options
+from registry.components import cpp_name
+from registry.options import options
 
 FILE = "layout.gen.hpp"
 TYPES = {"f8": "double", "i4": "std::int32_t"}

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from clutchwork.declare.schema import COMPILED_ROLES
-from tools.registry.components import FOLDER, Component, Field, components, cpp_name
+from registry.components import FOLDER, Component, Field, components, cpp_name
 
 INCLUDES = "cpp/include/clutchwork"
 TYPE = r"(?:T|Curve<T>|Word<T, [\w:]+>)"

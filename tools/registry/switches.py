@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from clutchwork.declare.hooks import HOOKS
 from clutchwork.declare.schema import COMPILED_ROLES, Role
-from tools.registry.asserts import asserts
-from tools.registry.components import Field, components
+from registry.asserts import asserts
+from registry.components import Field, components
 
 FILE = "registry.gen.hpp"
 
