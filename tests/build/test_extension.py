@@ -148,5 +148,9 @@ def test_two_files_make_an_element_and_two_a_law(tmp_path: Path) -> None:
     site = tmp_path / "site"
     built = project.install(copy, site)
     assert built.returncode == 0, built.stdout + built.stderr
+    # type checkers and editors know them
+    stub = (site / "clutchwork/__init__.pyi").read_text()
+    assert "class CubicDamper(Element):" in stub
+    assert "class Hyperbolic(Law):" in stub
     used = project.run_in(site, f"FILE = {str(tmp_path / 'model.toml')!r}\n{USE}")
     assert used.stdout.strip() == "used", used.stderr

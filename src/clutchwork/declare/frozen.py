@@ -11,8 +11,9 @@ class Call(NamedTuple):
     """How a declaration is called."""
 
     places: tuple[str, ...]  # fields that may be positional
-    names: tuple[str, ...]  # all of them
+    names: frozenset[str]  # all of them
     defaults: dict[str, Any]
+    checked: bool  # has a __post_init__
 
 
 @cache
@@ -20,30 +21,26 @@ def _call(cls: Any) -> Call:
     given = [item for item in fields(cls) if item.init]
     places = tuple(item.name for item in given if not item.kw_only)
     defaults = {item.name: item.default for item in given if item.default is not MISSING}
-    return Call(places, tuple(item.name for item in given), defaults)
+    return Call(places, frozenset(item.name for item in given), defaults, hasattr(cls, "__post_init__"))
 
 
 def _init(thing: Any, *args: Any, **named: Any) -> None:
     cls: Any = type(thing)
-    call = _call(cls)
-    given = {**call.defaults, **dict(zip(call.places, args, strict=False)), **named}
-    twice = len(args) > len(call.places) or any(name in named for name in call.places[: len(args)])
-    if twice or given.keys() != {*call.names}:
-        # `explain` says what is wrong
+    places, names, defaults, checked = _call(cls)
+    given = defaults | named
+    if args:
+        by_place = dict(zip(places, args, strict=False))
+        given |= by_place
+    # `explain` says what is wrong
+    if given.keys() != names or (args and (len(args) > len(places) or not by_place.keys().isdisjoint(named))):
         raise TypeError(f"{cls.__name__}() does not take these arguments")
-    vars(thing).update((name, given[name]) for name in call.names)
-    if hasattr(thing, "__post_init__"):
+    vars(thing).update(given)
+    if checked:
         thing.__post_init__()
 
 
 def _values(thing: Any) -> tuple[Any, ...]:
-    cls: Any = type(thing)
-    return tuple([getattr(thing, name) for name in _names(cls)])
-
-
-@cache
-def _names(cls: Any) -> tuple[str, ...]:
-    return tuple(item.name for item in fields(cls))
+    return tuple(getattr(thing, item.name) for item in fields(thing))
 
 
 def _repr(thing: Any) -> str:
