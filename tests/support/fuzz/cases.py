@@ -16,6 +16,7 @@ from typing import Any
 
 import clutchwork as cw
 from clutchwork.command.main import main
+from clutchwork.declare.schema import Role
 from clutchwork.files.writer import toml
 from clutchwork.fit import table
 from support import samples
@@ -35,7 +36,7 @@ def models() -> tuple[dict[str, Any], ...]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         found += [samples.driveline(cls).to_dict() for cls in samples.declared(*samples.ELEMENT_ROLES)]
-        for cls in samples.declared(cw.schema.Role.LAW):
+        for cls in samples.declared(Role.LAW):
             d = cw.Driveline("law")
             shaft, lining = d.shaft("a", inertia=1.0, speed=3.0), d.thermal("plates", capacity=50.0)
             d.add(cw.Brake("b", shaft=shaft, friction=samples.law(cls), gain=1.0, pressure=1.0, heat=lining))
