@@ -130,5 +130,5 @@ class Reader(Values):
         for key, value in data.items():
             row = SIMULATION.get(key)
             # an unknown name is reported with the other mistakes of the settings
-            made[key] = value if row is None else self._value(value, row.spec, at.inner(key, row.spec.unit))
+            made[key] = value if row is None else self._value(value, row.spec, at, key)
         return {key: value for key, value in made.items() if value is not BROKEN}
