@@ -24,8 +24,9 @@ kept.write(launches.write, HERE / "reference" / "car")
 parity.write(HERE / "reference")
 
 # what is public is documented by its public name, wherever it is defined
-for _name in clutchwork.__all__:
-    getattr(clutchwork, _name).__module__ = "clutchwork"
+for _thing in (getattr(clutchwork, name) for name in clutchwork.__all__):
+    if callable(_thing):
+        _thing.__module__ = "clutchwork"
 
 project = "clutchwork"
 author = "the clutchwork authors"
