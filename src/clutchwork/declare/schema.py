@@ -70,7 +70,7 @@ class Spec:
     rising: str = ""  # of a curve: "strictly", or "weakly" where equal x mean a jump
     constant: bool = False  # of a curve: a number stands for the same value everywhere
     choices: tuple[str, ...] = ()  # a text in Python, its place among these in the core
-    example: Any = None  # of a law: a value that fits the examples of its other fields
+    example: Any = None  # a value that fits the examples of the other fields
     last: bool = False  # stands behind all other fields in files and tables
 
     @property
@@ -183,23 +183,33 @@ def signal(
     doc: str,
     *,
     default: float | None = MISSING,  # type: ignore[assignment]
+    above: float | None = None,
+    at_least: float | None = None,
+    below: float | None = None,
+    at_most: float | None = None,
     units: tuple[str, ...] = (),
     gain: tuple[str, ...] = (),
     instead_of: str = "",
     otherwise: float | None = None,
     presses: bool = False,
+    example: float | None = None,
 ) -> Any:
     """An input: a number, a Signal, a thermal node (its temperature), a process (its first state), or (process, state).
 
     The inputs of flows and processes may also be `Rate` and `HeatFlow` of an element, and a shaft (its speed).
     The C++ functions get them by name, as `at.input[Input::pressure]`.
 
+    Bounds hold for what the model knows in advance: a number, and every value that a Signal takes at or after 0 s. What
+    another component or a controller gives is not bounded.
+
     With `instead_of` it is another way to give the signal of that name: exactly one of them is given, or
     none where that signal has a value `otherwise`. With `presses` a constant below zero is warned of; it stands in
     pictures, and so does a signal with a `gain`, the units of the parameter that multiplies it.
     """
-    spec = Spec("alternative" if instead_of else "signal", unit, doc, default is None, units=units, gain=gain)
-    return _field(replace(spec, instead_of=instead_of, otherwise=otherwise, presses=presses), default)
+    what = "alternative" if instead_of else "signal"
+    ranges: dict[str, Any] = {"above": above, "at_least": at_least, "below": below, "at_most": at_most}
+    ways: dict[str, Any] = {"gain": gain, "instead_of": instead_of, "otherwise": otherwise, "presses": presses}
+    return _field(Spec(what, unit, doc, default is None, **ranges, **ways, units=units, example=example), default)
 
 
 def law(doc: str, *, default: object = MISSING) -> Any:

@@ -18,6 +18,7 @@ from clutchwork.model.numbers import At as At
 from clutchwork.model.numbers import curve_problems, is_right, list_problems
 from clutchwork.model.numbers import number_problems as number_problems
 from clutchwork.model.pools import coefficients
+from clutchwork.signals.bases.extremes import extremes
 
 
 class Broken:
@@ -141,6 +142,7 @@ def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield from found
         for name, message, remedy in () if found else value.unit_problems((at.unit, *spec.units)):
             yield at.inner(name).problem(message, remedy=remedy)
+        yield from () if found else _beyond_bounds(value, spec, at)
     elif isinstance(value, Real) and not isinstance(value, bool):
         yield from number_problems(value, spec, at)
     # whether a reference leads to something of that unit is checked where the driveline is known
@@ -151,6 +153,16 @@ def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         if callable(value):
             remedy = "a function is a controller: give cw.Sampled(function, period), with the period in s"
         yield at.problem(f"must be a number{within(at.unit)} or a signal", value=shown(value), remedy=remedy)
+
+
+def _beyond_bounds(signal: Signal, spec: Spec, at: At) -> Iterator[Problem]:
+    """The first extreme of a signal that is out of bounds."""
+    for time, value in extremes(signal) if spec.bound else ():
+        if not spec.allows(value):
+            given = f"{value:g} {at.unit}".removesuffix(" 1")
+            message = f"must be {spec.bound} {at.unit}".removesuffix(" 1")
+            yield at.problem(message, value=f"{given} at {time:g} s", remedy=f"it is the {spec.doc}")
+            return
 
 
 def _law(value: Any, _: Spec, at: At) -> Iterator[Problem]:

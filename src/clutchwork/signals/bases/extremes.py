@@ -1,0 +1,60 @@
+"""Where a signal is largest and smallest, for the bounds of what it drives."""
+
+from __future__ import annotations
+
+from math import atan2, ceil, inf, isfinite, pi, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+from clutchwork.signals.bases.waveform import piece_value
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from clutchwork.declare.node import Segment, Signal
+
+
+class Reached(NamedTuple):
+    """A value that a signal takes."""
+
+    time: float  # s
+    value: float
+
+
+def extremes(signal: Signal) -> Iterator[Reached]:
+    """Values of a signal at and after 0 s where one of its pieces begins, ends or turns; none of one set from outside.
+
+    They hold the smallest and the largest value of every signal whose pieces are a cubic or one wave.
+    """
+    pieces, period = signal.segments(), signal.repeats()
+    ends = [piece.start for piece in pieces[1:]]
+    ends += [pieces[0].start + period if period > 0.0 else inf] if pieces else []
+    for piece, end in zip(pieces, ends, strict=True):
+        # what repeats comes again after 0 s
+        first = piece.start if period > 0.0 else max(piece.start, 0.0)
+        for time in _times(piece, first, end) if end > first else ():
+            value = piece_value(piece, time)
+            if isfinite(value):
+                yield Reached(time, value)
+
+
+def _times(piece: Segment, first: float, end: float) -> Iterator[float]:
+    """Both ends of a piece, and between them where its cubic or one of its waves turns."""
+    yield first
+    yield from (piece.start + s for s in sorted(_turns(piece, first - piece.start)) if first < piece.start + s < end)
+    if end < inf:
+        yield end
+
+
+def _turns(piece: Segment, first: float) -> Iterator[float]:
+    """Zeros of the slope of the cubic, and the two crests of each wave that follow `first`, from the start [s]."""
+    b, a = 2.0 * piece.c2, 3.0 * piece.c3
+    root = b * b - 4.0 * a * piece.c1
+    if a != 0.0 and root >= 0.0:
+        yield from ((-b - sqrt(root)) / (2.0 * a), (-b + sqrt(root)) / (2.0 * a))
+    elif a == 0.0 and b != 0.0:
+        yield -piece.c1 / b
+    for _, omega, phase, decay in piece.waves:
+        if omega != 0.0:
+            crest = (atan2(omega, decay) - phase) / omega
+            skipped = ceil((first - crest) * omega / pi)
+            yield from (crest + (skipped + k) * pi / omega for k in range(2))
