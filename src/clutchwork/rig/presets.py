@@ -8,7 +8,7 @@ from typing import Any
 
 from clutchwork.base.errors import near
 from clutchwork.declare.node import Domain, Law
-from clutchwork.declare.schema import REGISTRY, Role
+from clutchwork.declare.schema import REGISTRY, Role, specs
 
 # deflection over static/stiffness and share; the weak ones bring a body to rest that swings on its contact
 ELEMENTS = (
@@ -72,7 +72,7 @@ class Preset:
 
     @cached_property
     def fields(self) -> dict[str, dict[str, Any]]:
-        """Parameters of every law by its kind."""
+        """Parameters of the laws that have numbers here, by kind; `law` makes the others from their examples."""
         curve = {"static": self.static, "kinetic": self.kinetic, "speed": self.speed, "viscous": self.viscous}
         bristle = {**curve, "stiffness": self.stiffness, "damping": self.damping}
         stack = tuple((deflection * self.length, share) for deflection, share in self.elements)
@@ -106,12 +106,15 @@ class Preset:
 
     @property
     def laws(self) -> tuple[str, ...]:
-        """Kinds of the laws that this set has parameters for and this build knows."""
-        return tuple(kind for kind in self.fields if kind in REGISTRY[Role.LAW])
+        """Kinds of all laws over the slip alone: those with numbers here, then those at their own examples."""
+        known: dict[str, Any] = REGISTRY[Role.LAW]
+        others = sorted(kind for kind in known if kind not in self.fields and not any(specs(known[kind], "signal")))
+        return (*(kind for kind in self.fields if kind in known), *others)
 
     def law(self, kind: str) -> Law:
-        """The law of a kind with the parameters of this set."""
-        made: Law = REGISTRY[Role.LAW][kind](**self.fields[kind])
+        """The law of a kind with the parameters of this set, or with the examples of its declaration."""
+        cls = REGISTRY[Role.LAW][kind]
+        made: Law = cls(**self.fields.get(kind) or _examples(cls))
         return made
 
     def curve(self, speed: float) -> float:
@@ -125,6 +128,11 @@ class Preset:
         """The Stribeck curve as a table."""
         steps = [0.25 * i for i in range(13)] + [100.0]
         return tuple((x * self.speed, self.curve(x * self.speed) / self.load) for x in steps)
+
+
+def _examples(cls: type) -> dict[str, Any]:
+    """Parameters of a law from its declaration."""
+    return {item.name: spec.example for item, spec in specs(cls) if spec.example is not None}
 
 
 FIRST = Preset("first", "first set of the drift test: 2 Hz, static 1 N, kinetic 0.7 N, Stribeck speed 10 mm/s")
