@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.declare.schema import REGISTRY, Role, specs
+from clutchwork.declare.schema import REGISTRY, Role
 from support import samples
 
 # residual over energy turned over: asked for
@@ -26,13 +26,8 @@ def driveline(kind: str, domain: str, law: cw.Law) -> cw.Driveline:
     b = make("b", **{inertia: 0.7})
     d.add(cw.Torque("push", shaft=a, torque=cw.Sine(amplitude=12.0, frequency=1.7)))
     d.add(cw.SpringDamper("spring", base=d.housing, follower=b, stiffness=90.0, damping=0.3))
-    cls = REGISTRY[Role.CONTACT][kind]
-    names = {item.name for item, _ in specs(cls)}
-    ends = {"shaft": a, "base": b} if "torque" in names else {"base": b, "follower": a}
-    if "follower" not in names and "torque" not in names:
-        ends = {"shaft": a}
-    load = {"torque": 40.0} if "torque" in names else {"gain": 4.0, "pressure": 10.0}
-    d.add(cls("c", friction=law, **ends, **load))
+    values = {**samples.ends(kind, a, b), **samples.pressing(kind, 40.0)}
+    d.add(REGISTRY[Role.CONTACT][kind]("c", friction=law, **values))
     return d
 
 

@@ -11,45 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import clutchwork as cw
-from clutchwork.declare.schema import REGISTRY, Role
+from clutchwork.declare.schema import Role
 from support import samples
 from support.friction import core, sets
 from support.friction.histories import sweeps
 
-COMPLIANT = {kind for kind, cls in REGISTRY[Role.LAW].items() if not cls.sticks}
-
-# within the bounds of docs/theory/friction-laws.md (17), (23): damping <= viscous/(static/kinetic - 1)
-GENTLE: dict[str, float] = {**sets.BRISTLE, "damping": 0.9}
-EVEN: dict[str, float] = {**sets.CURVE, "kinetic": 1.0}
-# laws that store no more than was put in, whatever the motion
-PASSIVE: dict[str, cw.Law] = {
-    "tanh": sets.DRIFT["tanh"],
-    "regularised_stribeck": sets.DRIFT["regularised_stribeck"],
-    "naive_sign": cw.NaiveSign(**sets.CURVE),
-    "dahl": sets.DRIFT["dahl"],
-    "dahl square": sets.OTHERS["dahl square"],
-    "lugre": cw.LuGre(**GENTLE),
-    "elastoplastic": cw.ElastoPlastic(**GENTLE, elastic=4.9e-5),
-    "leuven": cw.Leuven(**sets.CURVE, elements=sets.FEW, order=20.0),
-    "leuven linear": cw.Leuven(**sets.CURVE, elements=sets.FEW, order=1.0, damping=0.9),
-    "gms even": cw.GMS(**EVEN, elements=sets.FEW),
-}
-# laws that hold this only for swings there and back at like speeds, see (26) and (31)
-SWINGS: dict[str, cw.Law] = {
-    "gms": sets.DRIFT["gms"],
-    "gms quick": sets.OTHERS["gms quick"],
-    "mykhalevych": cw.Mykhalevych(**sets.WOUND | {"viscous": 1.52 * 0.3}),
-    "mykhalevych clip": cw.Mykhalevych(**sets.WOUND | {"viscous": 1.52 * 0.3}, reset="clip"),
-    "mykhalevych passive": cw.Mykhalevych(**sets.WOUND | {"viscous": 0.1}, passive=True),
-}
-
 # amplitudes [m] from deep in the elastic zone to sliding, and frequencies [Hz] on both sides of the Stribeck speed
 AMPLITUDES = st.floats(-6.0, -2.5).map(lambda x: round(10.0**x, 9))
 FREQUENCIES = st.floats(-0.5, 1.0).map(lambda x: round(10.0**x, 3))
-
-
-def test_every_compliant_law_is_here() -> None:
-    assert sets.kinds(PASSIVE | SWINGS) == COMPLIANT
 
 
 def stored(law: Any, run: Any) -> np.ndarray:
@@ -62,14 +31,14 @@ def stored(law: Any, run: Any) -> np.ndarray:
     return np.sum(parts, axis=0)
 
 
-@pytest.mark.parametrize("name", PASSIVE)
+@pytest.mark.parametrize("name", sets.PASSIVE)
 @settings(max_examples=6)
 @given(first=AMPLITUDES, second=AMPLITUDES, frequency=FREQUENCIES, phase=st.floats(0.0, 6.0))
 def test_friction_dissipates_in_every_motion(
     name: str, first: float, second: float, frequency: float, phase: float
 ) -> None:
     """Work less stored energy never falls; over a cycle that closes, work alone is that."""
-    law, other = PASSIVE[name], frequency * 2.3
+    law, other = sets.PASSIVE[name], frequency * 2.3
     waves = [
         cw.Sine(amplitude=2.0 * pi * frequency * first, frequency=frequency, phase=phase),
         cw.Sine(amplitude=2.0 * pi * other * second, frequency=other),
@@ -88,11 +57,11 @@ def cycle(law: cw.Law, amplitude: float, frequency: float) -> tuple[float, float
     return float(np.diff(run["c.heat"])[-1]), gap
 
 
-@pytest.mark.parametrize("name", SWINGS)
+@pytest.mark.parametrize("name", sets.SWINGS)
 @settings(max_examples=12)
 @given(amplitude=AMPLITUDES, frequency=FREQUENCIES)
 def test_friction_dissipates_in_every_swing(name: str, amplitude: float, frequency: float) -> None:
-    heat, gap = cycle(SWINGS[name], amplitude, frequency)
+    heat, gap = cycle(sets.SWINGS[name], amplitude, frequency)
     assert gap < 1e-5
     # a purely elastic cycle loses nothing; the cycle closes within the gap, which is worth gap x amplitude
     assert heat >= -(1e-9 + 2.0 * gap) * amplitude
@@ -182,5 +151,5 @@ def test_virgin_curve_and_masing_rule(name: str) -> None:
 @pytest.mark.parametrize("name", ["lugre", "dahl", "elastoplastic"])
 def test_one_state_remembers_no_loop(name: str) -> None:
     """What tells the Maxwell-slip laws from bristles: there the minor loop does not close."""
-    force = forces(PASSIVE[name], (0.0, 9e-5, 6e-5, 9e-5))
+    force = forces(sets.PASSIVE[name], (0.0, 9e-5, 6e-5, 9e-5))
     assert abs(force[3] - force[1]) > 1e-3

@@ -62,6 +62,9 @@ def true_law(cls: Any) -> Any:
 def start_law(law: Any, names: list[str]) -> Any:
     """The law with some parameters off by a factor, the coefficients by the same one."""
     made = replace(law, **{name: OFF.get(name, 1.4) * getattr(law, name) for name in names})
+    if faults(made):
+        # coefficients that belong together
+        made = replace(law, **{name: 0.8 * getattr(law, name) for name in names})
     moved = {
         name: with_ordinates(law, name, [0.8 * y for y in ordinates(law, name).values()]) for name in tables(type(law))
     }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import MISSING
+from functools import cache
 from typing import Any
 
 import clutchwork as cw
@@ -19,9 +20,40 @@ def declared(*roles: Role) -> list[Any]:
 
 
 def pressed_contacts() -> list[str]:
-    """Kinds of contacts that any friction law fits and whose load is a torque, or gain times pressure."""
+    """Kinds of contacts that any friction law fits and whose load is a torque, or in proportion to a gain."""
     known = {kind: {item.name for item, _ in specs(cls)} for kind, cls in REGISTRY[Role.CONTACT].items()}
     return sorted(kind for kind, names in known.items() if {"friction", "gain"} <= names or kind == "bearing_friction")
+
+
+def ends(kind: str, body: Any, other: Any) -> dict[str, Any]:
+    """The ports of a contact whose slip is the speed of a body; some brake it against the housing alone."""
+    names = {item.name for item, _ in specs(REGISTRY[Role.CONTACT][kind], "port")}
+    moving = "follower" if "follower" in names else "shaft"
+    return {moving: body, "base": other} if "base" in names else {moving: body}
+
+
+@cache
+def pressing(kind: str, load: float) -> dict[str, float]:
+    """Values under which a pressed contact has a load [N m or N]: its torque, or its inputs and a gain for them."""
+    cls = REGISTRY[Role.CONTACT][kind]
+    needed = {item.name: spec for item, spec in specs(cls, "param") if item.default is MISSING}
+    if "torque" in needed:
+        return {"torque": load}
+    pressed = [(names[0], spec) for names, spec in inputs(cls) if spec.presses or spec.otherwise is None]
+    given = {name: 10.0 if spec.example is None else spec.example for name, spec in pressed}
+    given |= {name: number(name, spec) for name, spec in needed.items() if name != "gain"}
+    return {"gain": load / _load(kind, given), **given}
+
+
+def _load(kind: str, given: Mapping[str, float]) -> float:
+    """What a contact presses with at a gain of 1."""
+    d = cw.Driveline(kind)
+    a, b = d.shaft("a", inertia=1.0, speed=1.0), d.shaft("b", inertia=1.0)
+    law = cw.Coulomb(static=1.0, kinetic=1.0)
+    d.add(REGISTRY[Role.CONTACT][kind]("c", friction=law, gain=1.0, **ends(kind, a, b), **given))
+    load = -float(d.simulate(1e-6)["c.torque"][0])
+    assert load > 0.0, f"{kind} does not press under {given}: give its inputs examples under which it does"
+    return load
 
 
 def over_slip() -> dict[str, Any]:
@@ -69,12 +101,20 @@ def value(name: str, spec: Spec, nodes: Mapping[str, Any]) -> Any:
     if spec.what == "signal" and spec.unit == "K":
         return 300.0
     if spec.what == "signal":
-        return cw.Step(height=2.0, start=0.5)
+        return _signal(name, spec)
     if spec.what == "text":
         return name
     if spec.what == "function":
         return lambda time, readings: 0.0
     return number(name, spec)
+
+
+def _signal(name: str, spec: Spec) -> Any:
+    """A step up to the example; without one a step, or a number where there are bounds."""
+    if spec.example is not None:
+        half = 0.5 * spec.example
+        return cw.Step(height=half, start=0.5, offset=half) if spec.allows(half) else spec.example
+    return number(name, spec) if spec.bound else cw.Step(height=2.0, start=0.5)
 
 
 def fields(cls: type, nodes: Mapping[str, Any]) -> dict[str, Any]:

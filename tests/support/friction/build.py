@@ -21,7 +21,7 @@ def _elements(law: Any) -> tuple[tuple[float, float], ...]:
     return tuple((float(x), float(y)) for x, y in law.elements)
 
 
-# a compliant law that is not here fails tests/physics/test_law_hysteresis.py
+# what a compliant law needs to be complete, see tests/registry/test_complete_laws.py
 COUNTERPARTS: dict[str, Callable[[Any], Law]] = {
     "tanh": lambda law: Tanh(law.kinetic, law.speed),
     "regularised_stribeck": lambda law: RegularisedStribeck(_curve(law), law.width),

@@ -55,6 +55,54 @@ OTHERS: dict[str, cw.Law] = {
 
 ALL = DRIFT | OTHERS
 
+# within the bounds of docs/theory/friction-laws.md (17), (23): damping <= viscous/(static/kinetic - 1)
+GENTLE: dict[str, float] = {**BRISTLE, "damping": 0.9}
+EVEN: dict[str, float] = {**CURVE, "kinetic": 1.0}
+# laws that store no more than was put in, whatever the motion
+PASSIVE: dict[str, cw.Law] = {
+    "tanh": DRIFT["tanh"],
+    "regularised_stribeck": DRIFT["regularised_stribeck"],
+    "naive_sign": cw.NaiveSign(**CURVE),
+    "dahl": DRIFT["dahl"],
+    "dahl square": OTHERS["dahl square"],
+    "lugre": cw.LuGre(**GENTLE),
+    "elastoplastic": cw.ElastoPlastic(**GENTLE, elastic=4.9e-5),
+    "leuven": cw.Leuven(**CURVE, elements=FEW, order=20.0),
+    "leuven linear": cw.Leuven(**CURVE, elements=FEW, order=1.0, damping=0.9),
+    "gms even": cw.GMS(**EVEN, elements=FEW),
+}
+# laws that hold this only for swings there and back at like speeds, see (26) and (31)
+SWINGS: dict[str, cw.Law] = {
+    "gms": DRIFT["gms"],
+    "gms quick": OTHERS["gms quick"],
+    "mykhalevych": cw.Mykhalevych(**WOUND | {"viscous": 1.52 * 0.3}),
+    "mykhalevych clip": cw.Mykhalevych(**WOUND | {"viscous": 1.52 * 0.3}, reset="clip"),
+    "mykhalevych passive": cw.Mykhalevych(**WOUND | {"viscous": 0.1}, passive=True),
+}
+
+# the coefficient of the example without its step at rest: 0.065 + 0.075 exp(-slip/12.56)
+FALLING: dict[str, Any] = {"static": 0.14, "kinetic": 0.065, "speed": 12.555180016171073, "shape": "tustin"}
+# deflection at break-away 1e-4 rad
+STIFF = FALLING | {"stiffness": 1400.0, "damping": 0.05}
+LAYERS = [[2e-5, 0.1], [5e-5, 0.2], [1e-4, 0.3], [2e-4, 0.4]]
+SHIFT: dict[str, dict[str, Any]] = {
+    "exponential": {"static": 0.16, "slow": 0.14, "fast": 0.065, "speed": FALLING["speed"]},
+    "stribeck": FALLING,
+    "karnopp": FALLING | {"band": 0.05},
+    "regularised_stribeck": FALLING | {"width": 0.05},
+    "naive_sign": FALLING,
+    "lugre": STIFF,
+    "elastoplastic": STIFF | {"elastic": 3e-5},
+    "leuven": FALLING | {"elements": LAYERS, "order": 20.0},
+    "gms": FALLING | {"elements": LAYERS},
+    "mykhalevych": {"static": 0.14, "kinetic": 0.065, "elastic": 1e-4, "speed": FALLING["speed"], "viscous": 1.0},
+    "coefficient_table": {"static": 0.14, "kinetic": [[0.0, 0.14], [12.0, 0.0938], [40.0, 0.0681], [400.0, 0.065]]},
+    # no fall: the mean of the others
+    "coulomb": {"static": 0.14, "kinetic": 0.1},
+    "tanh": {"kinetic": 0.1, "speed": 0.1},
+    "dahl": {"kinetic": 0.1, "stiffness": 1400.0},
+}
+
 
 def kinds(laws: dict[str, Any]) -> set[str]:
     """Kinds of which there is at least one law."""
