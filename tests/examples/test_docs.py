@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from support import project
 
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = sorted((ROOT / "docs" / "guide").glob("*.md"))
@@ -103,29 +102,6 @@ def test_every_hook_is_explained() -> None:
     assert [name for name in names if f'"{name}"' not in page and f"`{name}`" not in page] == []
 
 
-@pytest.mark.parametrize(
-    ("kind", "concept", "arguments"),
-    [("laws", "FrictionLaw", "Lorentzian"), ("elements", "TorqueElement", "EddyBrake")],
-)
-def test_the_component_of_the_extension_page_fits_the_core(
-    kind: str, concept: str, arguments: str, tmp_path: Path
-) -> None:
-    number = 0 if kind == "laws" else 1
-    page = ROOT / "docs" / "extend.md"
-    copy, stem = project.copy(tmp_path), "lorentzian" if kind == "laws" else "eddy_brake"
-    (copy / f"src/clutchwork/{kind}/{stem}.py").write_text(blocks(page, "python")[number])
-    (copy / f"cpp/include/clutchwork/{kind}/{stem}.hpp").write_text(blocks(page, "cpp")[number])
-    made = project.generate(copy)
-    assert made.returncode == 0, made.stderr
-    # dual numbers must pass too, for they give the derivatives
-    function = "slide" if kind == "laws" else "torque"
-    done = project.compile_registry(
-        copy,
-        f"static_assert(clutchwork::{concept}<clutchwork::{kind}::{arguments}>);\n"
-        f"using E = clutchwork::{kind}::{arguments};\nusing D = clutchwork::Dual<double, 2>;\n"
-        f"D probe(const E::Params<double>& p, const clutchwork::At<D>& at) {{ return E::{function}(p, at); }}\n",
-    )
-    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize("path", PAGES, ids=named)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -15,10 +16,10 @@ SOURCES = ("pyproject.toml", "CMakeLists.txt", "README.md", "LICENSE", "src", "c
 IGNORED = shutil.ignore_patterns("__pycache__", "*.so", "*.egg-info", "build", ".venv")
 
 
-def copy(to: Path) -> Path:
-    """The project without tests, documents and build results."""
+def copy(to: Path, *more: str) -> Path:
+    """The project without build results; its tests and documents only where they are named."""
     to.mkdir(parents=True, exist_ok=True)
-    for name in SOURCES:
+    for name in (*SOURCES, *more):
         source = ROOT / name
         if source.is_dir():
             shutil.copytree(source, to / name, ignore=IGNORED)
@@ -50,24 +51,28 @@ def compile_registry(project: Path, code: str = "") -> subprocess.CompletedProce
 
 
 def install(project: Path, site: Path) -> subprocess.CompletedProcess[str]:
-    """Build and install the copy into a folder, without optimisation: the build is the test, not the speed."""
+    """Build and install the copy into a folder, compiled fast: the build is the test, not the speed."""
     command = [
         sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-build-isolation",
         "--no-deps", "--no-index", "--target", str(site), "--config-settings", "cmake.build-type=Debug",
-        "--config-settings", "cmake.args=-DCMAKE_CXX_FLAGS_DEBUG=-O0", str(project),
+        "--config-settings", "cmake.args=-DCMAKE_CXX_FLAGS_DEBUG=-O0;-DCLUTCHWORK_QUICK=ON", str(project),
     ]  # fmt: skip
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
-def run_in(site: Path, script: str) -> subprocess.CompletedProcess[str]:
-    """Run Python code that sees the package installed in `site` and no other.
+def run_in(site: Path, *arguments: str, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run Python with arguments such as "-c", code; it sees the package installed in `site` and no other.
 
     Without the site module no .pth file is read, so that an editable install of the project itself stays out of it.
     """
     packages = str(Path(np.__file__).resolve().parents[1])
-    head = f"import sys; sys.path[:0] = [{str(site)!r}]; sys.path.append({packages!r})\n"
     return subprocess.run(
-        [sys.executable, "-I", "-S", "-c", head + script], capture_output=True, text=True, check=False
+        [sys.executable, "-S", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=folder or site,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join((str(site), packages))},
     )
 
 
