@@ -76,10 +76,10 @@ test-cpp: $(STAMPS)/tools
 	@mkdir -p build
 	@$(BIN)/cmake -S . -B build/cpp -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja \
 		-DCMAKE_CXX_COMPILER=$(CXX) -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
-		-DCLUTCHWORK_PYTHON=OFF -DCLUTCHWORK_TESTS=ON >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
+		-DCLUTCHWORK_PYTHON=OFF -DCLUTCHWORK_TESTS=ON -DCLUTCHWORK_QUICK=ON >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
 	@echo "building the tests of the core"
 	@$(BIN)/cmake --build build/cpp --parallel $(JOBS) >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
-	@$(BIN)/ctest --test-dir build/cpp --output-on-failure
+	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure
 
 test-python: $(STAMPS)/package
 	@$(BIN)/python -m pytest

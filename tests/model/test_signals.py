@@ -43,7 +43,8 @@ TABLE = cw.Table([(1.0, 2.0), (3.0, 6.0), (3.0, -1.0), (4.0, 0.0)])
         (TABLE, 9.0, 0.0),
         (cw.Sampled(lambda time, readings: 1.0, 0.1), 2.0, 0.0),
     ],
-    ids=str,
+    # the same in every process: a function shows its address
+    ids=lambda value: type(value).__name__ if isinstance(value, cw.Signal) else str(value),
 )
 def test_value(signal, time, wanted):
     assert value(signal, time) == pytest.approx(wanted, abs=1e-14)
