@@ -105,8 +105,11 @@ def _panel(axes: Axes, run: Trajectory, label: str, names: list[str]) -> None:
     for event in run.events.changes():
         axes.axvline(event.time, **EVENT_LINE)
     axes.set_ylabel(label if unit == "1" else f"{label}, {unit}")
+    axes.yaxis.set_major_formatter("{x:g}")
     axes.margins(y=0.08)
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.98), ncols=3, borderaxespad=0.0, handlelength=1.6)
+    # as many labels beside each other as fit
+    columns = max(1, min(3, 72 // (max(map(len, names)) + 6)))
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.98), ncols=columns, borderaxespad=0.0, handlelength=1.6)
 
 
 def _panels(run: Trajectory, element: Any) -> Iterator[tuple[str, list[str]]]:
