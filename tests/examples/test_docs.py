@@ -101,8 +101,6 @@ def test_every_hook_is_explained() -> None:
     assert [name for name in names if f'"{name}"' not in page and f"`{name}`" not in page] == []
 
 
-
-
 @pytest.mark.parametrize("path", PAGES, ids=named)
 def test_links_lead_somewhere(path: Path) -> None:
     links = re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8"))
