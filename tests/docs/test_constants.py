@@ -1,16 +1,14 @@
-"""Limits, defaults and exit codes on the pages are those of the code."""
+"""Limits and exit codes on the pages are those of the code."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import fields
 
 import pytest
 
 from clutchwork.base import archive
 from clutchwork.command import main
 from clutchwork.command.main import EXIT_CODES
-from clutchwork.declare.options import Options
 from clutchwork.files import model_file
 from clutchwork.model.problems import LONGEST_NAME
 from clutchwork.model.temperatures import COLDEST
@@ -18,7 +16,7 @@ from clutchwork.signals.bases import column_file
 from support.pages import page, plain, table
 from support.project import ROOT
 
-MODEL_FILES, START = page("guide/model-files.md"), page("guide/start.md")
+MODEL_FILES = page("guide/model-files.md")
 SENTENCES = {
     "model files": (MODEL_FILES, f"{model_file.MOST_BYTES / 1e6:g} MB for a model file"),
     "CSV files": (MODEL_FILES, f"{column_file.MOST_BYTES / 1e6:g} MB and two million lines for a CSV file"),
@@ -43,22 +41,6 @@ def test_lines_of_a_csv_file() -> None:
 
 def test_exit_codes() -> None:
     assert {int(code): words for code, words in table(MODEL_FILES, "exit code")} == EXIT_CODES
-
-
-def test_defaults_of_options() -> None:
-    rows = {name: cell for row in table(START, "option") for name, cell in _options(row)}
-    assert set(rows) == {item.name for item in fields(Options)}
-    words = {"none": None, "automatic": None, "on": True, "10 million": 10_000_000, "100 000": 100_000}
-    for item in fields(Options):
-        shown = rows[item.name]
-        assert words.get(shown, shown.strip('"')) == item.default or float(shown) == item.default, item.name
-
-
-def _options(row: list[str]) -> list[tuple[str, str]]:
-    """Names and defaults of one row; one default may stand for all names."""
-    names = [name.strip("`") for name in row[0].split(", ")]
-    defaults = [cell.strip("`") for cell in row[1].split(", ")]
-    return list(zip(names, defaults * len(names) if len(defaults) == 1 else defaults, strict=True))
 
 
 def test_the_speed_that_the_readme_claims_is_measured() -> None:

@@ -15,7 +15,7 @@ from clutchwork.declare.schema import Role, Spec, inputs, specs
 from clutchwork.declare.speech import kinds_of, say
 from clutchwork.declare.wanted import wanted
 from clutchwork.model.numbers import At as At
-from clutchwork.model.numbers import curve_problems, is_right, list_problems
+from clutchwork.model.numbers import curve_problems, instead, is_right, list_problems
 from clutchwork.model.numbers import number_problems as number_problems
 from clutchwork.model.pools import coefficients
 from clutchwork.signals.bases.extremes import extremes
@@ -161,7 +161,7 @@ def _beyond_bounds(signal: Signal, spec: Spec, at: At) -> Iterator[Problem]:
         if not spec.allows(value):
             given = f"{value:g} {at.unit}".removesuffix(" 1")
             message = f"must be {spec.bound} {at.unit}".removesuffix(" 1")
-            yield at.problem(message, value=f"{given} at {time:g} s", remedy=f"it is the {spec.doc}")
+            yield at.problem(message, value=f"{given} at {time:g} s", remedy=instead(value, spec))
             return
 
 

@@ -43,7 +43,7 @@ def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not isfinite(number):
         yield at.problem("must be finite", value=given, remedy="give a finite number")
     elif not spec.allows(number):
-        yield at.problem(f"must be {spec.bound} {unit}".rstrip(), value=given, remedy=_instead(number, spec))
+        yield at.problem(f"must be {spec.bound} {unit}".rstrip(), value=given, remedy=instead(number, spec))
     elif spec.whole and number != int(number):
         yield at.problem("must be a whole number", value=given, remedy=_for("round it", spec))
 
@@ -61,7 +61,7 @@ def as_float(value: Real) -> float:
         return inf
 
 
-def _instead(number: float, spec: Spec) -> str:
+def instead(number: float, spec: Spec) -> str:
     """What to give in place of a number beyond a bound."""
     if spec.above == 0.0 and number <= 0.0:
         return _for("give a positive value", spec)
