@@ -18,6 +18,8 @@ unexport PYTHONPATH PYTHONHOME VIRTUAL_ENV
 VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
+# a worker for each core; the tests of one file stay together, for they share what is costly
+PYTEST = $(BIN)/python -m pytest --numprocesses $(JOBS) --dist loadfile
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 JOBS ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 
@@ -70,7 +72,7 @@ demo: $(STAMPS)/package
 test: $(STAMPS)/package
 	@cpp=0; $(MAKE) --no-print-directory test-cpp || cpp=$$?; \
 	if [ $$cpp -ne 0 ]; then echo "the C++ tests FAILED; the Python tests follow"; fi; \
-	$(BIN)/python -m pytest && exit $$cpp
+	$(PYTEST) && exit $$cpp
 
 test-cpp: $(STAMPS)/tools
 	@mkdir -p build
@@ -82,7 +84,7 @@ test-cpp: $(STAMPS)/tools
 	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure
 
 test-python: $(STAMPS)/package
-	@$(BIN)/python -m pytest
+	@$(PYTEST)
 
 # every checker runs, so that one call shows all there is to fix
 check: $(STAMPS)/package $(STAMPS)/check

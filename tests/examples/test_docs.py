@@ -142,3 +142,19 @@ def test_every_rule_has_its_number_and_the_code_that_follows_it(name: str) -> No
     core = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "cpp").rglob("*.hpp"))
     cited = re.findall(rf"docs/theory/{re.escape(name)}, rules? ([\d, ]+)", core)
     assert {int(number) for numbers in cited for number in re.findall(r"\d+", numbers)} == set(rules)
+
+
+def test_the_rooms_that_contributing_names_are_there() -> None:
+    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    rooms = page.partition("## Find the room")[2].partition("\n## ")[0]
+    roots = (ROOT, ROOT / "src" / "clutchwork", ROOT / "cpp" / "include" / "clutchwork")
+    paths = re.findall(r"`([\w./]+/(?:[\w.]+)?)`", rooms)
+    assert len(paths) > 15
+    assert [path for path in paths if not any((root / path).exists() for root in roots)] == []
+    # `NAME` of `path`: what it names stands there
+    named_in = re.findall(r"`(\w+)` of `([\w./]+)`", rooms)
+    texts = {
+        path: next(r / path for r in roots if (r / path).exists()).read_text(encoding="utf-8") for _, path in named_in
+    }
+    assert [name for name, path in named_in if not re.search(rf"\b{name}\b", texts[path])] == []
+    assert {"Hit", "CAUSES", "ROW", "METHODS", "Options", "settle_later"} <= {name for name, _ in named_in}
