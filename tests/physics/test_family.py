@@ -202,7 +202,7 @@ def test_a_shoe_that_locks_by_itself_is_named() -> None:
     d, shaft = wheel()
     law = cw.Coulomb(static=1.5, kinetic=1.0)
     d.add(cw.DoubleShoeBrake("b", shaft=shaft, friction=law, **SHOES))
-    assert any("locks by itself" in str(problem) for problem in d.check())
+    assert any("locks up by itself" in str(problem) for problem in d.check())
 
 
 def test_a_shoe_with_a_broken_law_is_told_of_the_law_alone() -> None:

@@ -128,7 +128,7 @@ def test_a_table_continued_to_zero_has_a_kink_there() -> None:
 def test_a_line_that_is_below_zero_at_rest_is_refused() -> None:
     law = cw.CoefficientTable(static=0.2, kinetic=[(5.0, 0.01), (6.0, 0.1)], extrapolation="linear")
     problems = [str(p) for p in brake(law, 1.0).check()]
-    assert any("continued linearly is -0.44 at 0 rad/s, must be >= 0" in text for text in problems), problems
+    assert any("is -0.44 at 0 rad/s when it is extrapolated linearly, must be >= 0" in text for text in problems), problems
 
 
 def test_leaving_a_coefficient_table_stops_the_run_where_that_is_wanted() -> None:
@@ -181,8 +181,8 @@ CONTINUED = {
 def test_a_continuation_that_falls_to_zero_is_warned_of_with_its_place(name: str) -> None:
     law, places = CONTINUED[name]
     said = [message for _, message, _ in law.advice()]
-    assert [text for text in said if not text.startswith("continued linearly falls to zero")] == []
-    assert [text.split(" at ")[1].split(",")[0] for text in said] == places
+    assert [text for text in said if not text.startswith("falls to zero at")] == []
+    assert [text.split(" at ")[1].split(" when")[0] for text in said] == places
     if places:
         with pytest.warns(cw.ModelWarning, match="falls to zero"):
             assert brake(law, 1.0).check() == []
