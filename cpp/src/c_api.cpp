@@ -22,6 +22,7 @@ constexpr std::int64_t head = (std::int64_t(sizeof(cw_run)) + 63) / 64 * 64;
 /// A run at time zero in its own memory, whatever was there before.
 void reset(cw_run* run) {
   Workspace<double>& ws = run->ws;
+  drop_fences(run->arrays, run->bytes - head);
   std::memset(static_cast<void*>(run->arrays), 0, std::size_t(run->bytes - head));
   ws = Workspace<double>{};
   bind(ws.sys, run->system, run->system_bytes);

@@ -44,6 +44,7 @@ void continues(const Model& model, double middle, double end, double method = 1)
   for (Run* other : {&fresh, &used}) {
     CHECK(cw_restore(other->run, saved.data(), std::int64_t(saved.size())) == 1);
     // the first one is gone: nothing may point there
+    drop_fences(first.memory.data(), std::int64_t(first.memory.size()));
     std::memset(first.memory.data(), 0xff, first.memory.size());
     std::memset(first.system.data(), 0xff, first.system.size());
     same(told, story(*other, end));

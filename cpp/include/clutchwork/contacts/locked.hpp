@@ -45,15 +45,16 @@ void list_sets(Workspace<T>& ws, const int* label) {
   int at = 0;
   ws.held.n_sets = 0;
   auto add = [&](int contact, int place) { ws.held.set_member[at] = contact, ws.held.set_place[at++] = place; };
-  auto carrier_of = [&](int s) {
+  // a spare without a carrier is in no set
+  auto label_of = [&](int s) {
     for (int a = 0; a < ws.held.n; ++a) {
-      if (value(ws.held.tie[s * nc + a]) != 0) return a;
+      if (value(ws.held.tie[s * nc + a]) != 0) return label[a];
     }
     return -1;
   };
   for (int root = 0; root < ws.held.n; ++root) {
     int spares = 0;
-    for (int s = 0; s < ws.held.n_spare; ++s) spares += label[carrier_of(s)] == root;
+    for (int s = 0; s < ws.held.n_spare; ++s) spares += label_of(s) == root;
     if (spares == 0) continue;
     ws.held.set_first[ws.held.n_sets] = at;
     for (int a = 0; a < ws.held.n; ++a) {
@@ -62,7 +63,7 @@ void list_sets(Workspace<T>& ws, const int* label) {
     ws.held.set_rank[ws.held.n_sets] = at - ws.held.set_first[ws.held.n_sets];
     ++ws.held.n_sets;
     for (int s = 0; s < ws.held.n_spare; ++s) {
-      if (label[carrier_of(s)] == root) add(ws.held.spare[s], s);
+      if (label_of(s) == root) add(ws.held.spare[s], s);
     }
   }
   ws.held.set_first[ws.held.n_sets] = at;

@@ -1,6 +1,10 @@
 #pragma once
 #include <clutchwork/registry.gen.hpp>
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/asan_interface.h>
+#endif
+
 /// Memory of a run in one block, and the sizes of its arrays.
 namespace clutchwork {
 
@@ -23,6 +27,17 @@ struct Sizes {
         spares(s.contacts > 1 ? s.contacts : 0) {}
 };
 
+/// Fences between the arrays, which the address sanitizer watches; none without it.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr std::int64_t fence = 64;
+inline void raise_fence(unsigned char* at) { __asan_poison_memory_region(at, fence); }
+inline void drop_fences(unsigned char* at, std::int64_t n) { __asan_unpoison_memory_region(at, std::size_t(n)); }
+#else
+inline constexpr std::int64_t fence = 0;
+inline void raise_fence(unsigned char*) {}
+inline void drop_fences(unsigned char*, std::int64_t) {}
+#endif
+
 /// Hands out pieces of a block of memory, or only counts them when the block is null.
 class Arena {
  public:
@@ -32,6 +47,8 @@ class Arena {
     at_ = (at_ + 15) / 16 * 16;
     p = base_ ? reinterpret_cast<P*>(base_ + at_) : nullptr;
     at_ += (n > 0 ? n : 1) * std::int64_t(sizeof(P));
+    if (base_) raise_fence(base_ + at_);
+    at_ += fence;
   }
   template <class P>
   void scratch(P*& p, std::int64_t n) {
