@@ -128,7 +128,8 @@ def test_a_table_continued_to_zero_has_a_kink_there() -> None:
 def test_a_line_that_is_below_zero_at_rest_is_refused() -> None:
     law = cw.CoefficientTable(static=0.2, kinetic=[(5.0, 0.01), (6.0, 0.1)], extrapolation="linear")
     problems = [str(p) for p in brake(law, 1.0).check()]
-    assert any("is -0.44 at 0 rad/s when it is extrapolated linearly, must be >= 0" in text for text in problems), problems
+    wanted = "is -0.44 at 0 rad/s when it is extrapolated linearly, must be >= 0"
+    assert any(wanted in text for text in problems), problems
 
 
 def test_leaving_a_coefficient_table_stops_the_run_where_that_is_wanted() -> None:
