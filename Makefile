@@ -52,7 +52,7 @@ $(STAMPS)/tools: $(STAMPS)/venv pyproject.toml tools/extras.py
 	@touch $@
 
 $(STAMPS)/package: $(STAMPS)/tools $(CORE_SOURCES)
-	@echo "building and installing clutchwork"
+	@echo "building and installing clutchwork (some minutes)"
 	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH" \
 		$(PIP) install --no-build-isolation --no-deps --editable .
 	@touch $@

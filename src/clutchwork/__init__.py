@@ -6,7 +6,7 @@
     engine = d.shaft("engine", inertia=0.2, speed=100.0)
     load = d.shaft("load", inertia=0.8)
     lining = cw.Coulomb(static=0.1, kinetic=0.1)
-    d.add(cw.Clutch("c1", base=load, follower=engine, friction=lining, gain=1.0, normal_force=100.0))
+    d.add(cw.Clutch("c1", base=engine, follower=load, friction=lining, gain=1.0, normal_force=100.0))
     run = d.simulate(2.0)
 
 Elements, friction laws and signals are published from their folders: a new file there is a new name here. Type checkers

@@ -1,8 +1,9 @@
+// The arrays of a run lie behind each other, and the sanitizer sees what runs over the end of one.
+
 #include <clutchwork/workspace/arena.hpp>
 
 #include "check.hpp"
 
-/// The arrays of a run lie behind each other, and the sanitizer sees what runs over the end of one.
 using namespace clutchwork;
 
 int main() {

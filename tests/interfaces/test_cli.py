@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -125,6 +127,7 @@ def test_a_model_that_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture
         (["--rtol", "-1"], "rtol is -1"),
         (["--t-end", "0"], "t_end is 0 s"),
         (["--ratio", "engine/loads"], "did you mean 'load'"),
+        (["--ratio", "engine"], "must be two shafts, such as engine/load"),
     ],
 )
 def test_wrong_options(model: Path, extra: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -151,3 +154,13 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         main(["--version"])
     assert stopped.value.code == 0
     assert capsys.readouterr().out.startswith("clutchwork")
+
+
+def test_a_reader_that_has_seen_enough_ends_it_quietly(model: Path) -> None:
+    command = [sys.executable, "-m", "clutchwork", "run", str(model), "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+        assert run.stdout is not None
+        run.stdout.close()
+        assert run.stderr is not None
+        assert run.stderr.read() == b""
+        assert run.wait() == 0

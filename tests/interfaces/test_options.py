@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from clutchwork.base.errors import OptionError, UseError
 from clutchwork.declare.options import Options, end_time
 from clutchwork.run.grid import output_grid
+from clutchwork.run.settings import merged
 
 
 @pytest.mark.parametrize(
@@ -54,3 +56,13 @@ def test_times_must_lie_in_the_run_and_not_decrease() -> None:
     with pytest.raises(ValueError, match="must not decrease"):
         output_grid(Options(times=[0.5, 0.2]), 1.0)
     assert output_grid(Options(times=[0.2, 0.5, 0.5]), 1.0) == pytest.approx([0.2, 0.5, 0.5])
+
+
+def test_what_is_wrong_with_settings_of_a_shorter_run_is_said_of_them() -> None:
+    with pytest.raises(OptionError, match=r"times of d\.simulation begin at 0\.5 s, after t_end = 0\.25 s"):
+        merged({"times": [0.5, 1.0]}, {"t_end": 0.25})
+
+
+def test_a_misspelt_end_time_is_named() -> None:
+    with pytest.raises(UseError, match="did you mean 't_end'"):
+        merged({}, {"tend": 3.0})

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
+from clutchwork.results.ratios import phases
 
 
 def two_discs(**changes: Any) -> cw.Driveline:
@@ -255,3 +256,13 @@ def test_a_system_may_be_run_many_times() -> None:
     first, second = (cw.simulate(system, 2.0, dt=0.01) for _ in range(2))
     assert np.array_equal(first.rows, second.rows)
     assert cw.simulate(system, 2.0, method="dopri5")["load.speed"][-1] == pytest.approx(20.0, rel=1e-5)
+
+
+def test_phases_end_at_the_events_whatever_the_output(root: Path) -> None:
+    d = cw.Driveline.load(root / "examples" / "six_speed" / "model.toml")
+    shafts = (d.nodes[0].name, d.nodes[-1].name)
+    smooth, coarse = (phases(d.simulate(4.0, dt=dt), shafts) for dt in (None, 0.05))
+    assert len(smooth) > 2
+    assert [(p.begin, p.end, p.closed) for p in coarse] == [(p.begin, p.end, p.closed) for p in smooth]
+    # the speeds are those of the solver at the event, and no row of a grid
+    assert [p.measured for p in coarse] == pytest.approx([p.measured for p in smooth], rel=1e-9)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -46,7 +47,8 @@ def test_what_is_added_after_a_check_is_seen(looks):
     assert problem.quantity == "ratio"
     with pytest.raises(cw.ModelError, match="ratio"):
         d.assemble()
-    assert len(looks) == 2
+    # what has a mistake is looked at again
+    assert len(looks) == 3
     assert before.counts["elements"] == 2
 
 
@@ -156,3 +158,49 @@ def test_columns_of_one_file_are_of_one_state(tmp_path):
     table.write_text("time,x,y,word\n1,7,2,3\n0,8,5,4\n")
     with pytest.raises(cw.ModelError, match="its time is before that of line 2"):
         cw.Driveline.from_dict(data, tmp_path)
+
+
+def _driven_by(signal):
+    d = cw.Driveline("driven")
+    d.add(cw.Torque("load", shaft=d.shaft("a", inertia=1.0), torque=signal))
+    return d
+
+
+def test_a_file_that_was_corrected_is_read_again(tmp_path):
+    late = _driven_by(cw.Column(str(tmp_path / "late.csv"), "w"))
+    (problem,) = late.check()
+    assert "does not exist" in str(problem)
+    (tmp_path / "late.csv").write_text("time,w\n0,1\n1,2\n")
+    assert late.check() == []
+    (tmp_path / "bad.csv").write_text("time,w\n0,1\n1,two\n")
+    bad = _driven_by(cw.Column(str(tmp_path / "bad.csv"), "w"))
+    assert len(bad.check()) == 1
+    (tmp_path / "bad.csv").write_text("time,w\n0,1\n1,2\n")
+    assert bad.check() == []
+
+
+def test_odd_arrays_and_lists_are_mistakes_and_no_crash():
+    d = _driven_by(1.0)
+    a = d.shaft("b", inertia=np.array(1.0))
+    d.add(cw.Spring("s", base=d.housing, follower=a, stiffness=np.array(100.0)))
+    d.simulation["times"] = np.array(5.0)
+    assert {problem.quantity for problem in d.check()} == {"inertia", "stiffness", "times"}
+    points = [[0.0, 1.0], [1.0, 2.0]]
+    endless = _driven_by(cw.Table(points))
+    assert endless.check() == []
+    points[1][1] = points
+    assert len(endless.check()) == 1
+
+
+def test_a_system_does_not_follow_its_driveline(tmp_path):
+    points = [[0.0, 1.0], [1.0, 2.0]]
+    d = _driven_by(cw.Table(points))
+    d.simulation = {"t_end": 1.0}
+    system = d.assemble()
+    d.simulation["t_end"], points[1][0] = 2.0, -5.0
+    renamed = replace(system, name="renamed")
+    renamed.save(tmp_path / "system.npz")
+    assert cw.System.load(tmp_path / "system.npz").settings == {"t_end": 1.0}
+    with pytest.raises(TypeError):
+        system.settings["t_end"] = 3.0
+    assert pickle.loads(pickle.dumps(system)).settings == {"t_end": 1.0}

@@ -153,3 +153,13 @@ def test_a_wet_drag_and_an_eddy_brake_are_no_load():
     assert set(energy.sources) == {"drive"}
     assert set(energy.heat) == {"retarder"}
     assert energy.heat["retarder"] > 0.0
+
+
+def test_work_is_not_source_and_loss_at_once():
+    class Both(Component):
+        work = Work.SOURCE | Work.LOSS
+        base: object = port("a")
+        follower: object = port("b")
+
+    with pytest.raises(TypeError, match="work of Both cannot be told apart as source and loss"):
+        component(Role.TORQUE)(Both)

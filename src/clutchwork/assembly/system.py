@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -71,10 +73,11 @@ class System:
     def __getstate__(self) -> dict[str, Any]:
         # a view of a dictionary cannot be pickled; what is cached comes again
         fields = {name: value for name, value in vars(self).items() if name != "counts"}
-        return fields | {"arrays": dict(self.arrays)}
+        return fields | {"arrays": dict(self.arrays), "settings": dict(self.settings)}
 
     def __setstate__(self, fields: dict[str, Any]) -> None:
-        vars(self).update(fields | {"arrays": frozen(fields["arrays"])})
+        settings = MappingProxyType(fields["settings"])
+        vars(self).update(fields | {"arrays": frozen(fields["arrays"]), "settings": settings})
 
     @cached_property
     def counts(self) -> dict[str, int]:
@@ -102,11 +105,10 @@ class System:
     @classmethod
     def of(cls, model: Model, independent: Sequence[str] = ()) -> System:
         """The System of a model without mistakes; `independent` names the shafts with the independent speeds."""
-        made = cls(**assembled(model, independent), settings=plain_settings(model.settings), source=model.copy())
-        if may_change(model):
-            # written now, before its owner changes a list inside
-            _ = made.model
-        return made
+        made, settings = assembled(model, independent), MappingProxyType(plain_settings(model.settings))
+        # lists inside may be changed by their owner later
+        source = deepcopy(model.copy()) if may_change(model) else model.copy()
+        return cls(**made, settings=settings, source=source)
 
     def to_bytes(self) -> bytes:
         """The System as the compiled core reads it: little endian, every array aligned to 8 bytes."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 import warnings
 from collections.abc import Callable, Sequence
@@ -42,6 +43,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail(asked, FILE, str(error), [str(problem) for problem in error.problems])
     except ModelError as error:
         return _fail(asked, MODEL, str(error), [str(problem) for problem in error.problems])
+    except BrokenPipeError:
+        # who reads the output has seen enough; nothing is left to be flushed at the exit
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
     except (OSError, ImportError) as error:
         return _fail(asked, FILE, str(error))
     except (ValueError, TypeError, KeyError) as error:
@@ -196,7 +201,9 @@ def _shafts(system: System, asked: str | None) -> tuple[str, str] | None:
     for upper, lower in cuts:
         if upper in names and lower in names:
             return upper, lower
-    missing = next((name for name in (cuts[0] if cuts else (asked,)) if name not in names), asked)
+    if not cuts:
+        raise ValueError(f"--ratio {asked}: must be two shafts, such as {'/'.join(names[:2])}")
+    missing = next((name for name in cuts[0] if name not in names), asked)
     raise ValueError(f"--ratio {asked}: no shaft {missing!r}{near(missing, names, 'write it as input/output')}")
 
 

@@ -13,6 +13,7 @@ class Call(NamedTuple):
     places: tuple[str, ...]  # fields that may be positional
     names: frozenset[str]  # all of them
     defaults: dict[str, Any]
+    makers: dict[str, Any]  # functions that make a default anew
     checked: bool  # has a __post_init__
 
 
@@ -21,13 +22,14 @@ def _call(cls: Any) -> Call:
     given = [item for item in fields(cls) if item.init]
     places = tuple(item.name for item in given if not item.kw_only)
     defaults = {item.name: item.default for item in given if item.default is not MISSING}
-    return Call(places, frozenset(item.name for item in given), defaults, hasattr(cls, "__post_init__"))
+    makers = {item.name: item.default_factory for item in given if item.default_factory is not MISSING}
+    return Call(places, frozenset(item.name for item in given), defaults, makers, hasattr(cls, "__post_init__"))
 
 
 def _init(thing: Any, *args: Any, **named: Any) -> None:
     cls: Any = type(thing)
-    places, names, defaults, checked = _call(cls)
-    given = defaults | named
+    places, names, defaults, makers, checked = _call(cls)
+    given = defaults | {name: make() for name, make in makers.items()} | named if makers else defaults | named
     if args:
         by_place = dict(zip(places, args, strict=False))
         given |= by_place

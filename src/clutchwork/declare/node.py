@@ -69,7 +69,7 @@ class ThermalNode:
 
 
 class Work(Flag):
-    """What becomes of the work of an element; several parts are joined by `|`."""
+    """What becomes of the work of an element; STORE is joined to another by `|`."""
 
     SOURCE = auto()  # it comes from outside of the driveline, or goes there: drives and loads
     STORE = auto()  # the element stores it and gives it back, as much as `stored` says

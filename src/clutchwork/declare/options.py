@@ -6,7 +6,7 @@ The fields of `Options` are the table of all options. What checks them, the comm
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal, get_args
@@ -118,12 +118,7 @@ class Options:
 
     def changed(self, changes: Mapping[str, Any]) -> Options:
         """These options with some replaced; an unknown name is a UseError, a TypeError, with a near match."""
-        words = [*OPTIONS, "options", "progress"]
-        unknown = [name for name in changes if name not in OPTIONS]
-        if unknown:
-            rests = [*("" for _ in unknown[1:]), f"known options: {', '.join(OPTIONS)}"]
-            found = [f"unknown option {x!r}{near(x, words, rest)}" for x, rest in zip(unknown, rests, strict=True)]
-            raise UseError("simulate", found)
+        known(changes)
         return replace(self, **changes)
 
     def core_options(self) -> dict[str, float]:
@@ -138,6 +133,16 @@ SIMULATION = {"t_end": T_END, **OPTIONS}
 
 document(Options)
 explain(Options)
+
+
+def known(names: Iterable[str]) -> None:
+    """Refuse names that are not options: a UseError, a TypeError, with near matches."""
+    words = [*OPTIONS, "t_end", "options", "progress"]
+    unknown = [name for name in names if name not in OPTIONS]
+    if unknown:
+        rests = [*("" for _ in unknown[1:]), f"known options: {', '.join(OPTIONS)}"]
+        found = [f"unknown option {x!r}{near(x, words, rest)}" for x, rest in zip(unknown, rests, strict=True)]
+        raise UseError("simulate", found)
 
 
 def end_time(t_end: float) -> float:

@@ -250,6 +250,15 @@ REGISTRY: dict[Role, dict[str, type]] = {role: {} for role in Role}
 C = TypeVar("C", bound=type)
 
 
+def _check_work(cls: Any) -> None:
+    words = {part.name for part in getattr(cls, "work", ())}
+    if {"SOURCE", "LOSS"} <= words:
+        remedy = "declare Work.SOURCE alone: what its thermal node takes is heat"
+        raise TypeError(
+            f"{cls.__module__}: the work of {cls.__name__} cannot be told apart as source and loss; {remedy}"
+        )
+
+
 @dataclass_transform(
     kw_only_default=True,
     frozen_default=True,
@@ -289,6 +298,7 @@ def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, .
             raise ValueError(f"{cls.__module__.replace('.', '/')}.py: {'; '.join(wrong)}")
         if role in RATES:
             _check_ports(cls)
+        _check_work(cls)
         frozen.kind, frozen.role, frozen.states, frozen.hooks = kind, role, states, hooks
         REGISTRY[role][kind] = frozen
         return cls

@@ -45,6 +45,10 @@ class Driveline:
         """Name of the driveline."""
         return self._model.name
 
+    @name.setter
+    def name(self, name: str) -> None:
+        self._model.name = name
+
     @property
     def simulation(self) -> dict[str, Any]:
         """Settings of its runs, to be changed: t_end [s] and fields of `Options`, as in [simulation] of a model file.
@@ -52,6 +56,10 @@ class Driveline:
         `simulate` takes from here what it is not given; `save` writes them.
         """
         return self._model.settings
+
+    @simulation.setter
+    def simulation(self, settings: Mapping[str, Any]) -> None:
+        self._model.settings = dict(settings)
 
     @property
     def nodes(self) -> tuple[Node, ...]:

@@ -58,7 +58,11 @@ class Kept(NamedTuple):
 
     def lasts(self) -> bool:
         """Whether nobody changed a list inside of a thing."""
-        return all(_values(thing) == values for thing, values in self.changeable)
+        try:
+            return all(_values(thing) == values for thing, values in self.changeable)
+        except (RecursionError, TypeError):
+            # what cannot be followed is reported by the checks
+            return False
 
 
 def findings(model: Model, incomplete: Sequence[str] = ()) -> Findings:
@@ -69,11 +73,14 @@ def findings(model: Model, incomplete: Sequence[str] = ()) -> Findings:
     things, more = (*model.nodes, None, *model.thermal, None, *model.elements), (of_files(), model.name)
     kept: Kept | None = model.kept
     if kept is None or incomplete or more != kept.more or not _identical(things, kept.things) or not kept.lasts():
-        kept = Kept(_find(model, incomplete), things, more, _changeable(things))
-        model.kept = None if incomplete else kept
+        found = _find(model, incomplete)
+        # mistakes are looked for again: a file beside the model may have been corrected meanwhile
+        keeps = not incomplete and not found.problems
+        model.kept = kept = Kept(found, things, more, _changeable(things)) if keeps else None
+    found = kept.findings if kept is not None else found
     # settings are small and may hold arrays, so they are looked at each time
     wrong = list(settings_problems(model.settings))
-    return kept.findings._replace(problems=[*kept.findings.problems, *wrong]) if wrong else kept.findings
+    return found._replace(problems=[*found.problems, *wrong]) if wrong else found
 
 
 def may_change(model: Model) -> bool:
@@ -98,9 +105,11 @@ def _changeable(things: Iterable[Any]) -> list[tuple[Any, Any]]:
 
 
 def _values(value: Any) -> Any:
-    """A value in tuples, whatever it is held in."""
+    """A value in tuples, whatever it is held in; an array by its bytes."""
     if is_dataclass(value):
         return tuple(_values(getattr(value, item.name)) for item in fields(value))
+    if hasattr(value, "tobytes"):
+        return value.tobytes()
     if hasattr(value, "__len__") and not isinstance(value, str):
         return tuple(map(_values, value))
     return value

@@ -86,16 +86,17 @@ def series_rows(model: Mechanism, made: Kinematics) -> tuple[dict[int, RigidRow]
                 row = plus(row, exact(spring.component.passive().stiffness) * spring.share, spring.direction)
             names = " and ".join(model.node_label(place) for place in sorted(motion))
             rows[speed] = RigidRow(f"{names} without inertia", row)
-            problems += _unbalanced(rows[speed].owner, acting)
+            moves = all(model.nodes[place].domain is Domain.TRANSLATION for place in motion)
+            problems += _unbalanced(rows[speed].owner, acting, "N" if moves else "N m")
     return rows, problems
 
 
-def _unbalanced(owner: str, acting: list[Acting]) -> Iterator[Problem]:
+def _unbalanced(owner: str, acting: list[Acting], unit: str) -> Iterator[Problem]:
     """Springs in series that do not balance at the start."""
     pulls = [exact(spring.component.initial_states()[0]) * spring.share for spring in acting]
     total = sum(pulls, ZERO)
     if abs(total) > ROUNDING * max(map(abs, pulls)):
-        message = f"its springs pull it with {float(-total):.9g} N m at the start"
+        message = f"its springs pull it with {float(-total):.9g} {unit} at the start"
         yield Problem(owner, "", message, remedy="choose the twist of each at the start so that they balance")
 
 

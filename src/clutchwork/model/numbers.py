@@ -77,7 +77,7 @@ def _for(remedy: str, spec: Spec) -> str:
 
 def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A list of numbers, or of equally long lists of them."""
-    if isinstance(value, str) or not hasattr(value, "__len__") or len(value) == 0:
+    if isinstance(value, str) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:
         yield at.problem("must be a list of numbers", value=shown(value), remedy=f"write [x, y, ...]: {spec.doc}")
         return
     rows = [row if hasattr(row, "__len__") and not isinstance(row, str) else [row] for row in value]
@@ -104,7 +104,7 @@ def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if spec.constant and isinstance(value, Real):
         yield from number_problems(value, spec, at)
         return
-    if isinstance(value, str) or not hasattr(value, "__len__") or len(value) == 0:
+    if isinstance(value, str) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:
         yield at.problem("must be a list of points", value=shown(value), remedy=f"write [[x, y], ...]: {spec.doc}")
         return
     before = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from itertools import combinations, pairwise
+from itertools import combinations
 from math import comb
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from clutchwork.assembly.wiring import HOUSING, Wiring, wiring
 from clutchwork.declare.node import Work
-from clutchwork.results.channels import LOCKED
+from clutchwork.results.stretches import stretches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -93,17 +93,13 @@ def _gears(
 
 def phases(run: Recorded, shafts: tuple[str, str]) -> list[Phase]:
     """The run cut where a contact locks or breaks away."""
-    names = [branch.name for branch in run.wiring.contacts]
-    locked = run.rows[:, run.wiring.columns["contact_mode"]] == LOCKED
-    cuts = [0, *(np.flatnonzero(np.any(locked[1:] != locked[:-1], axis=1)) + 1), len(run)]
     made = []
-    for first, stop in pairwise(cuts):
-        closed = tuple(name for name, is_locked in zip(names, locked[first], strict=True) if is_locked)
-        if run.time[stop - 1] > run.time[first]:
-            upper, lower = (float(run[f"{name}.speed"][stop - 1]) for name in shafts)
+    for part in stretches(run):
+        if part.end > part.begin:
+            upper, lower = (float(part.run[f"{name}.speed"][part.last]) for name in shafts)
             measured = upper / lower if lower else float("inf")
-            known = ratio(run.system, closed, shafts)
-            made.append(Phase(float(run.time[first]), float(run.time[stop - 1]), closed, known, measured))
+            known = ratio(run.system, part.locked, shafts)
+            made.append(Phase(part.begin, part.end, part.locked, known, measured))
     return made
 
 

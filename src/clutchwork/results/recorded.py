@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring
+from clutchwork.declare.options import Options
 from clutchwork.results.channels import Channels
 from clutchwork.results.events import Events
 
@@ -19,6 +20,10 @@ class Recorded(Protocol):
     @property
     def system(self) -> System:
         """What was run."""
+
+    @property
+    def options(self) -> Options:
+        """How it was run."""
 
     @property
     def time(self) -> NDArray[np.float64]:

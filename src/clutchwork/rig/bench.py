@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from numbers import Real
 from typing import Any
 
@@ -85,10 +85,6 @@ class Bench:
             if self.law in [self.preset.law(kind) for kind in self.preset.laws]:
                 warnings.simplefilter("ignore", ModelWarning)
             return d.simulate(t_end, options=self.options.changed(changes))
-
-    def with_options(self, **changes: Any) -> Bench:
-        """The same bench with other options of the solver."""
-        return replace(self, options=self.options.changed(changes))
 
 
 def friction(run: Trajectory) -> Array:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from clutchwork.base.errors import OptionError
-from clutchwork.declare.options import Options, end_time
+from clutchwork.declare.options import Options, end_time, known
 from clutchwork.declare.speech import say
 
 ON_COMMAND_LINE = "give --t-end, or t_end in the [simulation] table of the model file"
@@ -28,10 +28,20 @@ def merged(
             wanted.pop(other, None)
     wanted.update(given)
     t_end = wanted.pop("t_end", None)
+    # unknown names first: one may be a misspelt t_end
+    known(wanted)
     if t_end is None:
         raise OptionError([f"t_end is missing: {say(ON_COMMAND_LINE, IN_PYTHON)}"])
     end = end_time(t_end)
     if "t_end" in given and "times" not in given and wanted.get("times") is not None:
         # a run that is made shorter ends before the last instants of the settings
-        wanted["times"] = [instant for instant in wanted["times"] if instant <= end]
+        wanted["times"] = _up_to(end, wanted["times"])
     return end, (options or Options()).changed(wanted)
+
+
+def _up_to(end: float, times: Any) -> list[float]:
+    kept = [instant for instant in times if instant <= end]
+    if not kept:
+        fault = f"times of d.simulation begin at {times[0]:g} s, after t_end = {end:g} s"
+        raise OptionError([f"{fault}: give a later t_end, or dt or times to the call"])
+    return kept
