@@ -1,17 +1,44 @@
 #pragma once
 #include <clutchwork/run/advance.hpp>
 
-/// The phases that are compiled apart, to build on several cores. Scalar: double.
+/// What is compiled apart, to build on several cores. Scalar: double.
 #define CLUTCHWORK_SMALL(KEYWORD, NZ, NS) \
   KEYWORD template Status run_phase<SmallForm<double, NZ, NS>>(Workspace<double>&, double, Sink&);
 #define CLUTCHWORK_SMALL_ROW(KEYWORD, NZ) \
   CLUTCHWORK_SMALL(KEYWORD, NZ, 0)        \
   CLUTCHWORK_SMALL(KEYWORD, NZ, 1)        \
-  CLUTCHWORK_SMALL(KEYWORD, NZ, 2) CLUTCHWORK_SMALL(KEYWORD, NZ, 3) CLUTCHWORK_SMALL(KEYWORD, NZ, 4)
+  CLUTCHWORK_SMALL(KEYWORD, NZ, 2)
+
+/// What is the same in all forms.
+#define CLUTCHWORK_SHARED(KEYWORD)                                                                                     \
+  KEYWORD template double branch_torque_once(const Workspace<double>&, const Branch<double>&, double, const double*,   \
+                                             double*);                                                                 \
+  KEYWORD template double compliant_torque(const Workspace<double>&, const Branch<double>&, double, const double*,     \
+                                           double*);                                                                   \
+  KEYWORD template Partial<double> branch_partial(const Workspace<double>&, const Branch<double>&, double, double,     \
+                                                  const double*, double*, const StatePartials<double>&);               \
+  KEYWORD template void branch_by_input(const Workspace<double>&, const Branch<double>&, double, const double*,        \
+                                        double*);                                                                      \
+  KEYWORD template Dual<double, 1> branch_heat(const Workspace<double>&, const Branch<double>&, double, const double*, \
+                                               const Dual<double, 1>&);                                                \
+  KEYWORD template Dual<double, 1> law_margin(const Workspace<double>&, const Branch<double>&, double, double,         \
+                                              const double*, const double*, int&);                                     \
+  KEYWORD template int law_cross(const Workspace<double>&, const Branch<double>&, double, int, double*);               \
+  KEYWORD template double contact_limit(const System&, int, const double*, const double*, const double*, int);         \
+  KEYWORD template double table_room(const Workspace<double>&, int, double, double&);                                  \
+  KEYWORD template double edge_at(const Workspace<double>&, int, int);                                                 \
+  KEYWORD template int edge_count(const Workspace<double>&, int);                                                      \
+  KEYWORD template bool refresh_loads(Workspace<double>&);                                                             \
+  KEYWORD template bool load_may_turn(Workspace<double>&, int);                                                        \
+  KEYWORD template void load_inputs(Workspace<double>&, double);                                                       \
+  KEYWORD template void list_lines(Workspace<double>&);                                                                \
+  KEYWORD template DependentSet<double> dependent_set(Workspace<double>&, int, const double*, double);
 
 namespace clutchwork {
+#ifndef CLUTCHWORK_COMPONENTS
+CLUTCHWORK_SHARED(extern)
+#endif
 #ifndef CLUTCHWORK_INSTANCES
-CLUTCHWORK_SMALL_ROW(extern, 0)
 CLUTCHWORK_SMALL_ROW(extern, 1)
 CLUTCHWORK_SMALL_ROW(extern, 2)
 CLUTCHWORK_SMALL_ROW(extern, 3)

@@ -89,6 +89,12 @@ CLUTCHWORK_INLINE T branch_torque(const Workspace<T>& ws, const Branch<T>& b, T 
   });
 }
 
+/// The same, compiled once: for what is asked seldom.
+template <class T>
+[[gnu::noinline]] T branch_torque_once(const Workspace<T>& ws, const Branch<T>& b, T rate, const T* state, T* rates) {
+  return branch_torque(ws, b, rate, state, rates);
+}
+
 /// Where the partial derivatives of the states of a branch go.
 template <class T>
 struct StatePartials {
@@ -141,7 +147,7 @@ template <class T>
 
 /// Torque and partial derivatives by (rate, own states, time), from dual numbers.
 template <class T>
-CLUTCHWORK_INLINE Partial<T> branch_partial(const Workspace<T>& ws, const Branch<T>& b, T rate, T rate_slope,
+[[gnu::noinline]] Partial<T> branch_partial(const Workspace<T>& ws, const Branch<T>& b, T rate, T rate_slope,
                                             const T* state, T* rates, const StatePartials<T>& out) {
   if (b.compliant) [[unlikely]]
     return compliant_partial(ws, b, rate, rate_slope, state, rates, out);

@@ -35,7 +35,7 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
       if (sign != forward && sign != backward) continue;
     }
     const Branch<T> b = make_branch(ws, d, sign);
-    add(branch_torque(ws, b, rate_of(ws, d), ws.state, ws.seen.state_rates), d);
+    add(branch_torque_once(ws, b, rate_of(ws, d), ws.state, ws.seen.state_rates), d);
   }
 }
 

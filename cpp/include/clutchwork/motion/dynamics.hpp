@@ -14,7 +14,7 @@ namespace clutchwork {
 
 /// d := (sum of row' torque, state rates) at (t, y). The first part is M dz/dt.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void evaluate(Form& form, double t, const T* y, T* d) {
+[[gnu::noinline]] void evaluate(Form& form, double t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
   const int nz = form.nz(), n = form.n();
   inputs_with(ws, t, y + nz);
@@ -45,7 +45,7 @@ void observe(Form& form, double t, const T* y, T* d) {
   for (int i = 0; i < n; ++i) d[i] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
     rate[k] = form.rate(k, y) + offset_rate(ws, k);
-    torque[k] = branch_torque(ws, ws.branch[k], rate[k], y + nz, d + nz);
+    torque[k] = branch_torque_once(ws, ws.branch[k], rate[k], y + nz, d + nz);
     form.push(k, torque[k], d);
   }
 }

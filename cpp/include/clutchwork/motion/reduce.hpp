@@ -8,7 +8,11 @@
 /// The reduced motion of one mode: v = Z z + Y u with the locked slips gone. docs/theory/multipliers.md.
 namespace clutchwork {
 
-inline constexpr int small_speeds = 4, small_states = 4;
+/// Sizes of the exact forms: one speed to small_speeds, no state to small_states.
+inline constexpr int small_speeds = 4, small_states = 2;
+constexpr bool is_small_size(std::int64_t speeds, std::int64_t states) {
+  return speeds >= 1 && speeds <= small_speeds && states <= small_states;
+}
 
 /// Orthonormal directions in held.basis whose first ones, as many as returned, span the carriers; the others the motion
 /// that is left.

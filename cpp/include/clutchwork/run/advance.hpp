@@ -31,7 +31,7 @@ Status run_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink)
 }
 
 /// Exact sizes for small systems, one sparse form for the rest.
-template <class T, int NZ = 0, int NS = 0>
+template <class T, int NZ = 1, int NS = 0>
 Status dispatch(Workspace<T>& ws, double t_end, Sink& sink) {
   if (ws.reduced.is_sparse) return run_phase<SparseForm<T>>(ws, t_end, sink);
   if constexpr (NZ > small_speeds) {

@@ -113,8 +113,8 @@ bool enter_mode(Workspace<T>& ws) {
   ws.reduced.rank = many ? eliminate_locked(ws) : split_locked(ws);
   ws.reduced.nz = int(sys.speeds) - ws.reduced.rank;
   ws.reduced.method = choose_method(ws);
-  ws.reduced.is_sparse = !is_small(ws.reduced.method) || sys.shared > 0 || ws.reduced.nz > small_speeds ||
-                         sys.states > small_states || has_massless(ws);
+  ws.reduced.is_sparse =
+      !is_small(ws.reduced.method) || sys.shared > 0 || !is_small_size(ws.reduced.nz, sys.states) || has_massless(ws);
   if (many && (!ws.reduced.is_sparse || sys.prescribed > 0)) split_locked(ws);
   if (!factor_mobility(ws)) return false;
   reduce_motion(ws, many);

@@ -33,6 +33,12 @@ inline bool first_bracket(const double* b, double tolerance, int depth, bool las
   return first_bracket(right, tolerance, depth - 1, last, low, high);
 }
 
+/// Value of a function that is compiled once for all places that ask for it.
+template <class F>
+[[gnu::noinline]] double sample(F& f, double x) {
+  return f(x);
+}
+
 /// Root of a decreasing-through-zero function on [low, high] with f(low) >= 0 > f(high), to round-off (ITP).
 template <class F>
 double locate(F&& f, double low, double f_low, double high, double f_high) {
@@ -61,7 +67,8 @@ double locate(F&& f, double low, double f_low, double high, double f_high) {
 
 /// First sample below zero among five inner points and the vertex of a parabola at the lowest; then its root.
 template <class F>
-double first_crossing(F&& f, double start, double end, double limit) {
+double first_crossing(F&& sampled, double start, double end, double limit) {
+  auto f = [&](double s) { return sample(sampled, s); };
   double x[8], y[8];
   int n = 0;
   x[n] = 0, y[n++] = larger(start, 0.0);

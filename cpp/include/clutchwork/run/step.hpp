@@ -32,7 +32,7 @@ void balance_massless(SparseForm<T>& form, Step<SparseForm<T>>& step) {
 
 /// Derivatives, rates, slopes, multipliers at one end of the step.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void look(Form& form, Step<Form>& step, double t, const T* y, T* d, T* dt, Edge<T>& edge) {
+[[gnu::noinline]] void look(Form& form, Step<Form>& step, double t, const T* y, T* d, T* dt, Edge<T>& edge) {
   linearize(form, t, y, d, dt, edge);
   if constexpr (Form::small) {
     slopes(form, d, edge);

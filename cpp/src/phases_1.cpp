@@ -2,6 +2,5 @@
 #include "instances.hpp"
 
 namespace clutchwork {
-CLUTCHWORK_SMALL_ROW(, 3)
-CLUTCHWORK_SMALL_ROW(, 4)
+CLUTCHWORK_SMALL_ROW(, 1)
 }  // namespace clutchwork

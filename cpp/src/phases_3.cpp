@@ -2,7 +2,5 @@
 #include "instances.hpp"
 
 namespace clutchwork {
-CLUTCHWORK_SMALL_ROW(, 0)
-CLUTCHWORK_SMALL_ROW(, 1)
-CLUTCHWORK_SMALL_ROW(, 2)
+CLUTCHWORK_SMALL_ROW(, 3)
 }  // namespace clutchwork
