@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 
 from clutchwork.assembly.assemble import assembled
+from clutchwork.assembly.changes import UNKNOWN_SOURCE, changed
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
 from clutchwork.base import archive
-from clutchwork.base.errors import ClutchworkError, ModelError, near
+from clutchwork.base.errors import ClutchworkError, ModelError, near, warn
 from clutchwork.base.regular import reason
 from clutchwork.base.shown import shortened
 from clutchwork.declare.layout import COUNTS, FIELDS, layout_text
@@ -63,6 +64,7 @@ class System:
     warnings: tuple[str, ...] = ()  # what the driveline was warned of when it was assembled
     settings: Mapping[str, Any] = field(default_factory=dict)  # of its runs, as in [simulation] of a model file
     source: Model | None = field(default=None, repr=False)  # the driveline, as it was when it was assembled
+    wanted: tuple[str, ...] = ()  # names of the independent speeds where they were asked for
 
     def __getattr__(self, name: str) -> Array:
         try:
@@ -108,7 +110,24 @@ class System:
         made, settings = assembled(model, independent), MappingProxyType(plain_settings(model.settings))
         # lists inside may be changed by their owner later
         source = deepcopy(model.copy()) if may_change(model) else model.copy()
-        return cls(**made, settings=settings, source=source)
+        return cls(**made, settings=settings, source=source, wanted=tuple(independent))
+
+    def changed(self, changes: Mapping[str, Any]) -> System:
+        """The System of the same driveline with other numbers, initial values and signals.
+
+        Parameters: changes, values by name: "engine.inertia", "c1.gain", "row1.ratio", "c1.friction.kinetic", or
+        "c1.pressure", a number or a signal. ModelError names all that is unknown or out of bounds at once.
+
+        The result is that of assembling a driveline with these values, bit for bit. What it warns of is new.
+        """
+        if self.source is None:
+            raise ModelError([UNKNOWN_SOURCE])
+        source, made, advice = changed(self.source, self.wanted, len(self.independent), changes)
+        for one in advice:
+            if str(one) not in self.warnings:
+                warn(one)
+        kept = deepcopy(source) if may_change(source) else source
+        return System(**made, settings=self.settings, source=kept, wanted=self.wanted)
 
     def to_bytes(self) -> bytes:
         """The System as the compiled core reads it: little endian, every array aligned to 8 bytes."""
