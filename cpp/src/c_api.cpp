@@ -128,11 +128,11 @@ int cw_set_poll(cw_run* run, int (*poll)(void*), void* context) {
 int cw_advance(cw_run* run, double t_end, double* times, double* rows, std::int64_t n, int steps,
                std::int64_t* filled) {
   if (filled != nullptr) *filled = 0;
-  if (run == nullptr || !is_finite(t_end) || t_end < run->ws.time || n < 0) return -1;
+  if (run == nullptr || !is_finite(t_end) || t_end < run->ws.time || n < 0 || steps < 0) return -1;
   if (n > 0 && (times == nullptr || rows == nullptr)) return -1;
-  // a step fills up to three rows
-  if (steps != 0 && n < 3) return int(Status::rows_full);
-  Sink sink{times, rows, n, 0, steps != 0};
+  // a step fills its rows and up to two more, at an event
+  if (steps > 0 && n < std::int64_t(steps) + 2) return int(Status::rows_full);
+  Sink sink{times, rows, n, 0, steps};
   run->ws.detail.row = -1;
   const Status status = advance(run->ws, t_end, sink);
   if (filled != nullptr) *filled = sink.at;

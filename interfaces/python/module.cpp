@@ -12,6 +12,8 @@
 #include <tuple>
 #include <vector>
 
+#include "door.hpp"
+
 namespace nb = nanobind;
 using Vector = nb::ndarray<double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Matrix = nb::ndarray<double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
@@ -84,7 +86,7 @@ class Run {
 
   /// Status, rows filled, and what a signal handler raised meanwhile, or None.
   std::tuple<int, std::int64_t, nb::object> advance(double t_end, Vector times, Matrix rows, std::int64_t first,
-                                                    bool steps) {
+                                                    int steps) {
     if (rows.shape(1) != std::size_t(cw_row_size(run_)) || rows.shape(0) != times.shape(0)) {
       throw nb::value_error("rows must have one line per time and row_size columns");
     }
@@ -186,6 +188,7 @@ NB_MODULE(_core, m) {
   m.def("law", &law, nb::arg("number"), nb::arg("params"), nb::arg("points"), nb::arg("slip"),
         nb::arg("inputs") = std::vector<double>(),
         "Kinetic coefficient at a slip [rad/s] and static coefficient of a friction law at its inputs.");
+  bind_sweep(m);
   nb::class_<Run>(m, "Run", "One run of a frozen system: its memory, options, signals and results.")
       .def(nb::init<nb::bytes>(), nb::arg("system"))
       .def("set_option", &Run::set_option, nb::arg("name"), nb::arg("value"))
@@ -193,7 +196,7 @@ NB_MODULE(_core, m) {
       .def("set_param", &Run::set_param, nb::arg("offset"), nb::arg("value"))
       .def("is_settable", &Run::is_settable, nb::arg("offset"), nb::arg("value"))
       .def("advance", &Run::advance, nb::arg("t_end"), nb::arg("times"), nb::arg("rows"), nb::arg("first") = 0,
-           nb::arg("steps") = false)
+           nb::arg("steps") = 0)
       .def("events", &Run::events)
       .def("row", &Run::row)
       .def("statistics", &Run::statistics)

@@ -43,11 +43,12 @@ int cw_set_param(cw_run* run, int64_t offset, double value);
 int cw_set_poll(cw_run* run, int (*poll)(void* context), void* context);
 
 /* Integrate to t_end [s]. Grid: `times` holds n requested times, not decreasing, rows are filled for those that were
-   reached. Steps: rows are filled per step, `times` is written. `filled` counts the rows; NULL: not needed.
+   reached. Steps: `steps` rows are filled per step, in equal parts, the last at its end, and the right limit after an
+   event; `times` is written. `filled` counts the rows; NULL: not needed.
    Every row is finite: a run in which a number overflows ends with status not_finite before that row; without rows
    only the state is checked.
-   Returns a status code; -1: refused because t_end is not finite or before the present time, n is negative, or times
-   or rows are NULL although n is not 0. After rows_full, events_full and interrupted it may be called again. */
+   Returns a status code; -1: refused because t_end is not finite or before the present time, n or steps is negative,
+   or times or rows are NULL although n is not 0. After rows_full, events_full and interrupted it may be called again. */
 int cw_advance(cw_run* run, double t_end, double* times, double* rows, int64_t n, int steps, int64_t* filled);
 
 /* Present time [s]; NaN for a null pointer. */

@@ -42,7 +42,7 @@ class Wires:
         for node in thermal:
             if node.capacity is None:
                 self.ambients[node.name] = len(self.inputs)
-                self.inputs.append(Input(f"{node.name}.temperature", "K", _signal(node.temperature)))
+                self.inputs.append(Input(f"{node.name}.temperature", "K", plain_signal(node.temperature)))
 
     def connect(self, component: Component) -> int:
         """Number the inputs of a component, those of a flow after the temperatures; the offset of the first one."""
@@ -70,7 +70,7 @@ class Wires:
                 self._link(f"{path}.{name}", unit, *self.refs[-1])
             else:
                 plain = spec.otherwise if value is None else value
-                self.refs.append(("input", self._add(f"{path}.{name}", unit, _signal(plain))))
+                self.refs.append(("input", self._add(f"{path}.{name}", unit, plain_signal(plain))))
 
     def _reference(self, value: Any) -> tuple[str, int]:
         if isinstance(value, ThermalNode) and value.name in self.ambients:
@@ -115,7 +115,8 @@ def _warming(component: Component) -> ThermalNode | None:
     return path.node if path else None
 
 
-def _signal(value: Any) -> Signal:
+def plain_signal(value: Any) -> Signal:
+    """A signal, or a number as one."""
     return value if isinstance(value, Signal) else Constant(float(value or 0.0))
 
 

@@ -6,7 +6,7 @@ import json
 import struct
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -15,15 +15,17 @@ from typing import Any
 import numpy as np
 
 from clutchwork.assembly.assemble import assembled
+from clutchwork.assembly.changes import UNKNOWN_SOURCE, Quick, changed, quick
 from clutchwork.assembly.dependence import dependent_sets
+from clutchwork.assembly.patches import Numbered, numbered
 from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
 from clutchwork.base import archive
-from clutchwork.base.errors import ClutchworkError, ModelError, near
+from clutchwork.base.errors import ClutchworkError, ModelError, near, warn
 from clutchwork.base.regular import reason
 from clutchwork.base.shown import shortened
 from clutchwork.declare.layout import COUNTS, FIELDS, layout_text
 from clutchwork.declare.node import Component, Node, ThermalNode
-from clutchwork.declare.schema import schema_hash
+from clutchwork.declare.schema import Role, schema_hash
 from clutchwork.files.model_file import from_dict, to_dict
 from clutchwork.model.findings import may_change
 from clutchwork.model.model import Model
@@ -63,6 +65,7 @@ class System:
     warnings: tuple[str, ...] = ()  # what the driveline was warned of when it was assembled
     settings: Mapping[str, Any] = field(default_factory=dict)  # of its runs, as in [simulation] of a model file
     source: Model | None = field(default=None, repr=False)  # the driveline, as it was when it was assembled
+    wanted: tuple[str, ...] = ()  # names of the independent speeds where they were asked for
 
     def __getattr__(self, name: str) -> Array:
         try:
@@ -72,12 +75,12 @@ class System:
 
     def __getstate__(self) -> dict[str, Any]:
         # a view of a dictionary cannot be pickled; what is cached comes again
-        fields = {name: value for name, value in vars(self).items() if name != "counts"}
-        return fields | {"arrays": dict(self.arrays), "settings": dict(self.settings)}
+        made = {item.name: getattr(self, item.name) for item in fields(self)}
+        return made | {"arrays": dict(self.arrays), "settings": dict(self.settings)}
 
-    def __setstate__(self, fields: dict[str, Any]) -> None:
-        settings = MappingProxyType(fields["settings"])
-        vars(self).update(fields | {"arrays": frozen(fields["arrays"]), "settings": settings})
+    def __setstate__(self, content: dict[str, Any]) -> None:
+        settings = MappingProxyType(content["settings"])
+        vars(self).update(content | {"arrays": frozen(content["arrays"]), "settings": settings})
 
     @cached_property
     def counts(self) -> dict[str, int]:
@@ -108,7 +111,53 @@ class System:
         made, settings = assembled(model, independent), MappingProxyType(plain_settings(model.settings))
         # lists inside may be changed by their owner later
         source = deepcopy(model.copy()) if may_change(model) else model.copy()
-        return cls(**made, settings=settings, source=source)
+        return cls(**made, settings=settings, source=source, wanted=tuple(independent))
+
+    def changed(self, changes: Mapping[str, Any]) -> System:
+        """The System of the same driveline with other numbers, initial values and signals.
+
+        Parameters: changes, values by name: "engine.inertia", "c1.gain", "row1.ratio", "c1.friction.kinetic", or
+        "c1.pressure", a number or a signal. ModelError names all that is unknown or out of bounds at once.
+
+        The result is that of assembling a driveline with these values, bit for bit. What it warns of is new.
+        """
+        if self.source is None:
+            raise ModelError([UNKNOWN_SOURCE])
+        # what is warned of is looked at as a whole
+        found = None if self.warnings else quick(self.source, self.numbered, changes)
+        if found is not None:
+            return self._with(found)
+        source, made, advice = changed(self.source, self.wanted, len(self.independent), changes)
+        for one in advice:
+            if str(one) not in self.warnings:
+                warn(one)
+        kept = deepcopy(source) if may_change(source) else source
+        return System(**made, settings=self.settings, source=kept, wanted=self.wanted)
+
+    @cached_property
+    def numbered(self) -> Numbered:
+        """Where everything stands in the arrays, for changes of numbers."""
+        groups = {
+            Role.TORQUE: self.elements,
+            Role.CONTACT: self.contacts,
+            Role.FLOW: self.flows,
+            Role.PROCESS: self.processes,
+        }
+        return numbered(self.arrays, groups, self.inputs, self.thermal, self.source or Model())
+
+    def _with(self, found: Quick) -> System:
+        """The same structure with other elements."""
+        content, new = self.__getstate__(), found.new
+        for group in ("elements", "contacts", "flows", "processes"):
+            content[group] = tuple(new.get(part.name, part) for part in content[group])
+        inputs = list(self.inputs)
+        for number, signal in found.signals.items():
+            inputs[number] = replace(inputs[number], signal=signal)
+        content["inputs"] = tuple(inputs)
+        made = object.__new__(System)
+        made.__setstate__(content | {"arrays": found.arrays, "source": found.source})
+        vars(made)["numbered"] = self.numbered._replace(arrays=made.arrays)
+        return made
 
     def to_bytes(self) -> bytes:
         """The System as the compiled core reads it: little endian, every array aligned to 8 bytes."""

@@ -17,7 +17,7 @@ struct Sink {
   double* rows = nullptr;
   std::int64_t count = 0;  ///< rows that fit
   std::int64_t at = 0;     ///< rows filled
-  bool steps = false;
+  std::int64_t steps = 0;  ///< rows in every step, the last at its end; 0: a grid
 };
 
 /// Integral of prescribed speed p from t over h.
@@ -149,17 +149,27 @@ bool fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row)
   return is_finite(ws, row);
 }
 
+/// Rows that divide the step up to s_end into equal parts, the last one at its end. `running`: all is well.
+template <class Form>
+Status emit_parts(Form& form, Step<Form>& step, double s_end, Sink& sink) {
+  const std::int64_t size = form.ws.row.size, parts = s_end > 0 ? sink.steps : 1;
+  for (std::int64_t k = 1; k <= parts; ++k) {
+    const double t = step.t + (k == parts ? s_end : s_end * double(k) / double(parts)) * step.h;
+    // as a grid with this instant has it
+    const double s = k == parts ? s_end : smaller(s_end, (t - step.t) / step.h);
+    sink.times[sink.at] = t;
+    if (!fill_row(form, step, s, s_end, sink.rows + size * sink.at)) return Status::not_finite;
+    ++sink.at;
+  }
+  return Status::running;
+}
+
 /// Rows that fall into the step up to s_end. At its very end at most one, the left limit. `running`: all is well.
 template <class Form>
 Status emit(Form& form, Step<Form>& step, double s_end, Sink& sink) {
+  if (sink.steps > 0) return emit_parts(form, step, s_end, sink);
   const double end = step.t + s_end * step.h;
   const std::int64_t size = form.ws.row.size;
-  if (sink.steps) {
-    sink.times[sink.at] = end;
-    if (!fill_row(form, step, s_end, s_end, sink.rows + size * sink.at)) return Status::not_finite;
-    ++sink.at;
-    return Status::running;
-  }
   while (sink.at < sink.count && sink.times[sink.at] <= end) {
     const double t = sink.times[sink.at];
     const double s = step.h > 0 ? smaller(s_end, larger(0.0, (t - step.t) / step.h)) : 0;
@@ -185,9 +195,9 @@ void rest_step(Form& form, Step<Form>& step) {
 /// Rows at the instant at which a phase starts. `running`: all is well.
 template <class Form>
 Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
-  if (!(sink.steps ? fresh : sink.at < sink.count && sink.times[sink.at] <= form.ws.time)) return Status::running;
+  if (!(sink.steps > 0 ? fresh : sink.at < sink.count && sink.times[sink.at] <= form.ws.time)) return Status::running;
   rest_step(form, step);
-  if (!sink.steps) {
+  if (sink.steps == 0) {
     // a grid row here is the right limit of an event; further equal times wait for the end of the step
     const std::int64_t size = form.ws.row.size;
     while (sink.at < sink.count && sink.times[sink.at] <= form.ws.time) {

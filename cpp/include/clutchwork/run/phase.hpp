@@ -117,7 +117,7 @@ class Phase {
   }
 
   Status what_is_spent() const {
-    if (sink_.steps && sink_.at + 3 > sink_.count) return Status::rows_full;
+    if (sink_.steps > 0 && sink_.at + sink_.steps + 2 > sink_.count) return Status::rows_full;
     if (ws_.events.n >= EventBuffer::room) return Status::events_full;
     if (ws_.statistics.steps + ws_.statistics.rejected >= ws_.options.max_steps) return Status::too_many_steps;
     return ws_.poll.stops() ? Status::interrupted : Status::running;
@@ -175,7 +175,7 @@ class Phase {
 
   /// Rows and integrals of the step up to the share s. False: a row is not finite, or the caller wants to stop.
   CLUTCHWORK_INLINE bool write(double s) {
-    const bool rows = sink_.steps || (sink_.at < sink_.count && sink_.times[sink_.at] <= ws_.time + s * reach_);
+    const bool rows = sink_.steps > 0 || (sink_.at < sink_.count && sink_.times[sink_.at] <= ws_.time + s * reach_);
     if (!(rows || ws_.options.work || ws_.options.angles) || s <= 0) return true;
     if (!step_.dense) Integrator::prepare_dense(form_, step_);
     if (ws_.options.work) fit_power(form_, step_, s);

@@ -1,0 +1,295 @@
+#pragma once
+#include <clutchwork/c_api.h>
+#include <clutchwork/layout.gen.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+/// Many runs of one driveline with other numbers, on several threads. docs/guide/sweeps.md
+namespace clutchwork::sweep {
+
+/// Words of eight bytes of a system that change together, and what they are for each value.
+struct Axis {
+  const std::int64_t* place;   ///< of each word
+  const std::uint64_t* words;  ///< a line of them for each value
+  std::int64_t count, values;
+};
+
+struct Bytes {
+  const char* data;
+  std::int64_t size;
+};
+
+/// What is to be done, shared by all threads.
+struct Task {
+  std::vector<Bytes> systems;
+  std::vector<Axis> axes;
+  std::vector<std::pair<std::string, double>> options;
+  const std::int64_t* choice;  ///< a line for each variant: its system, then its value of each axis
+  std::int64_t variants;
+  double t_end;
+  const double* times;  ///< instants of a grid
+  std::int64_t instants;
+  int parts;                    ///< rows in every step, 0: the grid
+  const std::int64_t* columns;  ///< numbers of a row that are kept
+  std::int64_t width;           ///< how many
+  bool events;                  ///< whether they are kept
+};
+
+/// Numbers that tell why a run stopped: component, time, value, number of the row.
+constexpr std::int64_t detail_size = 4;
+/// Numbers kept of an event: variant, time, contact, mode before and after.
+constexpr std::int64_t event_kept = 5;
+/// Consecutive variants that one thread takes at once.
+constexpr std::int64_t group = 8;
+
+/// What comes of each variant, written by the thread that has it; nothing here grows.
+struct Results {
+  std::int32_t* status;
+  double* detail;
+  double* grid;  ///< variants x instants x width
+};
+
+/// What one thread found, in the order in which it ran them.
+struct Found {
+  std::vector<std::int64_t> variant, rows;  ///< variants and how many rows each has
+  std::vector<double> times, values, events;
+};
+
+/// How far all threads are, and whether they shall stop.
+class Course {
+ public:
+  std::atomic<std::int64_t> next{0}, done{0};
+  std::atomic<bool> stop{false};
+  std::exception_ptr failure;
+
+  /// Asked by every run after every step.
+  static int stopped(void* self) { return static_cast<Course*>(self)->stop.load(std::memory_order_relaxed) ? 1 : 0; }
+
+  void leave(std::exception_ptr why) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (why) failure = why, stop = true;
+    ++left_;
+    changed_.notify_all();
+  }
+
+  /// Wait until so many threads have left, for a while at most. Whether they have.
+  bool wait(int threads, std::chrono::milliseconds most) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    return changed_.wait_for(lock, most, [&] { return left_ == threads; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int left_ = 0;
+};
+
+/// One thread: its memory, and the variants it takes.
+class Worker {
+ public:
+  Worker(const Task& task, const Results& results, Course& course)
+      : task_(task), results_(results), course_(course), event_(std::size_t(cw_event_size()) * event_room) {}
+
+  /// Take groups of variants until none is left.
+  void work() {
+    while (!course_.stop) {
+      const std::int64_t first = course_.next.fetch_add(group);
+      if (first >= task_.variants) return;
+      const std::int64_t last = first + group < task_.variants ? first + group : task_.variants;
+      run_group(first, last);
+      course_.done += last - first;
+    }
+  }
+
+  Found found;
+
+ private:
+  static constexpr std::int64_t event_room = 256, step_room = 256;
+
+  struct alignas(64) Block {
+    unsigned char byte[64];
+  };
+
+  const Task& task_;
+  const Results& results_;
+  Course& course_;
+  std::int64_t base_ = -1, size_ = 0, row_size_ = 0;
+  std::vector<std::uint64_t> system_;  ///< bytes of the variant
+  std::vector<std::int64_t> value_;    ///< of each axis that these bytes have
+  std::unique_ptr<Block[]> memory_;
+  std::int64_t blocks_ = 0;
+  std::vector<double> times_, rows_, event_;
+
+  /// Consecutive variants, one after another.
+  void run_group(std::int64_t first, std::int64_t last) {
+    for (std::int64_t v = first; v < last && !course_.stop; ++v) run_one(v);
+  }
+
+  void run_one(std::int64_t v) {
+    cw_run* run = load(v);
+    int status = int(Status::bad_system);
+    if (run != nullptr) {
+      for (const auto& [name, value] : task_.options) cw_set_option(run, name.c_str(), value);
+      cw_set_poll(run, &Course::stopped, &course_);
+      status = task_.parts > 0 ? record_steps(run, v) : record_grid(run, v);
+      if (status != int(Status::done)) tell(run, v, status);
+    }
+    results_.status[v] = status;
+  }
+
+  // ------------------------------------------------------------------------------------------------------------- load
+
+  cw_run* load(std::int64_t v) {
+    const std::int64_t* choice = task_.choice + v * (1 + std::int64_t(task_.axes.size()));
+    if (choice[0] != base_) take_base(choice[0]);
+    for (std::size_t a = 0; a < task_.axes.size(); ++a) {
+      const std::int64_t value = choice[1 + a];
+      if (value == value_[a]) continue;
+      const Axis& axis = task_.axes[a];
+      for (std::int64_t k = 0; k < axis.count; ++k)
+        system_[std::size_t(axis.place[k])] = axis.words[value * axis.count + k];
+      value_[a] = value;
+    }
+    const std::int64_t size = cw_size(system_.data(), size_);
+    if (size < 0) return nullptr;
+    if (size > 64 * blocks_) {
+      blocks_ = (size + 63) / 64;
+      memory_ = std::make_unique<Block[]>(std::size_t(blocks_));
+    }
+    cw_run* run = cw_load(system_.data(), size_, memory_.get(), 64 * blocks_);
+    if (run != nullptr && cw_row_size(run) != row_size_) make_room(cw_row_size(run));
+    return run;
+  }
+
+  void take_base(std::int64_t base) {
+    const Bytes& bytes = task_.systems[std::size_t(base)];
+    system_.resize(std::size_t(bytes.size + 7) / 8);
+    std::memcpy(system_.data(), bytes.data, std::size_t(bytes.size));
+    base_ = base, size_ = bytes.size;
+    value_.assign(task_.axes.size(), -1);
+  }
+
+  void make_room(std::int64_t row_size) {
+    row_size_ = row_size;
+    const std::int64_t rows = task_.parts > 0 ? step_room + task_.parts : task_.instants;
+    times_.resize(std::size_t(rows));
+    rows_.resize(std::size_t(rows * row_size));
+  }
+
+  // ---------------------------------------------------------------------------------------------------------- collect
+
+  static bool goes_on(int status) { return status == int(Status::rows_full) || status == int(Status::events_full); }
+
+  int record_grid(cw_run* run, std::int64_t v) {
+    std::int64_t filled = 0, more = 0;
+    int status;
+    for (std::int64_t i = 0; i < task_.instants; ++i) times_[std::size_t(i)] = task_.times[i];
+    do {
+      status = cw_advance(run, task_.t_end, times_.data() + filled, rows_.data() + filled * row_size_,
+                          task_.instants - filled, 0, &more);
+      filled += more;
+      take_events(run, v);
+    } while (goes_on(status));
+    double* out = results_.grid + v * task_.instants * task_.width;
+    for (std::int64_t i = 0; i < filled; ++i) keep(rows_.data() + i * row_size_, out + i * task_.width);
+    return status;
+  }
+
+  int record_steps(cw_run* run, std::int64_t v) {
+    std::int64_t total = 0, filled = 0;
+    int status;
+    do {
+      status =
+          cw_advance(run, task_.t_end, times_.data(), rows_.data(), std::int64_t(times_.size()), task_.parts, &filled);
+      const std::size_t at = found.values.size();
+      found.values.resize(at + std::size_t(filled * task_.width));
+      for (std::int64_t i = 0; i < filled; ++i)
+        keep(rows_.data() + i * row_size_, found.values.data() + at + std::size_t(i * task_.width));
+      found.times.insert(found.times.end(), times_.begin(), times_.begin() + filled);
+      total += filled;
+      take_events(run, v);
+    } while (goes_on(status));
+    found.variant.push_back(v);
+    found.rows.push_back(total);
+    return status;
+  }
+
+  void keep(const double* row, double* to) const {
+    for (std::int64_t c = 0; c < task_.width; ++c) to[c] = row[task_.columns[c]];
+  }
+
+  /// Events make room for others, kept or not.
+  void take_events(cw_run* run, std::int64_t v) {
+    const std::int64_t size = cw_event_size();
+    std::int64_t n;
+    while ((n = cw_take_events(run, event_.data(), event_room)) > 0) {
+      for (std::int64_t i = 0; task_.events && i < n; ++i) {
+        const double* e = event_.data() + i * size;
+        found.events.insert(found.events.end(), {double(v), e[0], e[1], e[2], e[3]});
+      }
+    }
+  }
+
+  /// Why a run stopped: a component, or what of a row is not finite, else its largest number.
+  void tell(cw_run* run, std::int64_t v, int status) {
+    double* detail = results_.detail + v * detail_size;
+    double value = 0;
+    const std::int64_t component = cw_detail(run, &value);
+    std::int64_t column = cw_detail_row(run);
+    if (status == int(Status::not_finite) && component < 0 && column < 0) {
+      std::vector<double> row(std::size_t(row_size_), 0.0);
+      cw_row(run, row.data());
+      column = 0;
+      for (std::int64_t i = 0; i < row_size_ && !std::isnan(row[std::size_t(column)]); ++i)
+        if (!(std::abs(row[std::size_t(i)]) <= std::abs(row[std::size_t(column)]))) column = i;
+      value = row_size_ > 0 ? row[std::size_t(column)] : 0;
+    }
+    detail[0] = double(component), detail[1] = cw_time(run), detail[2] = value, detail[3] = double(column);
+  }
+};
+
+/// Run all variants on so many threads; `pause` is called now and then by the thread that waits, and stops them all by
+/// returning true.
+template <class Pause>
+std::vector<Found> run_all(const Task& task, const Results& results, int threads, Course& course, Pause&& pause) {
+  std::vector<std::unique_ptr<Worker>> workers;
+  for (int i = 0; i < threads; ++i) workers.push_back(std::make_unique<Worker>(task, results, course));
+  std::vector<std::thread> running;
+  int started = 0;
+  auto work = [&](Worker* worker) {
+    std::exception_ptr failure;
+    try {
+      worker->work();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    course.leave(failure);
+  };
+  try {
+    for (; started < threads; ++started) running.emplace_back(work, workers[std::size_t(started)].get());
+  } catch (...) {
+    // fewer threads do it too, none does not
+    if (started == 0) throw;
+  }
+  while (!course.wait(started, std::chrono::milliseconds(50)))
+    if (pause()) course.stop = true;
+  for (std::thread& thread : running) thread.join();
+  if (course.failure) std::rethrow_exception(course.failure);
+  std::vector<Found> found;
+  for (auto& worker : workers) found.push_back(std::move(worker->found));
+  return found;
+}
+
+}  // namespace clutchwork::sweep

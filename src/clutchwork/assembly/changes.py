@@ -1,0 +1,135 @@
+"""A System with other numbers: what assembling the driveline with them gives, bit for bit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from clutchwork.assembly.assemble import assembled
+from clutchwork.assembly.patches import Numbered, Unpatched, changed_signals, patched, patches
+from clutchwork.base.errors import ModelError, Problem
+from clutchwork.declare.node import Component, Signal
+from clutchwork.declare.speech import words_of_files
+from clutchwork.model.changes import changed_model, named, renewed, target
+from clutchwork.model.components import component_advice, component_problems
+from clutchwork.model.fields import BROKEN, SOUND, At, value_problems
+from clutchwork.model.findings import findings
+from clutchwork.model.model import Model
+from clutchwork.model.problems import TOO_FAR_APART
+from clutchwork.model.temperatures import temperature_advice
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.records import Array
+    from clutchwork.base.errors import Problem as Found
+
+UNKNOWN_SOURCE = Problem(
+    "system",
+    "",
+    "has numbers without names, because it was made from bytes",
+    remedy="assemble its driveline, or read a file of System.save",
+)
+
+
+def changed(
+    source: Model, independent: Sequence[str], speeds: int, changes: Mapping[str, Any]
+) -> tuple[Model, dict[str, Any], list[Found]]:
+    """The model with other values, the fields of its System, and what is rarely wanted of it.
+
+    Parameters: source, the model; independent, names of the independent speeds where they were asked for; speeds, how
+    many there are; changes, values by name.
+    """
+    with words_of_files(source.from_file):
+        model = changed_model(source, changes)
+        found = findings(model)
+        if found.problems:
+            raise ModelError(found.problems, model.name)
+        try:
+            made = assembled(model, independent)
+        except ArithmeticError:
+            raise ModelError([TOO_FAR_APART], model.name) from None
+    count = len(made["independent"])
+    if count != speeds:
+        message = f"makes {count} speeds independent, where {speeds} were"
+        remedy = "build a driveline of its own for it: its rigid rows are others"
+        raise ModelError([Problem(", ".join(changes), "", message, remedy=remedy)], model.name)
+    return model, made, found.advice
+
+
+class Quick(NamedTuple):
+    """Other numbers of elements that nothing else depends on: the model, its arrays, and the new elements by name."""
+
+    source: Model
+    arrays: dict[str, Array]
+    new: dict[str, Component]
+    signals: dict[int, Signal]  # by the number of their input
+
+
+def quick(source: Model, where: Numbered, changes: Mapping[str, Any]) -> Quick | None:
+    """The changes where they are such; None: everything must be looked at, and assembled, anew."""
+    new = _quickly(source, where, changes)
+    if new is None:
+        return None
+    try:
+        found = [patch for old, made in new.values() for patch in patches(where, old, made)]
+        signals = {
+            where.inputs[name]: signal for old, made in new.values() for name, signal in changed_signals(old, made)
+        }
+    except Unpatched:
+        return None
+    model = source.copy()
+    by_name = {name: made for name, (_, made) in new.items()}
+    model.elements = [by_name.get(element.name, element) for element in source.elements]
+    return Quick(model, patched(where.arrays, found), by_name, signals)
+
+
+def _quickly(
+    source: Model, where: Numbered, changes: Mapping[str, Any]
+) -> dict[str, tuple[Component, Component]] | None:
+    """Elements without mistakes in the place of others; None where more must be looked at."""
+    owners, given = named(source), dict[str, tuple[Component, list[tuple[tuple[str, ...], Any]]]]()
+    for name, value in changes.items():
+        aim = target(owners, name)
+        if aim is None or not isinstance(aim.owner, Component) or aim.owner.name in where.referred:
+            return None
+        given.setdefault(aim.owner.name, (aim.owner, []))[1].append((aim.path, _kept(value)))
+    made = dict[str, tuple[Component, Component]]()
+    for name, (old, values) in given.items():
+        if _overlap([path for path, _ in values]):
+            return None
+        new = renewed(old, values)
+        if not is_right(old, new):
+            return None
+        made[name] = old, new
+    return made
+
+
+def _kept(value: Any) -> Any:
+    """A value, or a copy of one that holds lists, which its owner may change later."""
+    try:
+        hash(value)
+    except TypeError:
+        return deepcopy(value)
+    return value
+
+
+def _overlap(paths: Sequence[tuple[str, ...]]) -> bool:
+    """Whether one is inside of another."""
+    outer = set(paths)
+    return any(path[:cut] in outer for path in paths for cut in range(1, len(path)))
+
+
+def is_right(old: Component, new: Component) -> bool:
+    """Whether an element has no mistake of its own and no advice, where the old one has none."""
+    before, values = vars(old), vars(new)
+    unlike = {name: value for name, value in values.items() if value is None or value is not before.get(name)}
+    if any(value_problems(type(new), dict.fromkeys(values, BROKEN) | unlike, At(new.name, ""))):
+        return False
+    # rules between the values are looked at, the values no more
+    values[SOUND] = True
+    try:
+        if any(component_problems(new)):
+            return False
+    finally:
+        del values[SOUND]
+    return not any(component_advice(new)) and not any(temperature_advice([new], []))

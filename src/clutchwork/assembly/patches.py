@@ -1,0 +1,216 @@
+"""What of the arrays of a System changes when one element or thermal node gets other values, and nothing else does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.inputs import plain_signal
+from clutchwork.declare.node import Component, HeatFlow, Rate, ThermalNode, is_reference
+from clutchwork.declare.schema import Role, inputs, specs
+from clutchwork.model.parts import role
+from clutchwork.model.pools import Pools
+from clutchwork.signals.bases import waveform
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.records import Input
+    from clutchwork.declare.node import Signal
+    from clutchwork.model.model import Model
+
+# elements that stand in the arrays as they are
+PLAIN = (Role.TORQUE, Role.CONTACT, Role.FLOW, Role.PROCESS)
+
+
+class Patch(NamedTuple):
+    """New numbers of an array from a place on, in its flat order."""
+
+    array: str
+    start: int
+    values: Any
+
+
+class Numbered(NamedTuple):
+    """What a patch needs of a System."""
+
+    arrays: Mapping[str, NDArray[Any]]
+    places: Mapping[str, tuple[Role, int]]  # role and number of each element
+    inputs: Mapping[str, int]  # numbers of the signals by name
+    shared: Mapping[str, int]  # numbers of the thermal nodes by name
+    heats: Mapping[int, int]  # direction -> number of its path of heat
+    massless: bool  # whether a shaft has no inertia, so that springs and dampers decide what moves
+    referred: frozenset[str]  # elements that others refer to
+
+
+class Unpatched(Exception):  # noqa: N818, it is caught where it is raised
+    """The arrays must be assembled anew."""
+
+
+def numbered(
+    arrays: Mapping[str, NDArray[Any]],
+    groups: Mapping[Role, tuple[Component, ...]],
+    given: tuple[Input, ...],
+    thermal: tuple[ThermalNode, ...],
+    source: Model,
+) -> Numbered:
+    """The places of everything in a System."""
+    return Numbered(
+        arrays,
+        {part.name: (kind, number) for kind, parts in groups.items() for number, part in enumerate(parts)},
+        {item.name: number for number, item in enumerate(given)},
+        {node.name: number for number, node in enumerate(thermal)},
+        {int(direction): number for number, direction in enumerate(arrays["heat_direction"])},
+        any(not node.inertia for node in source.nodes),
+        frozenset(name for element in source.elements for name in _referred(element)),
+    )
+
+
+def _referred(element: Component) -> Iterator[str]:
+    """Names of the elements that one refers to, its friction law included."""
+    for value in (*vars(element).values(), *(vars(element.friction).values() if element.friction else ())):
+        target = value.of if isinstance(value, Rate | HeatFlow) else value[0] if _is_state(value) else value
+        if isinstance(target, Component | ThermalNode):
+            yield target.name
+
+
+def _is_state(value: Any) -> bool:
+    """Whether a value is (process, state)."""
+    return isinstance(value, tuple) and is_reference(value)
+
+
+def patches(where: Numbered, old: Any, new: Any) -> list[Patch]:
+    """How the arrays change where one thing has other values; Unpatched where more follows from them."""
+    if isinstance(old, ThermalNode):
+        return list(_thermal(where, old, new))
+    if not isinstance(old, Component) or role(old) not in PLAIN or type(old).parts is not Component.parts:
+        raise Unpatched
+    if where.massless and type(old).passive is not Component.passive:
+        raise Unpatched
+    # first, because it sees whether the friction law is of another kind
+    found = list(_parameters(where, old, new))
+    found += [patch for name, signal in changed_signals(old, new) for patch in _signal(where, name, signal)]
+    return [*found, *_start(where, old, new)]
+
+
+def _thermal(where: Numbered, old: ThermalNode, new: ThermalNode) -> Iterator[Patch]:
+    number = where.shared.get(old.name)
+    if number is None or (old.capacity is None) != (new.capacity is None):
+        raise Unpatched
+    if new.capacity is None:
+        yield from _signal(where, f"{old.name}.temperature", plain_signal(new.temperature))
+        return
+    yield Patch("shared_scale", number, [1.0 / new.capacity])
+    yield Patch("shared_offset", number, [float(new.temperature)])  # type: ignore[arg-type]
+
+
+def _parameters(where: Numbered, old: Component, new: Component) -> Iterator[Patch]:
+    kind, number = where.places[old.name]
+    prefix = "element" if kind is Role.TORQUE else kind.value
+    yield from _pool(where, int(where.arrays[f"{prefix}_param"][number]), old, new)
+    if kind is not Role.CONTACT:
+        return
+    before, after = old.friction, new.friction
+    if before is after:
+        return
+    if type(before) is not type(after) or len(before.own_states()) != len(after.own_states()):  # type: ignore[union-attr]
+        raise Unpatched
+    yield from _pool(where, int(where.arrays["contact_law_param"][number]), before, after)
+
+
+def _pool(where: Numbered, offset: int, old: Any, new: Any) -> Iterator[Patch]:
+    """Parameters from an offset on; curves keep their place and length."""
+    own = specs(type(old), "param", "curve", "numbers")
+    if all(getattr(old, item.name) is getattr(new, item.name) for item, _ in own):
+        return
+    pools, params = Pools(), where.arrays["params"]
+    pools.add(new, "")
+    at = 0
+    for _, spec in own:
+        if spec.what == "param":
+            yield Patch("params", offset + at, [pools.params[at]])
+            at += 1
+            continue
+        first, count = int(pools.params[at]), int(pools.params[at + 1])
+        if count != int(params[offset + at + 1]):
+            raise Unpatched
+        points = [number for point in pools.points[first : first + count] for number in point]
+        yield Patch("points", 3 * int(params[offset + at]), points)
+        at += 2
+
+
+def changed_signals(old: Component, new: Component) -> Iterator[tuple[str, Signal]]:
+    """Name and value of each signal of an element and its friction law that is another; Unpatched for a reference."""
+    yield from _differing(old, old, new, old.name)
+    if old.friction is not new.friction:
+        yield from _differing(old, old.friction, new.friction, f"{old.name}.friction")
+
+
+def _differing(component: Component, old: Any, new: Any, path: str) -> Iterator[tuple[str, Signal]]:
+    for names, spec in inputs(type(old)):
+        before, after = _given(names, old), _given(names, new)
+        was, value = getattr(old, before), getattr(new, after)
+        if before == after and was is value:
+            continue
+        warming = spec.unit == "K" and old is not component and (value is None or was is None)
+        if before != after or warming or is_reference(value) or is_reference(was):
+            raise Unpatched
+        yield f"{path}.{after}", plain_signal(spec.otherwise if value is None else value)
+
+
+def _given(names: tuple[str, ...], thing: Any) -> str:
+    return next((name for name in names if getattr(thing, name) is not None), names[0])
+
+
+def _signal(where: Numbered, name: str, signal: Signal) -> Iterator[Patch]:
+    """The pieces of a signal, which keeps its number of pieces and its period."""
+    number, arrays = where.inputs.get(name, -1), where.arrays
+    if number < 0:
+        raise Unpatched
+    pieces, first = signal.segments(), int(arrays["input_first"][number])
+    if len(pieces) != int(arrays["input_count"][number]):
+        raise Unpatched
+    yield Patch("input_period", number, [signal.repeats()])
+    yield Patch("input_value", number, [waveform.value(signal, 0.0)])
+    yield Patch("segment_time", first, [piece[0] for piece in pieces])
+    yield Patch("segment_coef", 12 * first, [number for piece in pieces for number in piece[1:]])
+
+
+def _start(where: Numbered, old: Component, new: Component) -> Iterator[Patch]:
+    """Initial states, what a contact starts with, the share of its heat."""
+    kind, number = where.places[old.name]
+    if kind is Role.PROCESS and new.state_scales() != old.state_scales():
+        raise Unpatched
+    if kind in (Role.TORQUE, Role.PROCESS) and old.states:
+        states: tuple[float, ...] = new.initial_states()
+        scales = (new.state_scales() or (1.0,) * len(states)) if kind is Role.PROCESS else (1.0,) * len(states)
+        first = int(where.arrays["element_state" if kind is Role.TORQUE else "process_state"][number])
+        starts = [start / unit for start, unit in zip(states, scales, strict=True)] if kind is Role.PROCESS else states
+        yield Patch("initial_state", first, list(starts))
+    if kind is Role.CONTACT:
+        made: Any = new
+        yield Patch("contact_tolerance", number, [max(float(made.tolerance), float(made.friction.band))])
+        yield Patch("contact_initial", number, [int(made.locked)])
+    path, before = new.heat_path(), old.heat_path()
+    if (path is None) != (before is None):
+        raise Unpatched
+    if path is not None:
+        direction = number + (len(where.arrays["element_kind"]) if kind is Role.CONTACT else 0)
+        yield Patch("heat_share", where.heats[direction], [path.share])
+
+
+def patched(arrays: Mapping[str, NDArray[Any]], found: list[Patch]) -> dict[str, NDArray[Any]]:
+    """The arrays with the patches; those without are the same objects."""
+    made = dict(arrays)
+    for patch in found:
+        if made[patch.array] is arrays[patch.array]:
+            made[patch.array] = arrays[patch.array].copy()
+        made[patch.array].reshape(-1)[patch.start : patch.start + len(patch.values)] = patch.values
+    return made
+
+
+def changes_anything(arrays: Mapping[str, NDArray[Any]], patch: Patch) -> bool:
+    """Whether a patch differs from what is there, in any bit."""
+    part = arrays[patch.array].reshape(-1)[patch.start : patch.start + len(patch.values)]
+    return part.tobytes() != np.array(patch.values, dtype=part.dtype).tobytes()

@@ -1,0 +1,233 @@
+"""A model with other numbers: what may be changed, by name, and the same model with new values in its place.
+
+A name is that of a shaft, mass, thermal node or element and a field of it: "engine.inertia", "c1.gain". What is inside
+of a friction law or a signal follows: "c1.friction.kinetic", "c1.pressure.height".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
+
+from clutchwork.base.errors import ModelError, Problem, near
+from clutchwork.base.shown import shown
+from clutchwork.declare.node import (
+    Component,
+    HeatFlow,
+    Law,
+    Node,
+    Rate,
+    Signal,
+    ThermalNode,
+    is_reference,
+)
+from clutchwork.declare.schema import specs
+from clutchwork.model.findings import findings
+from clutchwork.model.model import Model
+from clutchwork.model.problems import NODE_FIELDS
+
+# sorts of fields that are joined, named or called, and make another driveline
+FIXED = ("port", "thermal", "text", "function")
+# fields of a mass by the names of a shaft
+PLACES = ("inertia", "speed", "angle")
+# what may be, or refer to, something that is changed
+REFERS = (Node, ThermalNode, Component, Law, Rate, HeatFlow, tuple)
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a name leads to: the shaft, node or element that has it, and the fields from there."""
+
+    owner: Any
+    path: tuple[str, ...]
+
+
+def named(model: Model) -> dict[str, Any]:
+    """All shafts, masses, thermal nodes and elements by name."""
+    things: list[Any] = [*model.nodes, *model.thermal, *model.elements]
+    return {thing.name: thing for thing in things}
+
+
+def target(owners: Mapping[str, Any], name: object) -> Target | None:
+    """Where a name leads to, None: nowhere."""
+    words = name.split(".") if isinstance(name, str) else []
+    for cut in range(len(words) - 1, 0, -1):
+        owner = owners.get(".".join(words[:cut]))
+        if owner is not None:
+            path = _path(owner, words[cut:])
+            if path:
+                return Target(owner, path)
+    return None
+
+
+def _path(owner: Any, words: list[str]) -> tuple[str, ...]:
+    """The fields that words lead through; nothing where there is no such field."""
+    thing, path = owner, list[str]()
+    for word in words:
+        known = changeable(thing)
+        if word not in known:
+            return ()
+        path.append(known[word])
+        thing = getattr(thing, known[word])
+    return tuple(path)
+
+
+def changeable(thing: Any) -> dict[str, str]:
+    """Fields that may be changed, by the name that users know."""
+    if isinstance(thing, Node):
+        return dict(zip(NODE_FIELDS[thing.domain], PLACES, strict=True))
+    if isinstance(thing, ThermalNode):
+        names = ("temperature",) if thing.capacity is None else ("capacity", "temperature")
+        return {name: name for name in names}
+    if isinstance(thing, Component | Law | Signal):
+        return {item.name: item.name for item, spec in specs(type(thing)) if spec.what not in FIXED}
+    return {}
+
+
+def all_names(model: Model) -> Iterator[str]:
+    """All names that may be changed."""
+    for name, owner in named(model).items():
+        yield from _below(name, owner)
+
+
+def _below(name: str, thing: Any) -> Iterator[str]:
+    for word, item in changeable(thing).items():
+        yield f"{name}.{word}"
+        value = getattr(thing, item)
+        # another element that gives an input has names of its own
+        if isinstance(value, Law | Signal):
+            yield from _below(f"{name}.{word}", value)
+
+
+def changed_model(model: Model, changes: Mapping[str, Any]) -> Model:
+    """The model with other values; ModelError names all that is unknown, and what is wrong with the others."""
+    targets, problems = targets_of(model, changes)
+    made = with_values(model, [(found, changes[name]) for name, found in targets.items()])
+    if problems:
+        raise ModelError([*problems, *findings(made).problems], model.name)
+    return made
+
+
+def targets_of(model: Model, names: Iterable[str]) -> tuple[dict[str, Target], list[Problem]]:
+    """Where names lead to, and those that lead nowhere."""
+    owners, found, problems = named(model), dict[str, Target](), list[Problem]()
+    for name in names:
+        aim = target(owners, name)
+        if aim is None:
+            problems.append(_unknown(model, owners, name))
+        else:
+            found[name] = aim
+    return found, [*problems, *_twice(found)]
+
+
+def _unknown(model: Model, owners: Mapping[str, Any], name: object) -> Problem:
+    path = name if isinstance(name, str) else shown(name)
+    owner, _, last = path.rpartition(".")
+    thing = owners.get(owner)
+    joined = [item.name for item, _ in specs(type(thing), *FIXED)] if isinstance(thing, Component) else []
+    if last in joined or (thing is not None and last == "name"):
+        return Problem(path, "", "is not a number", remedy="build another driveline for it")
+    such = 'names are such as "engine.inertia", "c1.gain", "c1.friction.kinetic"'
+    remedy = near(path, all_names(model)) or f"; {such}"
+    return Problem(path, "", f"is not a number, initial value or signal of this driveline{remedy}")
+
+
+def _twice(targets: Mapping[str, Target]) -> Iterator[Problem]:
+    """Names of a value and of something inside of it."""
+    places = {(id(aim.owner), aim.path): name for name, aim in targets.items()}
+    for name, aim in targets.items():
+        for cut in range(1, len(aim.path)):
+            outer = places.get((id(aim.owner), aim.path[:cut]))
+            if outer is not None:
+                yield Problem(name, "", f"is inside of {outer!r}, which is changed too", remedy="change one of them")
+
+
+def with_values(model: Model, changes: Iterable[tuple[Target, Any]]) -> Model:
+    """The model with other values of the targets; whatever refers to what is changed refers to the new one."""
+    by_owner = dict[int, tuple[Any, list[tuple[tuple[str, ...], Any]]]]()
+    for aim, value in changes:
+        by_owner.setdefault(id(aim.owner), (aim.owner, []))[1].append((aim.path, value))
+    new = Renewed({key: renewed(owner, given) for key, (owner, given) in by_owner.items()})
+    made = model.copy()
+    made.nodes = [new.of(node) for node in model.nodes]
+    made.thermal = [new.of(node) for node in model.thermal]
+    made.elements = [new.of(element) for element in model.elements]
+    # references to parts of composites, which are made anew with these
+    while new.learn(model.elements):
+        made.elements = [new.of(element) for element in model.elements]
+    return made
+
+
+def renewed(thing: Any, changes: Iterable[tuple[tuple[str, ...], Any]]) -> Any:
+    """A declared object with other values at paths of fields."""
+    values, inner = dict[str, Any](), dict[str, list[tuple[tuple[str, ...], Any]]]()
+    for path, value in changes:
+        if len(path) == 1:
+            values[path[0]] = value
+        else:
+            inner.setdefault(path[0], []).append((path[1:], value))
+    values |= {name: renewed(getattr(thing, name), below) for name, below in inner.items()}
+    return replace(thing, **values)
+
+
+@dataclass
+class Renewed:
+    """New objects in the place of old ones, and of all that refer to those."""
+
+    given: Mapping[int, Any]  # old object by identity -> the one with other values
+    made: dict[int, Any] = field(default_factory=dict)  # old object by identity -> what stands in its place
+    parts: dict[str, list[Any]] = field(default_factory=dict)  # of renewed composites, by name
+
+    def of(self, value: Any) -> Any:
+        """What stands in the place of a value."""
+        key = id(value)
+        if key not in self.made:
+            self.made[key] = self._renewed(value, self.given.get(key))
+        return self.made[key]
+
+    def _renewed(self, value: Any, given: Any) -> Any:
+        if isinstance(value, Node | ThermalNode):
+            return given or self._part(value)
+        if isinstance(value, Component) and given is None:
+            part = self._part(value)
+            return self._fields(value) if part is value else part
+        if isinstance(value, tuple) and is_reference(value):
+            target = self.of(value[0])
+            return value if target is value[0] else (target, value[1])
+        return self._fields(given or value) if isinstance(value, Component | Law | Rate | HeatFlow) else value
+
+    def _part(self, value: Any) -> Any:
+        return next((part for part in self.parts.get(value.name, ()) if type(part) is type(value)), value)
+
+    def _fields(self, thing: Any) -> Any:
+        """A thing whose fields refer to what is new; the thing itself where nothing of it is."""
+        values = {}
+        for item in fields(thing):
+            value = getattr(thing, item.name)
+            if isinstance(value, REFERS):
+                new = self.of(value)
+                if new is not value:
+                    values[item.name] = new
+        return replace(thing, **values) if values else thing
+
+    def learn(self, elements: Iterable[Component]) -> bool:
+        """Take in the parts of composites that are new; whether there are more than before."""
+        found = dict[str, list[Any]]()
+        for element in elements:
+            new = self.of(element)
+            for part in _inside(new) if new is not element else ():
+                found.setdefault(part.name, []).append(part)
+        more = found.keys() != self.parts.keys()
+        if more:
+            self.parts = found
+            self.made.clear()
+        return more
+
+
+def _inside(component: Component) -> Iterator[Component | ThermalNode]:
+    """Everything that an element is made of, parts of its parts included."""
+    for part in component.parts():
+        yield part
+        if isinstance(part, Component) and part.name != component.name:
+            yield from _inside(part)

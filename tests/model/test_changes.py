@@ -1,0 +1,326 @@
+"""System.changed: what assembling the driveline with other numbers gives, bit for bit."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import pickle
+import warnings
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from clutchwork.declare.node import Law, Signal
+from clutchwork.declare.schema import REGISTRY, Role, specs
+from clutchwork.model.changes import FIXED, PLACES, all_names, named, target
+from support import random_drivelines, samples, six_speed
+from support.amount import amount
+from support.sweep import sweep
+
+NODE_WORDS = {"rotation": PLACES, "translation": ("mass", "speed", "position")}
+
+
+def built(model: Mapping[str, Any]) -> cw.System:
+    """The System of the content of a model file."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cw.ModelWarning)
+        return cw.Driveline.from_dict(model).assemble()
+
+
+def edited(model: Mapping[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+    """The content of a model file with other values, found by name."""
+    made = copy.deepcopy(dict(model))
+    things = {thing["name"]: thing for sort in made.values() if isinstance(sort, list) for thing in sort}
+    for name, value in changes.items():
+        owner = max((known for known in things if name.startswith(f"{known}.")), key=len)
+        *between, last = name.removeprefix(f"{owner}.").split(".")
+        place = things[owner]
+        for word in between:
+            if word not in place:
+                place[word] = _default(place["type"], word)
+            place = place[word]
+        place[last] = value
+    return made
+
+
+def _default(kind: str, word: str) -> dict[str, Any]:
+    """A law that a model file leaves out, which is that of the declaration."""
+    cls = next(known[kind] for role, known in REGISTRY.items() if role is not Role.LAW and kind in known)
+    law = next(item.default for item, _ in specs(cls, "law") if item.name == word)
+    return {"type": law.kind} | {item.name: getattr(law, item.name) for item, _ in specs(type(law), "param")}
+
+
+def differences(one: cw.System, other: cw.System) -> str:
+    """What of two Systems differs, their models included; "" where nothing does."""
+    found = [name for name, array in one.arrays.items() if array.tobytes() != other.arrays[name].tobytes()]
+    plain = ("name", "counts", "parameters", "notes", "warnings", "independent", "sums", "links", "nodes", "model")
+    found += [name for name in plain if getattr(one, name) != getattr(other, name)]
+    found += ["bytes"] if one.to_bytes() != other.to_bytes() else []
+    found += ["inputs"] if [*map(said, one.inputs)] != [*map(said, other.inputs)] else []
+    # lists here may be tuples there
+    groups = ("elements", "contacts", "motions", "thermal", "flows", "processes")
+    found += [
+        group for group in groups if [*map(plainly, getattr(one, group))] != [*map(plainly, getattr(other, group))]
+    ]
+    gears = [[(row.gear.name, row.ports) for row in made.gears] for made in (one, other)]
+    return ", ".join(found + (["gears"] if gears[0] != gears[1] else []))
+
+
+def said(item: Any) -> tuple[Any, ...]:
+    """An input in plain values."""
+    return item.name, item.unit, item.signal.segments(), item.signal.repeats()
+
+
+def plainly(value: Any) -> Any:
+    """A declared object as its values, all of them in tuples."""
+    if dataclasses.is_dataclass(value):
+        return type(value), *(plainly(getattr(value, item.name)) for item in dataclasses.fields(value))
+    return tuple(map(plainly, value)) if isinstance(value, list | tuple) else value
+
+
+def other_value(value: Any, spec: Any, rng: np.random.Generator) -> Any:
+    """Another value of a field that is likely to be allowed, None where there is none."""
+    factor = float(rng.uniform(1.01, 1.4))
+    if isinstance(value, bool) or getattr(spec, "flag", False):
+        return not value
+    if getattr(spec, "choices", ()):
+        return str(rng.choice(spec.choices))
+    if isinstance(value, int) and getattr(spec, "whole", False):
+        return value + 1
+    if isinstance(value, int | float):
+        return factor * value or factor * 0.1
+    if isinstance(value, Signal):
+        return cw.Ramp(height=factor, duration=0.5)
+    if spec is not None and spec.what == "curve":
+        return [[x, factor * y] for x, y in value] if isinstance(value, list | tuple) else None
+    return None
+
+
+def random_changes(driveline: cw.Driveline, rng: np.random.Generator, most: int) -> dict[str, Any]:
+    """Some values of a driveline, by name."""
+    model, made = driveline._model, dict[str, Any]()
+    names = list(all_names(model))
+    for name in rng.permutation(names)[:most]:
+        aim = target(named(model), str(name))
+        assert aim is not None
+        thing = aim.owner
+        for item in aim.path[:-1]:
+            thing = getattr(thing, item)
+        value = getattr(thing, aim.path[-1])
+        spec = next((s for item, s in specs(type(thing)) if item.name == aim.path[-1]), None)
+        new = other_value(value, spec, rng)
+        outer = any(str(name).startswith(f"{other}.") or other.startswith(f"{name}.") for other in made)
+        if new is not None and not outer:
+            made[str(name)] = new
+    return made
+
+
+def in_file(value: Any) -> Any:
+    """A value as a model file has it."""
+    if isinstance(value, cw.Ramp):
+        return {"type": "ramp", "height": value.height, "duration": value.duration}
+    return value
+
+
+def compared(driveline: cw.Driveline, changes: dict[str, Any]) -> str:
+    """What differs between changed numbers and a driveline with them; mistakes must be mistakes of both."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cw.ModelWarning)
+        # from the content of a file too, so that both hold their tables in lists
+        system = built(driveline.assemble().model)
+        before = system.to_bytes()
+        expected = wrong = None
+        try:
+            expected = built(edited(system.model, {name: in_file(value) for name, value in changes.items()}))
+        except cw.ModelError as error:
+            wrong = error
+        try:
+            made = system.changed(changes)
+        except cw.ModelError as error:
+            return "" if wrong or "speeds independent" in str(error) else f"{changes}: refused: {error}"
+        if wrong:
+            return f"{changes}: taken, but {wrong}"
+        assert expected is not None
+        rest = differences(made, expected)
+        touched = system.to_bytes() != before
+    return f"{changes}: {rest}{' and the old one changed' if touched else ''}" if rest or touched else ""
+
+
+@pytest.mark.parametrize("cls", samples.declared(*samples.ELEMENT_ROLES), ids=lambda cls: cls.kind)
+def test_every_value_of_every_element(cls):
+    driveline = samples.driveline(cls)
+    rng = np.random.default_rng(1)
+    found = list[str]()
+    for name in all_names(driveline._model):
+        for _ in range(20):
+            changes = random_changes(driveline, rng, 1)
+            if changes.keys() == {name}:
+                break
+        found += [text for text in [compared(driveline, changes)] if text]
+    for _ in range(5):
+        found += [text for text in [compared(driveline, random_changes(driveline, rng, 4))] if text]
+    assert not found, "\n".join(found)
+
+
+@pytest.mark.parametrize("cls", samples.declared(Role.LAW), ids=lambda cls: cls.kind)
+def test_every_value_of_every_law(cls):
+    def driveline():
+        d = cw.Driveline("law")
+        plates = d.thermal("plates", capacity=500.0)
+        kinds = {item.name for item, spec in specs(cls, "signal") if spec.unit == "K"}
+        law = cls(**samples.fields(cls, {}))
+        d.add(cw.Brake("x", shaft=d.shaft("a", inertia=1.0), friction=law, gain=1.0, normal_force=2.0, heat=plates))
+        assert not kinds or d.check() == []
+        return d
+
+    rng = np.random.default_rng(2)
+    found = [compared(driveline(), random_changes(driveline(), rng, count)) for count in (1, 1, 1, 2, 2, 3, 4, 5)]
+    assert not any(found), "\n".join(found)
+
+
+@pytest.mark.parametrize("kind", [kind for kind in REGISTRY[Role.SIGNAL] if kind not in ("sampled", "column")])
+def test_every_value_of_every_signal(kind):
+    cls = REGISTRY[Role.SIGNAL][kind]
+    d = cw.Driveline("signal")
+    values = samples.fields(cls, {}) | ({"period": 1.0} if kind == "pulse" else {})
+    d.add(cw.Torque("t", shaft=d.shaft("a", inertia=1.0), torque=cls(**values)))
+    rng = np.random.default_rng(3)
+    found = [compared(d, random_changes(d, rng, count)) for count in (1, 1, 1, 1, 2, 3)]
+    assert not any(found), "\n".join(found)
+
+
+def test_random_drivelines():
+    def check(seed: int) -> str:
+        d = random_drivelines.describe(seed).driveline()
+        rng = np.random.default_rng(seed)
+        return compared(d, random_changes(d, rng, int(rng.integers(1, 6))))
+
+    sweep(check, amount(60))
+
+
+def test_six_speed_gearbox():
+    def check(seed: int) -> str:
+        d = six_speed.gearbox(six_speed.SHIFT)
+        rng = np.random.default_rng(seed)
+        return compared(d, random_changes(d, rng, int(rng.integers(1, 6))))
+
+    sweep(check, amount(40))
+
+
+def test_what_refers_to_what_is_changed():
+    d = cw.Driveline("clutch with its heat and wear")
+    engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)
+    air = d.ambient("air", temperature=295.0)
+    c = d.add(
+        cw.DiskClutch("c", base=engine, follower=load, radius=0.1, pressure=1e5, thermal_mass=500.0, wear_rate=1e-12)
+    )
+    d.add(cw.Convection("cooling", hot=c.plates, cold=air, conductance=20.0))
+    piston = d.add(cw.PressureActuator("piston", command=2e5, lag=0.1))
+    d.add(cw.Brake("b", shaft=load, friction=cw.Coulomb(static=0.2, kinetic=0.1), gain=1e-4, pressure=piston))
+    for changes in (
+        {"c.thermal_mass": 700.0},
+        {"c.initial_temperature": 310.0, "cooling.conductance": 30.0},
+        {"engine.inertia": 0.3, "air.temperature": 280.0},
+        {"piston.lag": 0.2, "c.radius": 0.12, "load.speed": 5.0},
+        {"c.drag": 0.1},
+    ):
+        assert compared(d, changes) == ""
+
+
+def test_changes_add_up_and_settings_stay():
+    d = six_speed.gearbox(six_speed.SHIFT)
+    d.simulation["t_end"] = 3.0
+    system = d.assemble()
+    once = system.changed({"F1.gain": 0.3, "w1.inertia": 20.0})
+    twice = system.changed({"F1.gain": 0.3}).changed({"w1.inertia": 20.0})
+    assert differences(once, twice) == ""
+    assert once.settings == system.settings
+    assert system.params[system.parameters["F1.gain"]] == six_speed.GAIN["F1"]
+    assert differences(pickle.loads(pickle.dumps(once)), once) == ""
+    assert once.changed({}).to_bytes() == once.to_bytes()
+
+
+def test_independent_speeds_that_were_asked_for_stay():
+    d = cw.Driveline("x")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=9.0)
+    d.add(cw.Gear("g", input=a, output=b, ratio=2.0))
+    assert d.assemble().changed({"a.inertia": 20.0}).independent == ("a",)
+    assert d.assemble(independent=("b",)).changed({"a.inertia": 20.0}).independent == ("b",)
+    assert d.assemble(independent=("a",)).changed({"g.ratio": 3.0}).independent == ("a",)
+
+
+def test_all_mistakes_at_once():
+    system = six_speed.gearbox(six_speed.SHIFT).assemble()
+    with pytest.raises(cw.ModelError) as caught:
+        system.changed({"F1.gian": 1.0, "F2.gain": -1.0, "row1.sun": 3, "F1.friction.static": 0.01, 7: 1.0})
+    text = str(caught.value)
+    assert "did you mean 'F1.gain'?" in text
+    assert 'cw.Clutch("F2"): gain = -1.0 m3: must be > 0 m3' in text
+    assert "row1.sun: is not a number; build another driveline for it" in text
+    assert "friction.static = 0.01: is below the kinetic coefficient at vanishing slip" in text
+    assert len(caught.value.problems) == 5
+
+
+def test_a_value_and_what_is_inside_of_it():
+    system = six_speed.gearbox(six_speed.SHIFT).assemble()
+    with pytest.raises(cw.ModelError, match=r"F1\.friction\.fast: is inside of 'F1\.friction', which is changed too"):
+        system.changed({"F1.friction.fast": 0.1, "F1.friction": cw.Coulomb(static=0.2, kinetic=0.1)})
+
+
+def test_a_ratio_that_makes_rows_dependent():
+    d = cw.Driveline("two ways round")
+    a, b, c, e = (d.shaft(name, inertia=1.0) for name in "abce")
+    d.add(cw.Planetary("p", sun=a, ring=b, carrier=c, ratio=2.0))
+    d.add(cw.Planetary("q", sun=a, ring=b, carrier=e, ratio=3.0))
+    d.add(cw.Gear("g", input=c, output=e, ratio=1.0))
+    with pytest.raises(cw.ModelError, match=r"q\.ratio: makes \d speeds independent, where \d were; build a driveline"):
+        d.assemble().changed({"q.ratio": 2.0})
+
+
+def test_a_ratio_that_holds_shafts_or_frees_them():
+    d = cw.Driveline("two gears")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.Gear("g1", input=a, output=b, ratio=2.0))
+    d.add(cw.Gear("g2", input=a, output=b, ratio=2.0))
+    with pytest.raises(cw.ModelError, match="contradict each other"):
+        d.assemble().changed({"g2.ratio": 3.0})
+    with pytest.raises(cw.ModelError, match="contradict each other"):
+        d.assemble().changed({"a.inertia": 2.0, "g1.ratio": 3.0})
+
+
+def test_bytes_have_no_names():
+    system = cw.System.from_bytes(six_speed.gearbox(six_speed.SHIFT).assemble().to_bytes())
+    with pytest.raises(cw.ModelError, match="numbers without names, because it was made from bytes"):
+        system.changed({"F1.gain": 1.0})
+
+
+def test_new_warnings_are_given_once():
+    d = cw.Driveline("x")
+    d.add(cw.Torque("t", shaft=d.shaft("a", inertia=1.0), torque=1.0))
+    d.thermal("plates", capacity=100.0, temperature=300.0)
+    system = d.assemble()
+    with pytest.warns(cw.ModelWarning, match="did you mean 293"):
+        cold = system.changed({"plates.temperature": 20.0})
+    assert len(cold.warnings) == 1
+    assert cold.changed({"t.torque": 2.0}).warnings == cold.warnings
+
+
+def test_signals_of_the_model_itself_may_change_later():
+    points = [(0.0, 1.0), (1.0, 2.0)]
+    d = cw.Driveline("x")
+    d.add(cw.Torque("t", shaft=d.shaft("a", inertia=1.0), torque=0.0))
+    system = d.assemble().changed({"t.torque": cw.Table(points)})
+    before = system.to_bytes()
+    points[1] = (1.0, 5.0)
+    assert system.changed({"a.speed": 1.0}).changed({"a.speed": None}).to_bytes() == before
+
+
+def test_only_fields_with_values_have_names():
+    d = six_speed.gearbox(six_speed.SHIFT)
+    names = set(all_names(d._model))
+    assert {"w1.inertia", "w1.speed", "w1.angle", "F1.gain", "F1.friction.fast", "F1.pressure.points"} <= names
+    assert not any(name.rpartition(".")[2] in FIXED for name in names)
+    assert not isinstance(d.elements[0], Law)
