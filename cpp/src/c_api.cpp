@@ -132,7 +132,8 @@ int cw_advance(cw_run* run, double t_end, double* times, double* rows, std::int6
   if (n > 0 && (times == nullptr || rows == nullptr)) return -1;
   // a step fills its rows and up to two more, at an event
   if (steps > 0 && n < std::int64_t(steps) + 2) return int(Status::rows_full);
-  Sink sink{times, rows, n, 0, steps};
+  Sink sink;
+  sink.times = times, sink.rows = rows, sink.count = n, sink.steps = steps;
   run->ws.detail.row = -1;
   const Status status = advance(run->ws, t_end, sink);
   if (filled != nullptr) *filled = sink.at;

@@ -108,6 +108,16 @@ def test_output_grids() -> None:
     assert np.max(np.diff(smooth.time)) <= 2.0 / 1000 + 1e-12
 
 
+def test_the_right_limit_is_that_of_the_last_decision_at_an_instant(root: Path) -> None:
+    """The launch of the six-speed gearbox locks F1, and at once something else is decided again."""
+    launch = cw.Driveline.load(root / "examples/six_speed/model.toml")
+    smooth = launch.simulate()
+    locked = max(event.time for event in smooth.events)
+    assert list(smooth.time).count(locked) == 2
+    states = launch.simulate(times=[locked, locked, np.nextafter(locked, 4.0)])["F1.state"]
+    assert list(states) == ["forward", "locked", "locked"]
+
+
 def test_a_jump_of_a_signal_shows_both_limits() -> None:
     d = cw.Driveline()
     shaft = d.shaft("a", inertia=1.0)

@@ -17,7 +17,18 @@ struct Sink {
   double* rows = nullptr;
   std::int64_t count = 0;  ///< rows that fit
   std::int64_t at = 0;     ///< rows filled
-  std::int64_t steps = 0;  ///< rows in every step, the last at its end; 0: a grid
+  std::int64_t steps = 0;        ///< rows in every step, the last at its end; 0: a grid
+  double restarted = -infinity;  ///< [s] where a phase has started last
+  std::int64_t restart_row = 0;  ///< rows before those of that start
+
+  /// A phase starts at time t: of several decisions at one instant the last one is the right limit.
+  void restart(double t) {
+    if (t == restarted) {
+      at = restart_row;
+    } else {
+      restarted = t, restart_row = at;
+    }
+  }
 };
 
 /// Integral of prescribed speed p from t over h.
@@ -195,6 +206,7 @@ void rest_step(Form& form, Step<Form>& step) {
 /// Rows at the instant at which a phase starts. `running`: all is well.
 template <class Form>
 Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
+  if (fresh) sink.restart(form.ws.time);
   if (!(sink.steps > 0 ? fresh : sink.at < sink.count && sink.times[sink.at] <= form.ws.time)) return Status::running;
   rest_step(form, step);
   if (sink.steps == 0) {

@@ -175,7 +175,9 @@ class Phase {
 
   /// Rows and integrals of the step up to the share s. False: a row is not finite, or the caller wants to stop.
   CLUTCHWORK_INLINE bool write(double s) {
-    const bool rows = sink_.steps > 0 || (sink_.at < sink_.count && sink_.times[sink_.at] <= ws_.time + s * reach_);
+    const double end = ws_.time + s * reach_;
+    // where no time passes the row is there already
+    const bool rows = end > ws_.time && (sink_.steps > 0 || (sink_.at < sink_.count && sink_.times[sink_.at] <= end));
     if (!(rows || ws_.options.work || ws_.options.angles) || s <= 0) return true;
     if (!step_.dense) Integrator::prepare_dense(form_, step_);
     if (ws_.options.work) fit_power(form_, step_, s);
