@@ -3,6 +3,7 @@
 #   make test     all tests: C++ core under sanitizers, then Python
 #   make check    format, lint, types, import contracts, spelling
 #   make bench    speed against peers; ARGS="--write" puts the table into docs/benchmarks.md
+#   make wheel    a wheel for other machines like this one, tried without a compiler: dist/
 #   make docs     the documentation: build/docs/index.html
 #   make setup    the environment alone
 #   make clean    removes .venv, build and out
@@ -29,15 +30,15 @@ CORE_SOURCES := $(shell find CMakeLists.txt cpp interfaces $(addprefix src/clutc
 	$(wildcard tools/gen_registry.py tools/registry/*.py tools/gen_stubs.py)
 CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*.cpp' 'interfaces/*.hpp' 'tests/cpp/*.cpp' 'tests/cpp/*.hpp')
 
-.PHONY: help setup demo test test-cpp test-python check format bench docs picture clean
+.PHONY: help setup demo test test-cpp test-python check format bench wheel docs picture clean
 .DELETE_ON_ERROR:
 
 help:
-	@sed -n '2,8p' Makefile | cut -c 3-
+	@sed -n '2,9p' Makefile | cut -c 3-
 
 # ---------------------------------------------------------------- environment
 
-setup: $(STAMPS)/package
+setup: $(STAMPS)/package $(STAMPS)/plot
 
 $(STAMPS)/venv: tools/prerequisites.sh
 	@tools/prerequisites.sh $(PYTHON) $(CXX)
@@ -46,35 +47,31 @@ $(STAMPS)/venv: tools/prerequisites.sh
 	@mkdir -p $(STAMPS)
 	@touch $@
 
-$(STAMPS)/tools: $(STAMPS)/venv pyproject.toml tools/extras.py
-	@echo "installing what the build and the tests need"
-	@$(PIP) install $$($(BIN)/python tools/extras.py build test)
+# a stamp for each purpose, named as its extra in pyproject.toml
+EXTRAS := build plot test check docs bench wheel
+$(EXTRAS:%=$(STAMPS)/%): $(STAMPS)/%: $(STAMPS)/venv pyproject.toml tools/extras.py
+	@echo "installing what '$*' needs"
+	@$(BIN)/python tools/extras.py $* | $(PIP) install --no-compile --requirement /dev/stdin
 	@touch $@
 
-$(STAMPS)/package: $(STAMPS)/tools $(CORE_SOURCES)
-	@echo "building and installing clutchwork (some minutes)"
+$(STAMPS)/package: $(STAMPS)/build $(CORE_SOURCES)
+	@echo "building and installing clutchwork (a minute or two)"
 	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH" \
 		$(PIP) install --no-build-isolation --no-deps --editable .
 	@touch $@
 
-$(STAMPS)/check $(STAMPS)/docs $(STAMPS)/bench: $(STAMPS)/%: $(STAMPS)/tools
-	@echo "installing what 'make $*' needs"
-	@$(PIP) install $$($(BIN)/python tools/extras.py $*)
-	@touch $@
-
 # ---------------------------------------------------------------- what people want
 
-demo: $(STAMPS)/package
-	@mkdir -p out/demo
-	@$(BIN)/clutchwork run examples/six_speed/model.toml --out out/demo
+demo: $(STAMPS)/package $(STAMPS)/plot
+	@$(BIN)/clutchwork demo
 
 # both parts run, a failure of either fails the target, and pytest has the last word
-test: $(STAMPS)/package
+test: $(STAMPS)/package $(STAMPS)/test
 	@cpp=0; $(MAKE) --no-print-directory test-cpp || cpp=$$?; \
 	if [ $$cpp -ne 0 ]; then echo "the C++ tests FAILED; the Python tests follow"; fi; \
 	$(PYTEST) && exit $$cpp
 
-test-cpp: $(STAMPS)/tools
+test-cpp: $(STAMPS)/build
 	@mkdir -p build
 	@$(BIN)/cmake -S . -B build/cpp -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja \
 		-DCMAKE_CXX_COMPILER=$(CXX) -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
@@ -83,7 +80,7 @@ test-cpp: $(STAMPS)/tools
 	@$(BIN)/cmake --build build/cpp --parallel $(JOBS) >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
 	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure
 
-test-python: $(STAMPS)/package
+test-python: $(STAMPS)/package $(STAMPS)/test
 	@$(PYTEST)
 
 # every checker runs, so that one call shows all there is to fix
@@ -110,8 +107,23 @@ docs: $(STAMPS)/package $(STAMPS)/docs
 	@$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/docs
 	@echo "build/docs/index.html"
 
+# repaired to a manylinux tag on Linux, then tried in an environment of its own
+wheel: $(STAMPS)/wheel
+	@rm -rf build/wheel && mkdir -p build/wheel dist
+	@echo "building the wheel"
+	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH" \
+		$(PIP) wheel --no-build-isolation --no-deps --wheel-dir build/wheel/raw .
+	@if [ "$$(uname)" = Linux ]; then \
+		PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m auditwheel repair --wheel-dir build/wheel/good build/wheel/raw/*.whl; \
+	else mv build/wheel/raw build/wheel/good; fi
+	@echo "trying it in an environment of its own"
+	@$(PYTHON) -m venv build/wheel/venv
+	@build/wheel/venv/bin/python -m pip --disable-pip-version-check --quiet install "$$(echo build/wheel/good/*.whl)[plot]"
+	@build/wheel/venv/bin/python tools/try_installed.py
+	@cp build/wheel/good/*.whl dist && cd build/wheel/good && for made in *.whl; do echo "dist/$$made"; done
+
 # the picture at the top of the README
-picture: $(STAMPS)/package
+picture: $(STAMPS)/package $(STAMPS)/plot
 	@$(BIN)/python docs/figures/engagement.py docs/_static/engagement.png
 
 clean:

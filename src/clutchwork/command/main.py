@@ -9,6 +9,7 @@ import sys
 import warnings
 from collections.abc import Callable, Sequence
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -90,7 +91,13 @@ def _check_parser(check: argparse.ArgumentParser) -> None:
 
 def _demo_parser(demo: argparse.ArgumentParser) -> None:
     demo.set_defaults(command=_demo)
-    demo.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "demo"), help="default: out/demo")
+    demo.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        default=Path("out", "demo"),
+        help="folder for shift.png, trajectory.csv, events.csv; default: out/demo",
+    )
     demo.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
 
 
@@ -173,19 +180,25 @@ def _check(asked: argparse.Namespace) -> int:
 
 
 def _demo(asked: argparse.Namespace) -> int:
-    """The demonstration is a plain run of the model in the examples."""
-    model = _demo_model()
-    line = ["run", str(model), "--out", str(asked.out), "--plot", str(asked.out / "shift.png")]
-    return int(_run(parser().parse_args([*line, "--json"] if asked.json else line)))
+    """The demonstration is a plain run of a model of the examples; its picture needs a package that a user may lack."""
+    out = asked.out
+    line = ["run", str(_demo_model()), "--csv", str(out / "trajectory.csv"), "--events", str(out / "events.csv")]
+    drawn = find_spec("matplotlib") is not None
+    if drawn:
+        line += ["--plot", str(out / "shift.png")]
+    code = int(_run(parser().parse_args([*line, "--json"] if asked.json else line)))
+    if not drawn:
+        print("clutchwork: no picture, which needs matplotlib: pip install 'clutchwork[plot]'", file=sys.stderr)
+    return code
 
 
 def _demo_model() -> Path:
-    """The model beside the sources, or below the working directory or one above it."""
-    here = Path.cwd()
-    for folder in (Path(__file__).resolve().parents[3], here, *here.parents):
+    """The model that ships with the package; in a checkout the one of the examples."""
+    package = Path(__file__).resolve().parents[1]
+    for folder in (package, package.parents[1]):
         if (folder / DEMO).is_file():
             return folder / DEMO
-    raise FileNotFoundError(f"{DEMO} not found: run this in the folder of the clutchwork sources")
+    raise FileNotFoundError(f"{package / DEMO} not found: install clutchwork again")
 
 
 def _shafts(system: System, asked: str | None) -> tuple[str, str] | None:
