@@ -50,7 +50,7 @@ def run(folder: Path, *command: str) -> str:
 
 
 def main() -> None:
-    """Try it; the exit code tells."""
+    """Ends with an error where something fails or is missing."""
     with TemporaryDirectory() as name:
         folder = Path(name).resolve()
         package = Path(run(folder, sys.executable, "-c", WHERE).strip())

@@ -127,6 +127,13 @@ def test_type_checkers_and_editors_know_the_examples(site: Path) -> None:
 
 
 @pytest.mark.slow
+def test_the_demonstration_runs_from_what_is_installed(site: Path, tmp_path: Path) -> None:
+    shown = project.run_in(site, "-m", "clutchwork", "demo", folder=tmp_path)
+    assert "2.4886 -> 1.8302 by gears" in shown.stdout, shown.stderr
+    assert (site / "clutchwork/examples/six_speed/pressures.csv").is_file()
+
+
+@pytest.mark.slow
 def test_the_examples_compute_what_they_say(site: Path, tmp_path: Path) -> None:
     used = project.run_in(site, "-c", USE, str(tmp_path / "model.toml"))
     assert used.stdout.strip() == "used", used.stderr

@@ -87,13 +87,17 @@ def test_check_lists_the_gears(capsys: pytest.CaptureFixture[str]) -> None:
     assert gears["F1", "F6"] == pytest.approx(1 / 3.35, abs=1e-12)
 
 
-def test_the_demonstration(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_demonstration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("matplotlib")
-    assert main(["demo", "--out", str(tmp_path)]) == 0
+    # an empty folder: the model comes with the package
+    monkeypatch.chdir(tmp_path)
+    assert main(["demo"]) == 0
     out = capsys.readouterr().out
     assert "2.4886 -> 1.8302 by gears" in out
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["events.csv", "shift.png", "trajectory.csv"]
-    events = [line.split(",") for line in (tmp_path / "events.csv").read_text().splitlines()[1:]]
+    written = [Path("out", "demo", name) for name in ("shift.png", "trajectory.csv", "events.csv")]
+    assert [line for line in out.splitlines() if line.startswith("wrote")] == [f"wrote {path}" for path in written]
+    assert sorted(path.relative_to(tmp_path) for path in tmp_path.rglob("*.*")) == sorted(written)
+    events = [line.split(",") for line in written[2].read_text().splitlines()[1:]]
     assert [line[1:4] for line in events] == [
         ["F2", "backward", "locked"],
         ["F2", "locked", "backward"],
@@ -103,6 +107,25 @@ def test_the_demonstration(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     # from an independent solver at rtol 1e-9; ours runs at 1e-6 here
     times = [0.5480809432868581, 2.149267898385477, 2.2428855485606327, 2.7397556553095317]
     assert [float(line[0]) for line in events] == pytest.approx(times, abs=1e-6)
+
+
+def test_the_demonstration_without_matplotlib(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("clutchwork.command.main.find_spec", lambda name: None)
+    assert main(["demo", "--out", str(tmp_path)]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["events.csv", "trajectory.csv"]
+    assert "clutchwork[plot]" in capsys.readouterr().err
+
+
+def test_the_demonstration_of_a_damaged_installation(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("clutchwork.command.main.DEMO", Path("examples", "none.toml"))
+    assert main(["demo"]) == 4
+    told = capsys.readouterr().err
+    assert "none.toml not found" in told
+    assert "install clutchwork again" in told
 
 
 def test_every_mistake_of_a_model_is_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

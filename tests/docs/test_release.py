@@ -1,0 +1,80 @@
+"""What the release builds, tries and publishes: workflow, pyproject.toml and README say the same."""
+
+from __future__ import annotations
+
+import re
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tools"))
+import try_installed  # noqa: E402
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+WHEELS = PROJECT["tool"]["cibuildwheel"]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def jobs() -> dict[str, Any]:
+    """The jobs of the workflow."""
+    return yaml.safe_load((ROOT / ".github/workflows/release.yml").read_text(encoding="utf-8"))["jobs"]
+
+
+def test_wheels_are_built_for_every_python_that_is_promised() -> None:
+    built = [int(minor) for minor in re.findall(r"cp3(\d+)-\*", WHEELS["build"])]
+    assert built == list(range(built[0], built[-1] + 1))
+    assert PROJECT["project"]["requires-python"] == f">=3.{built[0]}"
+    assert f"wheels for Linux, macOS and Windows and Python 3.{built[0]} to 3.{built[-1]}" in README
+
+
+def test_wheels_are_built_for_every_system_that_is_promised(jobs: dict[str, Any]) -> None:
+    names = {row["name"]: row["os"] for row in jobs["wheels"]["strategy"]["matrix"]["include"]}
+    assert set(names) == {"linux-x86_64", "linux-aarch64", "macos-x86_64", "macos-arm64", "windows-x86_64"}
+    assert all({"linux": "ubuntu"}.get(name.split("-")[0], name.split("-")[0]) in os for name, os in names.items())
+    classifiers = " ".join(PROJECT["project"]["classifiers"])
+    assert all(system in classifiers for system in ("Linux", "MacOS", "Windows"))
+
+
+def test_the_core_is_not_given_to_a_compiler_that_it_refuses() -> None:
+    told = re.search(r"set (CMAKE_\w+)=(\w+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))
+    assert told
+    assert WHEELS["windows"]["environment"][told[1]] == told[2]
+
+
+def test_every_wheel_and_the_sdist_are_tried(jobs: dict[str, Any]) -> None:
+    command = WHEELS["test-command"].split()
+    assert command == ["python", "{project}/tools/try_installed.py"]
+    assert WHEELS["test-extras"] == ["plot"]
+    assert "tools/try_installed.py" in str(jobs["sdist"])
+    assert "tools/try_installed.py" in (ROOT / "Makefile").read_text(encoding="utf-8")
+
+
+def test_only_a_tag_whose_files_are_all_built_is_published(jobs: dict[str, Any]) -> None:
+    publish = jobs["publish"]
+    assert set(publish["needs"]) == {"wheels", "sdist"}
+    assert publish["if"] == "startsWith(github.ref, 'refs/tags/v')"
+    # trusted publishing: a token of the job, no secret
+    assert publish["permissions"] == {"id-token": "write"}
+    assert "secrets." not in str(jobs)
+
+
+def test_what_is_tried_is_the_program_of_the_readme() -> None:
+    program = try_installed.first_program(README)
+    assert program.startswith("import clutchwork as cw")
+    assert 'run.plot("engagement.png")' in program
+    assert "engagement.png" in try_installed.WRITTEN
+    with pytest.raises(SystemExit, match="no first program"):
+        try_installed.first_program("# clutchwork")
+
+
+def test_it_is_tried_without_compiler_and_without_the_checkout(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(ROOT / "src"))
+    used = try_installed.environment()
+    assert "PYTHONPATH" not in used
+    assert not [name for name in ("c++", "g++", "cc", "cmake.exe") if (Path(used["PATH"]) / name).exists()]
