@@ -189,9 +189,33 @@ inline bool contact_fits(const System& s, std::int64_t i, std::int64_t& states) 
   return s.contact_state[i] + states <= s.states - s.shared;
 }
 
+/// Whether the rows of a matrix end in order, each with speeds in ascending order.
+inline bool rows_fit(const System& s, const std::int32_t* end, const std::int32_t* column, std::int64_t rows,
+                     std::int64_t entries) {
+  std::int64_t at = 0;
+  for (std::int64_t i = 0; i < rows; ++i) {
+    if (end[i] < at || end[i] > entries) return false;
+    for (const std::int64_t first = at; at < end[i]; ++at) {
+      if (column[at] < 0 || column[at] >= s.speeds || (at > first && column[at] <= column[at - 1])) return false;
+    }
+  }
+  return at == entries;
+}
+
+/// Whether the matrices are ones, and no room is larger than the whole matrix.
+inline bool matrices_fit(const System& s) {
+  const std::int64_t nv = s.speeds, nc = s.contacts, nd = s.elements + nc, half = nv * (nv + 1) / 2;
+  return rows_fit(s, s.basis_end, s.basis_column, s.nodes, s.basis_entries) &&
+         rows_fit(s, s.mass_end, s.mass_column, nv, s.mass_entries) &&
+         rows_fit(s, s.element_rate_end, s.element_rate_column, s.elements, s.element_rate_entries) &&
+         rows_fit(s, s.contact_rate_end, s.contact_rate_column, nc, s.contact_rate_entries) && s.factor_room <= half &&
+         s.direction_room <= nd * nv && s.mobility_room <= nc * (nc + 1) / 2 && s.expansion_room <= nv * (nv + 1) &&
+         s.rate_room <= nd * nv && s.mass_room <= half && s.envelope_room <= half && s.spares <= nc && s.set_size <= nc;
+}
+
 /// Offsets and numbers inside the system that the core follows without looking.
 inline bool in_range(const System& s) {
-  bool good = offsets_in_range(s) && shared_in_range(s);
+  bool good = offsets_in_range(s) && shared_in_range(s) && matrices_fit(s);
   for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
   std::int64_t all = 0, own = 0;
   for (std::int64_t i = 0; good && i < s.elements; ++i, all += own) good = element_fits(s, i, own);

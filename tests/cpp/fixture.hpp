@@ -70,6 +70,22 @@ struct Segment {
 enum Source : std::int32_t { of_signal, of_shared, of_rate, of_contact_rate, of_heat, of_contact_heat };
 constexpr std::int32_t source(Source what, int number) { return std::int32_t(what) * 1000 + number; }
 
+/// A matrix by rows without its zeros.
+struct Sparse {
+  Indices end, column;
+  Numbers value;
+
+  Sparse(const Numbers& dense, int rows, int columns) {
+    for (int i = 0; i < rows; ++i) {
+      for (int j = 0; j < columns; ++j) {
+        const double x = dense[std::size_t(i * columns + j)];
+        if (x != 0) column.push_back(j), value.push_back(x);
+      }
+      end.push_back(std::int32_t(column.size()));
+    }
+  }
+};
+
 class Model {
  public:
   int shaft(double inertia, double speed = 0) {
@@ -203,14 +219,45 @@ class Model {
     const std::vector<char> magic{'C', 'L', 'U', 'T', 'C', 'H', 'W', 'K'};
     add(magic);
     auto count = [](const auto& items) { return std::int64_t(items.size()); };
-    add(std::vector<std::int64_t>{schema_hash, n, nv, np, count(elements_), count(contacts_), count(states), nx,
-                                  count(flow_kind_), count(process_kind_), count(heats_), count(input_first_),
-                                  count(segment_time_), count(params_), count(points_) / 3, count(refs_)});
-    add(rates(all, free_of, nv)), add(rates(all, given_of, np)), add(inertia_), add(mass), add(none);
+    const Sparse basis(rates(all, free_of, nv), n, nv), inertias(mass, nv, nv),
+        element_rate(rates(elements_, free_of, nv), ne, nv), contact_rate(rates(contacts_, free_of, nv), nd - ne, nv);
+    auto put = [&](const Sparse& m) { add(m.end), add(m.column), add(m.value); };
+    // room for whole matrices, whatever the number of speeds
+    const std::int64_t half = nv * (nv + 1) / 2, nc = nd - ne;
+    add(std::vector<std::int64_t>{schema_hash,
+                                  n,
+                                  nv,
+                                  np,
+                                  count(elements_),
+                                  count(contacts_),
+                                  count(states),
+                                  nx,
+                                  count(flow_kind_),
+                                  count(process_kind_),
+                                  count(heats_),
+                                  count(input_first_),
+                                  count(segment_time_),
+                                  count(params_),
+                                  count(points_) / 3,
+                                  count(refs_),
+                                  count(basis.column),
+                                  count(inertias.column),
+                                  count(element_rate.column),
+                                  count(contact_rate.column),
+                                  half,
+                                  nd * nv,
+                                  nc * (nc + 1) / 2,
+                                  nv * (nv + 1),
+                                  nd * nv,
+                                  half,
+                                  half,
+                                  nc,
+                                  nc});
+    put(basis), add(rates(all, given_of, np)), add(inertia_), put(inertias), add(none);
     add(Indices(nv));
-    add(rates(elements_, free_of, nv)), add(rates(elements_, given_of, np));
+    put(element_rate), add(rates(elements_, given_of, np));
     add(element_kind_), add(element_param_), add(element_state_), add(element_input_);
-    add(rates(contacts_, free_of, nv)), add(rates(contacts_, given_of, np));
+    put(contact_rate), add(rates(contacts_, given_of, np));
     add(contact_kind_), add(contact_param_), add(contact_input_), add(contact_law_), add(contact_law_param_);
     add(contact_law_input_), add(contact_state_), add(contact_tolerance_), add(contact_initial_);
     add(flow_kind_), add(flow_param_), add(flow_input_), add(flow_from_), add(flow_to_);

@@ -136,4 +136,30 @@ inline Model parallel() {
   return m;
 }
 
+/// More speeds than are treated as few: clutches in a row, one beside another, a ring, a freewheel, a prescribed shaft.
+inline Model long_row() {
+  Model m;
+  const int pulse = m.signal({{0, {30}}, {0.2, {30, -150}}, {0.5, {0, 200}}}, 0, 0.8), still = m.constant(25);
+  const int push = m.signal({{0, {40, 0, 0, 0, 30, 9, 0, 0}}, {1.2, {-40}}}), load = m.constant(5);
+  const int n = few_speeds + 4;
+  for (int i = 0; i < n; ++i) m.shaft(0.1 + 0.02 * i, 20.0 - i);
+  const int given = m.prescribed(0, m.signal({{0, {12, 0, 0, 0, 5, 3, 0, 0}}}));
+  m.element<elements::Torque>(housing, 0, {}, {push});
+  m.element<elements::ResistingTorque>(housing, n - 1, {1}, {load});
+  m.element<elements::SpringDamper>(2, 3, {800, 1.5, 0});
+  for (int i = 0; i + 1 < n; ++i) {
+    if (i == 2) continue;
+    if (i == 5)
+      m.contact<elements::OneWayClutch, laws::Coulomb>(i, i + 1, {1}, {still}, {0.4, 0.3});
+    else if (i % 4 == 1)
+      m.contact<elements::Clutch, laws::Coulomb>(i, i + 1, {1}, {pulse}, {0.6, 0.5});
+    else
+      m.contact<elements::Clutch, laws::Exponential>(i, i + 1, {0.4}, {still}, {0.8, 0.7, 0.5, 3});
+  }
+  m.contact<elements::Clutch, laws::Coulomb>(8, 9, {1}, {pulse}, {0.3, 0.2});
+  m.contact<elements::Clutch, laws::Coulomb>(10, 12, {1}, {still}, {0.2, 0.1});
+  m.contact<elements::Clutch, laws::Coulomb>(given, 4, {1}, {pulse}, {0.3, 0.2});
+  return m;
+}
+
 }  // namespace fixture

@@ -2,6 +2,7 @@
 
 #include <clutchwork/workspace.hpp>
 //
+#include <clutchwork/components/dense.hpp>
 #include <clutchwork/contacts/problem.hpp>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace {
 struct Problem {
   int n;
   Numbers matrix, gradient, lower, upper, weight, x, slope, trial, factor, capacity;
-  std::vector<int> bound, free;
+  std::vector<int> bound, free, numbers, last, row, low, sky, near_low, near_sky;
   explicit Problem(int size)
       : n(size),
         matrix(std::size_t(n * n)),
@@ -30,10 +31,43 @@ struct Problem {
         factor(std::size_t(n * n)),
         capacity(n),
         bound(n),
-        free(n) {}
-  bool run() {
-    BoundedProblem<double> p{n,        matrix.data(), gradient.data(), lower.data(),  upper.data(), weight.data(),
-                             x.data(), slope.data(),  trial.data(),    factor.data(), bound.data(), free.data()};
+        free(n),
+        numbers(n),
+        last(n, n - 1),
+        row(n),
+        low(n),
+        sky(n),
+        near_low(n),
+        near_sky(n) {
+    for (int i = 0; i < n; ++i) numbers[i] = i;
+  }
+  /// Solve it, the matrix whole or without the zeros before the first number of each row.
+  bool run(bool whole = true) {
+    Envelope all{low.data(), sky.data()};
+    for (int i = 0; i < n; ++i) {
+      low[i] = 0;
+      while (matrix[i * n + low[i]] == 0 && low[i] < i) ++low[i];
+    }
+    Numbers lower_half(std::size_t(whole ? all.lay_whole(n) : all.lay(n))), diagonal(n);
+    for (int i = 0; i < n; ++i) {
+      for (int j = low[i]; j <= i; ++j) lower_half[sky[i] + j] = matrix[i * n + j];
+      diagonal[i] = matrix[i * n + i];
+    }
+    const int* own = numbers.data();
+    const Neighbours<double> g{n, all, lower_half.data(), diagonal.data(), own, own, last.data(), own, row.data()};
+    BoundedProblem<double> p{n,
+                             g,
+                             gradient.data(),
+                             lower.data(),
+                             upper.data(),
+                             weight.data(),
+                             x.data(),
+                             slope.data(),
+                             trial.data(),
+                             Envelope{near_low.data(), near_sky.data()},
+                             factor.data(),
+                             bound.data(),
+                             free.data()};
     capacity_weights(p, capacity.data());
     return solve(p);
   }
@@ -180,10 +214,34 @@ void plain_cases() {
   CHECK_NEAR(p.x[1] / p.x[0], 2, 1e-6);
 }
 
+/// Contacts between neighbours in a row of speeds: without the zeros the torques are those of the whole matrix.
+void rows_of_neighbours() {
+  check::Random g{3};
+  for (int round = 0; round < 300; ++round) {
+    const int n = 2 + g.below(40), k = n + 1;
+    Problem p(n);
+    Numbers rows(std::size_t(n * k)), a(k);
+    for (double& v : a) v = g.between(-1, 1);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j <= g.below(3); ++j) rows[i * k + smaller(i + j, k - 1)] = g.between(0.1, 1) * (j % 2 ? -1 : 1);
+      if (g.below(10) == 0) rows[i * k + g.below(k)] = 1;
+    }
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) p.matrix[i * n + j] = dot(k, &rows[i * k], &rows[j * k]);
+      p.gradient[i] = dot(k, &rows[i * k], a.data());
+      p.upper[i] = p.capacity[i] = g.between(0, 1), p.lower[i] = -p.upper[i];
+    }
+    Problem sparse = p;
+    CHECK(p.run(true) && sparse.run(false));
+    for (int i = 0; i < n; ++i) CHECK_NEAR(sparse.slope[i], p.slope[i], 1e-9);
+  }
+}
+
 }  // namespace
 
 int main() {
   random_problems();
+  rows_of_neighbours();
   plain_cases();
   return check::result();
 }

@@ -44,7 +44,7 @@ void corrupt(const Model& model, std::uint64_t seed, int rounds) {
   const Bytes whole = model.bytes();
   System sys{};
   bind(sys, whole.data(), std::int64_t(whole.size()));
-  const auto head = std::size_t(reinterpret_cast<const unsigned char*>(sys.basis) - whole.data());
+  const auto head = std::size_t(reinterpret_cast<const unsigned char*>(sys.basis_end) - whole.data());
   check::Random g{seed};
   for (std::size_t n = 0; n < head + 100; ++n) survive(Bytes(whole.begin(), whole.begin() + std::ptrdiff_t(n)));
   constexpr std::int32_t numbers[] = {-1, 1, 2, 3, 4, 5, 8, 12, 40, 1000, 0x7fffffff, -0x7fffffff - 1};
@@ -171,6 +171,7 @@ int main() {
   corrupt(bristles(), 5, 800);
   corrupt(hysteresis(), 6, 600);
   corrupt(warm(), 7, 600);
+  corrupt(long_row(), 8, 2000);
   odd_parameters(bristles());
   odd_parameters(hysteresis());
   odd_parameters(warm());

@@ -343,9 +343,9 @@ int main() {
   not_finite();
   state_not_finite();
   stops_when_asked();
-  const Model models[] = {three_shafts(), chain(), bristles(), hysteresis(), warm(), driven(), parallel()};
+  const Model models[] = {three_shafts(), chain(), bristles(), hysteresis(), warm(), driven(), parallel(), long_row()};
   std::uint64_t seed = 11;
-  for (const Model& model : models) corrupt(model, seed++, (cases + 6) / 7);
+  for (const Model& model : models) corrupt(model, seed++, (cases + 7) / 8);
   CHECK(refused > cases / 20 && accepted > cases / 20);
   std::printf("%d refused, %d went on\n", refused, accepted);
   return check::result();

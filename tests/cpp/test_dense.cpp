@@ -1,6 +1,7 @@
-// Dense factorisations: the factors multiply to the matrix, the solves invert it.
+// Factorisations, dense and in envelopes: the factors multiply to the matrix, the solves invert it.
 
 #include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/envelope.hpp>
 #include <vector>
 
 #include "check.hpp"
@@ -37,6 +38,38 @@ void factors(check::Random& g, int n) {
   l = a;
   l[(n - 1) * n + n - 1] = -1;
   CHECK(!cholesky(n, l.data(), n));
+}
+
+/// In the envelope of a matrix stands the dense factor; whole, its bits.
+void envelopes(check::Random& g, int n) {
+  Numbers a(std::size_t(n * n));
+  std::vector<int> low(a.size()), sky(a.size());
+  for (int i = 0; i < n; ++i) {
+    low[i] = g.below(i + 1);
+    for (int j = low[i]; j < i; ++j) a[i * n + j] = g.between(-1, 1);
+    a[i * n + i] = n + 1.0;
+  }
+  Numbers l = a;
+  CHECK(cholesky(n, l.data(), n));
+  const Numbers b = random(g, n);
+  for (bool whole : {false, true}) {
+    Envelope e{low.data(), sky.data()};
+    Numbers factor(std::size_t(whole ? e.lay_whole(n) : e.lay(n)));
+    for (int i = 0; i < n; ++i) {
+      for (int j = low[i]; j <= i; ++j) factor[sky[i] + j] = a[i * n + j];
+    }
+    CHECK(cholesky(n, e, factor.data()));
+    Numbers x = b, y = b, turned = b;
+    forward_solve(n, l.data(), n, x.data()), backward_solve(n, l.data(), n, x.data());
+    forward_solve(n, e, factor.data(), y.data()), backward_solve(n, e, factor.data(), y.data());
+    transposed_times(n, e, factor.data(), b.data(), turned.data());
+    for (int i = 0; i < n; ++i) {
+      double s = 0;
+      for (int j = i; j < n; ++j) s += l[j * n + i] * b[j];
+      CHECK_NEAR(y[i], x[i], whole ? 0.0 : 1e-14);
+      CHECK_NEAR(turned[i], s, 1e-12);
+    }
+  }
 }
 
 /// A inverse times A is one; a singular matrix is said to be so.
@@ -94,7 +127,7 @@ void split(check::Random& g, int m, int n, int r) {
 
 int main() {
   check::Random g{11};
-  for (int n = 1; n <= 12; ++n) factors(g, n), inverses(g, n);
+  for (int n = 1; n <= 12; ++n) factors(g, n), inverses(g, n), envelopes(g, n);
   for (int round = 0; round < 300; ++round) {
     const int n = 1 + g.below(8), m = g.below(9);
     split(g, m, n, m == 0 ? 0 : 1 + g.below(n));

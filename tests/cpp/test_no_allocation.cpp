@@ -85,5 +85,6 @@ int main() {
   silent(hysteresis(), 3.0, 1);
   silent(hysteresis(), 3.0, 2);
   silent(warm(), 3.0, 1);
+  silent(long_row(), 1.0, 1);
   return check::result();
 }

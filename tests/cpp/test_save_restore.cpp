@@ -102,7 +102,7 @@ void stays_the_same(const Model& model) {
 }  // namespace
 
 int main() {
-  const Model models[] = {three_shafts(), chain(), bristles(), hysteresis(), warm(), driven(), parallel()};
+  const Model models[] = {three_shafts(), chain(), bristles(), hysteresis(), warm(), driven(), parallel(), long_row()};
   check::Random g{5};
   for (const Model& model : models) {
     stays_the_same(model);

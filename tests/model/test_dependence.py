@@ -6,6 +6,7 @@ from typing import Any
 
 import clutchwork as cw
 from clutchwork.assembly.dependence import dependent_sets
+from clutchwork.assembly.sparse import entries
 
 ONE = cw.Coulomb(static=1.0, kinetic=1.0)
 
@@ -22,7 +23,8 @@ def test_parallel_clutches_and_a_ring_are_sets_and_a_chain_is_none() -> None:
     d.add(clutch("alone", d.housing, d.shaft("f", inertia=1.0)))
     system = d.assemble()
     assert system.dependent == (("p", "q"), ("r", "s", "t"))
-    assert dependent_sets([c.name for c in system.contacts], system.contact_rate, ["p", "r", "s", "alone"]) == ()
+    rates = entries(system.arrays, "contact_rate")
+    assert dependent_sets([c.name for c in system.contacts], rates, ["p", "r", "s", "alone"]) == ()
 
 
 def test_what_prescribed_speeds_move_alone_shares_nothing() -> None:

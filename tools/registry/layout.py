@@ -8,6 +8,7 @@ from clutchwork.declare.layout import (
     CAUSES,
     COUNTS,
     EVENT,
+    FEW_SPEEDS,
     FIELDS,
     METHODS,
     MODES,
@@ -73,6 +74,8 @@ def member(count: str) -> str:
 
 def system() -> Iterator[str]:
     """The System struct."""
+    yield "/// Up to so many speeds nothing is left out of a matrix."
+    yield f"inline constexpr int few_speeds = {FEW_SPEEDS};"
     yield "/// Frozen model: sizes and arrays inside bytes that the caller keeps."
     yield "struct System {"
     for name, doc in COUNTS:
@@ -92,7 +95,7 @@ def binding() -> Iterator[str]:
     yield "  if (hash != schema_hash) return -1;"
     for i, (name, _) in enumerate(COUNTS):
         yield f"  std::memcpy(&s.{member(name)}, bytes + {16 + 8 * i}, 8);"
-        yield f"  if (s.{member(name)} < 0 || s.{member(name)} > (1 << 24)) return -1;"
+        yield f"  if (s.{member(name)} < 0 || s.{member(name)} > (1 << 28)) return -1;"
     yield f"  std::int64_t at = {head};"
     for name, kind, shape, _ in FIELDS:
         size = "*".join(str(n) if isinstance(n, int) else f"s.{member(n)}" for n in shape)

@@ -12,6 +12,7 @@ from clutchwork.assembly.inputs import Wires
 from clutchwork.assembly.places import places
 from clutchwork.assembly.records import TYPES, Gearing, frozen
 from clutchwork.assembly.shared_states import Shared, flow_arrays, heat_arrays
+from clutchwork.assembly.sparse import sparse
 from clutchwork.base.errors import ModelError
 from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.ports import ports
@@ -113,9 +114,9 @@ class Columns:
         self.speeds = {node: place for place, node in enumerate(made.independent)}
         self.prescribed = {first + number: number for number in range(len(model.role(Role.MOTION)))}
 
-    def split(self, rows: Sequence[Row]) -> tuple[Array, Array]:
-        """Rows over the independent speeds and over the prescribed ones."""
-        return _matrix(rows, self.speeds), _matrix(rows, self.prescribed)
+    def split(self, name: str, rows: Sequence[Row]) -> dict[str, Any]:
+        """The arrays of a matrix over the independent speeds and of that over the prescribed ones."""
+        return sparse(name, rows, self.speeds) | {f"{name}_prescribed": _matrix(rows, self.prescribed)}
 
 
 def _matrix(rows: Sequence[Row], places: Mapping[int, int]) -> Array:
@@ -130,18 +131,13 @@ def _matrix(rows: Sequence[Row], places: Mapping[int, int]) -> Array:
 
 def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, Any]:
     """Basis and mass matrix, computed as fractions and rounded once."""
-    basis, basis_prescribed = columns.split(made.speeds)
     rows: dict[int, Row] = {node: {} for node in made.independent}
     for inertia, speed in zip(model.inertia, made.speeds, strict=True):
         for node in speed.keys() & rows.keys() if inertia else ():
             rows[node] = plus(rows[node], inertia * speed[node], speed)
-    mass, mass_prescribed = columns.split(list(rows.values()))
-    return {
-        "basis": basis,
-        "basis_prescribed": basis_prescribed,
+    arrays = columns.split("basis", made.speeds) | columns.split("mass", list(rows.values()))
+    return arrays | {
         "inertia": [float(inertia) for inertia in model.inertia],
-        "mass": mass,
-        "mass_prescribed": mass_prescribed,
         "massless": [node in made.massless for node in made.independent],
         "initial_angle": [node.angle for node in model.nodes],
     }
@@ -149,10 +145,7 @@ def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, 
 
 def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role, prefix: str) -> dict[str, Any]:
     own = [row for row, (component, _) in zip(found, model.acting, strict=True) if component.role is role]
-    rates, prescribed = columns.split(own)
-    return {
-        f"{prefix}_rate": rates,
-        f"{prefix}_rate_prescribed": prescribed,
+    return columns.split(f"{prefix}_rate", own) | {
         f"{prefix}_kind": [kinds(role).index(component.kind) for component in model.role(role)],
     }
 

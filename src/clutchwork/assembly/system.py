@@ -19,11 +19,13 @@ from clutchwork.assembly.changes import UNKNOWN_SOURCE, Quick, changed, quick
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.patches import Numbered, numbered
 from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
+from clutchwork.assembly.rooms import rooms
+from clutchwork.assembly.sparse import dense, entries
 from clutchwork.base import archive
 from clutchwork.base.errors import ClutchworkError, ModelError, near, warn
 from clutchwork.base.regular import reason
 from clutchwork.base.shown import shortened
-from clutchwork.declare.layout import COUNTS, FIELDS, layout_text
+from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE, layout_text
 from clutchwork.declare.node import Component, Node, ThermalNode
 from clutchwork.declare.schema import Role, schema_hash
 from clutchwork.files.model_file import from_dict, to_dict
@@ -42,7 +44,8 @@ class SystemFormatError(ClutchworkError, ValueError):
 class System:
     """A driveline ready to run; never changes, so any number of runs and threads may share it.
 
-    `arrays` holds what `layout.FIELDS` lists; each is also an attribute: `system.mass`.
+    `arrays` holds what `layout.FIELDS` lists; each is also an attribute: `system.inertia`. So are the matrices of
+    `layout.SPARSE`, made whole: `system.mass`.
     Elements, contacts, motions, flows, processes and nodes stand in the order of their arrays.
     """
 
@@ -69,9 +72,10 @@ class System:
 
     def __getattr__(self, name: str) -> Array:
         try:
-            return self.__dict__["arrays"][name]  # type: ignore[no-any-return]
+            arrays = self.__dict__["arrays"]
+            return dense(arrays, name) if name in SPARSE else arrays[name]
         except KeyError:
-            raise AttributeError(f"a System has no {name!r}{near(name, [n for n, *_ in FIELDS])}") from None
+            raise AttributeError(f"a System has no {name!r}{near(name, [*SPARSE, *(n for n, *_ in FIELDS)])}") from None
 
     def __getstate__(self) -> dict[str, Any]:
         # a view of a dictionary cannot be pickled; what is cached comes again
@@ -90,7 +94,7 @@ class System:
             for size, length in zip(shape, self.arrays[name].shape, strict=True):
                 if isinstance(size, str):
                     sizes[size] = max(sizes[size], length)
-        return sizes
+        return sizes | rooms(self.arrays)
 
     @cached_property
     def model(self) -> Mapping[str, Any]:
@@ -103,7 +107,7 @@ class System:
     @property
     def dependent(self) -> tuple[tuple[str, ...], ...]:
         """Sets of contacts that depend on each other when locked together, so that their shares are a convention."""
-        return dependent_sets([contact.name for contact in self.contacts], self.contact_rate)
+        return dependent_sets([contact.name for contact in self.contacts], entries(self.arrays, "contact_rate"))
 
     @classmethod
     def of(cls, model: Model, independent: Sequence[str] = ()) -> System:

@@ -135,7 +135,7 @@ def sizes(system: System) -> dict[str, int]:
     more = {"thermal nodes": parts.thermal, "heat flows": parts.flows, "processes": parts.processes}
     return {
         "shafts and masses": len(parts.nodes),
-        "independent speeds": int(system.basis.shape[1]),
+        "independent speeds": len(system.massless),
         "gear rows": len(parts.gears),
         "torque elements": sum(not branch.hidden for branch in parts.elements),
         "contacts": len(parts.contacts),

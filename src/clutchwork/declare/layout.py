@@ -5,7 +5,11 @@ Standard library only: the build imports it and writes the C++ side from it.
 
 from __future__ import annotations
 
-# sizes of a system, in the order in which they stand in the header
+# up to so many speeds nothing is left out of a matrix
+FEW_SPEEDS = 12
+
+# sizes of a system, in the order in which they stand in the header; the rooms are what a run needs at most for its own
+# matrices without their zeros, whatever its contacts do, and 0 for few speeds: docs/theory/reduction.md
 COUNTS = (
     ("nodes", "shafts and masses, the housing not counted"),
     ("speeds", "independent speeds v"),
@@ -22,23 +26,44 @@ COUNTS = (
     ("params", "numbers in the parameter pool"),
     ("points", "points in the curve pool"),
     ("input_refs", "references from components to signals, shared states, rates and heats"),
+    ("basis_entries", "shares of speeds in node speeds that are not zero"),
+    ("mass_entries", "entries of the mass matrix that are not zero"),
+    ("element_rate_entries", "shares of speeds in the rates of elements that are not zero"),
+    ("contact_rate_entries", "shares of speeds in the slips of contacts that are not zero"),
+    ("factor_room", "room for the factor of the mass matrix"),
+    ("direction_room", "room for the mass-weighted directions"),
+    ("mobility_room", "room for the mobility of the contacts"),
+    ("expansion_room", "room for the speeds over the reduced ones"),
+    ("rate_room", "room for the rates over the reduced speeds"),
+    ("mass_room", "room for the reduced mass matrix"),
+    ("envelope_room", "room for the factor of the reduced motion"),
+    ("spares", "locked contacts that can depend on others, at most"),
+    ("set_size", "contacts of the largest set that depend on each other"),
 )
 
 # (name, type, shape, meaning); directions are those of the elements, then those of the contacts
 FIELDS = (
-    ("basis", "f8", ("nodes", "speeds"), "node speeds w = basis v + basis_prescribed u"),
+    ("basis_end", "i4", ("nodes",), "end of each row of the next two"),
+    ("basis_column", "i4", ("basis_entries",), "speeds, ascending in each row"),
+    ("basis_value", "f8", ("basis_entries",), "node speeds w = basis v + basis_prescribed u"),
     ("basis_prescribed", "f8", ("nodes", "prescribed"), "share of the prescribed speeds in the node speeds"),
     ("inertia", "f8", ("nodes",), "inertia [kg m2] or mass [kg] of each node"),
-    ("mass", "f8", ("speeds", "speeds"), "M = basis' diag(inertia) basis; zero row for a massless coordinate"),
+    ("mass_end", "i4", ("speeds",), "end of each row of the next two"),
+    ("mass_column", "i4", ("mass_entries",), "speeds, ascending in each row"),
+    ("mass_value", "f8", ("mass_entries",), "M = basis' diag(inertia) basis; no entry for a massless coordinate"),
     ("mass_prescribed", "f8", ("speeds", "prescribed"), "basis' diag(inertia) basis_prescribed"),
     ("massless", "i4", ("speeds",), "1 where the speed is algebraic"),
-    ("element_rate", "f8", ("elements", "speeds"), "rate of each element per independent speed"),
+    ("element_rate_end", "i4", ("elements",), "end of each row of the next two"),
+    ("element_rate_column", "i4", ("element_rate_entries",), "speeds, ascending in each row"),
+    ("element_rate_value", "f8", ("element_rate_entries",), "rate of each element per independent speed"),
     ("element_rate_prescribed", "f8", ("elements", "prescribed"), "rate per prescribed speed"),
     ("element_kind", "i4", ("elements",), "number of the kind among the torque elements"),
     ("element_param", "i4", ("elements",), "offset into params"),
     ("element_state", "i4", ("elements",), "offset into states"),
     ("element_input", "i4", ("elements",), "offset into input_refs"),
-    ("contact_rate", "f8", ("contacts", "speeds"), "slip of each contact per independent speed"),
+    ("contact_rate_end", "i4", ("contacts",), "end of each row of the next two"),
+    ("contact_rate_column", "i4", ("contact_rate_entries",), "speeds, ascending in each row"),
+    ("contact_rate_value", "f8", ("contact_rate_entries",), "slip of each contact per independent speed"),
     ("contact_rate_prescribed", "f8", ("contacts", "prescribed"), "slip per prescribed speed"),
     ("contact_kind", "i4", ("contacts",), "number of the kind among the contacts"),
     ("contact_param", "i4", ("contacts",), "offset into params"),
@@ -88,6 +113,9 @@ FIELDS = (
     ("initial_angle", "f8", ("nodes",), "angle [rad] or position [m] at the start"),
     ("initial_state", "f8", ("states",), "states at the start"),
 )
+
+# matrices that stand there by rows, without their zeros: their columns are the speeds
+SPARSE = ("basis", "mass", "element_rate", "contact_rate")
 
 # what one row of the output holds, in order: (name, size)
 ROW = (
@@ -191,4 +219,6 @@ STATUS = (
 def layout_text() -> str:
     """Fingerprint text of the layout."""
     named = ([name for name, *_ in table] for table in (STATUS, STATISTICS))
-    return repr((COUNTS, FIELDS, ROW, EVENT, MODES, {n: word for n, (word, _) in CAUSES.items()}, METHODS, *named))
+    return repr(
+        (FEW_SPEEDS, COUNTS, FIELDS, ROW, EVENT, MODES, {n: word for n, (word, _) in CAUSES.items()}, METHODS, *named)
+    )

@@ -65,6 +65,7 @@ class Echelon:
         self.origin: dict[int, Row] = {}  # of each solved row: the sum of added rows that it is
         self.spare: list[tuple[Row, Row]] = []  # sums of added rows without a column to solve for, and what they left
         self._rank = {column: place for place, column in enumerate(order)}
+        self._holders: dict[int, set[int]] = {}  # columns whose rows hold a column, or did
         self._traced = traced
         self._added = 0
 
@@ -80,12 +81,14 @@ class Echelon:
         scale = ONE if rest[column] is ONE else 1 / rest[column]
         rest, origin = plus({}, scale, rest), plus({}, scale, origin)
         rest[column] = ONE
-        for other, solved in self.solved.items():
-            factor = solved.get(column)
-            if factor:
-                self.solved[other] = plus(solved, -factor, rest)
-                self.origin[other] = plus(self.origin[other], -factor, origin) if self._traced else {}
+        touched = [other for other in self._holders.pop(column, ()) if self.solved[other].get(column)]
+        for other in touched:
+            factor = self.solved[other][column]
+            self.solved[other] = plus(self.solved[other], -factor, rest)
+            self.origin[other] = plus(self.origin[other], -factor, origin) if self._traced else {}
         self.solved[column], self.origin[column] = rest, origin
+        for held in rest.keys() - {column}:
+            self._holders.setdefault(held, set()).update((column, *touched))
 
     def rest(self, row: Mapping[int, Fraction]) -> Row:
         """What is left of a row when all solved columns have been replaced."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from math import inf, isfinite
 from numbers import Real
 from typing import Any
@@ -94,16 +94,16 @@ def _law_advice(component: Component) -> Iterator[Problem]:
         yield place.inner(name).problem(message, value=value, remedy=remedy)
 
 
-def connection_problems(component: Component, nodes: Sequence[Node]) -> Iterator[Problem]:
-    """Ports that are on foreign nodes, on one and the same node, or of two kinds of motion."""
+def connection_problems(component: Component, nodes: Mapping[int, Node]) -> Iterator[Problem]:
+    """Ports that are on foreign nodes, on one and the same node, or of two kinds of motion; `nodes` by identity."""
     joined = ports(component)
     if not joined or not all(isinstance(node, Node) for node in joined.values()):
         return
     moving = {name: node for name, node in joined.items() if not node.fixed}
     at = At(path_of(component), "")
     for name, node in moving.items():
-        if all(node is not other for other in nodes):
-            found = near(node.name, [n.name for n in nodes if n.name != node.name])
+        if id(node) not in nodes:
+            found = near(node.name, [n.name for n in nodes.values() if n.name != node.name])
             yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
     if not moving:
         yield at.problem("is attached to the housing alone", remedy="attach a port to a shaft")

@@ -31,8 +31,9 @@ def part_problems(model: Model, incomplete: Sequence[str] = ()) -> tuple[list[Pr
     problems += [problem for node in thermal for problem in thermal_problems(node)]
     parts, found = _parts(elements, thermal)
     within = Within({node.name for node in parts.thermal}, {e.name for e in elements if found[id(e)]})
+    own = {id(node): node for node in nodes}
     for element in elements:
-        found[id(element)] += [*connection_problems(element, nodes), *port_problems(element, thermal, within)]
+        found[id(element)] += [*connection_problems(element, own), *port_problems(element, thermal, within)]
         problems += found[id(element)]
     broken = [element for element in elements if found[id(element)]]
     sound = take_apart([element for element in elements if not found[id(element)]], thermal) if broken else parts

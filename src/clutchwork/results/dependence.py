@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from clutchwork.assembly.dependence import dependent_sets
+from clutchwork.assembly.sparse import entries
 from clutchwork.results.stretches import stretches
 
 if TYPE_CHECKING:
@@ -24,11 +25,12 @@ class DependentPhase:
 def dependent_phases(run: Recorded) -> tuple[DependentPhase, ...]:
     """When contacts of a run were locked that depend on each other."""
     names = [branch.name for branch in run.wiring.contacts]
+    rates = entries(run.system.arrays, "contact_rate")
     made: dict[tuple[str, ...], list[DependentPhase]] = {}
     found: dict[tuple[str, ...], tuple[tuple[str, ...], ...]] = {}
     for part in stretches(run):
         if part.locked not in found:
-            found[part.locked] = dependent_sets(names, run.system.contact_rate, part.locked)
+            found[part.locked] = dependent_sets(names, rates, part.locked)
         for group in found[part.locked] if part.end > part.begin else ():
             begin, phases = part.begin, made.setdefault(group, [])
             if phases and phases[-1].end == begin:

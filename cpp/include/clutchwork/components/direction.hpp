@@ -5,10 +5,35 @@
 /// Directions of the motion: the rate of each, and the branch that works along it.
 namespace clutchwork {
 
+/// One row of a matrix without its zeros.
+struct MatrixRow {
+  const std::int32_t* column;
+  const double* value;
+  int n;
+
+  /// Product with x.
+  template <class T>
+  CLUTCHWORK_INLINE T times(const T* x) const {
+    T s = T(0);
+    for (int e = 0; e < n; ++e) s += T(value[e]) * x[column[e]];
+    return s;
+  }
+};
+
+/// Row i of a matrix whose rows end there.
+inline MatrixRow matrix_row(const std::int32_t* end, const std::int32_t* column, const double* value, std::int64_t i) {
+  const std::int32_t first = i > 0 ? end[i - 1] : 0;
+  return {column + first, value + first, int(end[i] - first)};
+}
+inline MatrixRow basis_row(const System& s, int node) {
+  return matrix_row(s.basis_end, s.basis_column, s.basis_value, node);
+}
+inline MatrixRow mass_row(const System& s, int i) { return matrix_row(s.mass_end, s.mass_column, s.mass_value, i); }
+
 /// Shares of the speeds in the rate of a direction.
-inline const double* rate_row(const System& sys, int d) {
-  if (d < sys.elements) return sys.element_rate + d * sys.speeds;
-  return sys.contact_rate + (d - sys.elements) * sys.speeds;
+inline MatrixRow rate_row(const System& s, int d) {
+  if (d < s.elements) return matrix_row(s.element_rate_end, s.element_rate_column, s.element_rate_value, d);
+  return matrix_row(s.contact_rate_end, s.contact_rate_column, s.contact_rate_value, d - s.elements);
 }
 
 /// Share of prescribed speed p in the rate of a direction.
@@ -23,9 +48,7 @@ T prescribed_share(const Workspace<T>& ws, int d, int p) {
 template <class T>
 T rate_of(const Workspace<T>& ws, int d) {
   const System& sys = ws.sys;
-  const double* row = rate_row(sys, d);
-  T r = T(0);
-  for (int i = 0; i < sys.speeds; ++i) r += T(row[i]) * ws.v[i];
+  T r = rate_row(sys, d).times(ws.v);
   for (int p = 0; p < sys.prescribed; ++p) r += prescribed_share(ws, d, p) * ws.in.prescribed[p];
   return r;
 }

@@ -17,11 +17,8 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   for (int i = 0; i < nv; ++i) q[i] = T(0);
   ws.decision.effort = 0;
   auto add = [&](T size, int d) {
-    T square = T(0);
-    const Compressed<T>& white = ws.geometry.white;
-    white.add(d, size, q);
-    for (int e = white.first[d]; e < white.first[d + 1]; ++e) square += white.val[e] * white.val[e];
-    ws.decision.effort += abs(value(size)) * sqrt(value(square));
+    ws.geometry.white.add(d, size, q);
+    ws.decision.effort += abs(value(size)) * sqrt(value(ws.geometry.own[d]));
   };
   for (int p = 0; p < sys.prescribed; ++p)
     axpy(nv, -ws.in.prescribed_slope[p], ws.geometry.prescribed_momentum + p * nv, q);
@@ -42,8 +39,8 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
 /// Acceleration of a slip for mass-weighted acceleration q.
 template <class T>
 T slip_acceleration(const Workspace<T>& ws, int c, const T* q) {
-  const int d = int(ws.sys.elements) + c, nv = int(ws.sys.speeds);
-  T a = dot(nv, ws.geometry.direction + d * nv, q);
+  const int d = int(ws.sys.elements) + c;
+  T a = ws.geometry.white.times(d, q);
   for (int p = 0; p < ws.sys.prescribed; ++p) a += prescribed_share(ws, d, p) * ws.in.prescribed_slope[p];
   return a;
 }
@@ -61,12 +58,12 @@ T slip_slope(const Workspace<T>& ws, int c) {
 /// Gather the problem of the contacts in list[0..n): matrix and views.
 template <class T>
 BoundedProblem<T> gather(Workspace<T>& ws, const int* list, int n) {
-  const int nc = int(ws.sys.contacts);
+  const Geometry<T>& g = ws.geometry;
   ProblemMemory<T>& p = ws.problem;
-  for (int a = 0; a < n; ++a) {
-    for (int b = 0; b < n; ++b) p.matrix[a * n + b] = ws.geometry.mobility[list[a] * nc + list[b]];
-  }
-  return {n, p.matrix, p.gradient, p.lower, p.upper, p.weight, p.x, p.slope, p.trial, p.factor, p.bound, p.free};
+  for (int c = 0; c < ws.sys.contacts; ++c) p.slot[c] = -1;
+  for (int a = 0; a < n; ++a) p.slot[g.place[list[a]]] = a, p.diagonal[a] = g.own[ws.sys.elements + list[a]];
+  const Neighbours<T> matrix{n, g.near, g.mobility, p.diagonal, list, g.place, g.last, p.slot, p.row};
+  return {n, matrix, p.gradient, p.lower, p.upper, p.weight, p.x, p.slope, p.trial, p.near, p.factor, p.bound, p.free};
 }
 
 }  // namespace clutchwork

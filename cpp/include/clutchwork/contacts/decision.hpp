@@ -91,9 +91,10 @@ int choose_candidates(Workspace<T>& ws, int located, double tolerance) {
   return -1;
 }
 
-/// The problem of the candidates: bounds from their static torques, accelerations from all other torques.
+/// The problem of the candidates: bounds from their static torques, accelerations from all other torques. `warm`: it
+/// starts at the torques of the decision so far.
 template <class T>
-BoundedProblem<T> pose_problem(Workspace<T>& ws) {
+BoundedProblem<T> pose_problem(Workspace<T>& ws, bool warm) {
   int *list = ws.decision.list, n = 0;
   T *q = ws.decision.motion, *capacity = ws.problem.capacity;
   for (int c = 0; c < ws.sys.contacts; ++c) {
@@ -108,8 +109,8 @@ BoundedProblem<T> pose_problem(Workspace<T>& ws) {
     p.lower[a] = -resists_forward;
     p.upper[a] = contact_one_way(ws, c) ? freewheel_limit(ws, c) : resists_backward;
     capacity[a] = larger(resists_forward, p.upper[a]);
-    p.x[a] = T(0);
-    if (is_rigid(ws, c)) p.matrix[a * n + a] = T(1e-300);
+    p.x[a] = warm ? ws.decision.torque[c] : T(0);
+    if (is_rigid(ws, c)) p.matrix.diagonal[a] = T(1e-300);
   }
   capacity_weights(p, capacity);
   for (int a = 0; a < n; ++a) {
@@ -126,8 +127,8 @@ double slope_noise(const Workspace<T>& ws, const BoundedProblem<T>& p, int a, in
   const int c = ws.decision.list[a];
   if (is_rigid(ws, c)) return 1e6 * tolerance;
   double scale = abs(value(p.gradient[a]));
-  for (int b = 0; b < p.n; ++b) scale = larger(scale, abs(value(p.matrix[a * p.n + b] * p.x[b])));
-  const double mobility = value(sqrt(p.matrix[a * p.n + a]));
+  p.matrix.each(a, [&](int b, T g) { scale = larger(scale, abs(value(g * p.x[b]))); });
+  const double mobility = value(sqrt(p.matrix.diagonal[a]));
   const double round_off = larger(1e-10 * scale, 1e-12 * ws.decision.effort * mobility);
   const bool arrived = c == located && ws.happened.cause == Cause::slip_zero;
   return arrived ? larger(round_off, 1e3 * tolerance) : round_off;
@@ -151,7 +152,7 @@ int weakest(Workspace<T>& ws, const BoundedProblem<T>& p, int located, double to
     const double acceleration = abs(value(p.slope[a]));
     if (p.bound[a] == 0 || acceleration <= slope_noise(ws, p, a, located, tolerance)) continue;
     if (overruns(ws, p, a)) return a;
-    const double size = acceleration / value(sqrt(p.matrix[a * p.n + a]));
+    const double size = acceleration / value(sqrt(p.matrix.diagonal[a]));
     if (size > most) first = a, most = size;
   }
   return first;
@@ -171,13 +172,12 @@ int unheld(const Workspace<T>& ws, const BoundedProblem<T>& p, double tolerance)
 /// It may stick after all; only the first release of a contact is taken back. docs/theory/contacts.md, rule 2
 template <class T>
 int turned_back(Workspace<T>& ws, const BoundedProblem<T>& p) {
-  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
+  const int ne = int(ws.sys.elements);
   T* q = ws.decision.motion;
-  for (int a = 0; a < p.n; ++a) axpy(nv, p.x[a], ws.geometry.direction + (ne + ws.decision.list[a]) * nv, q);
+  for (int a = 0; a < p.n; ++a) ws.geometry.white.add(ne + ws.decision.list[a], p.x[a], q);
   for (int c = 0; c < ws.sys.contacts; ++c) {
     if (ws.decision.released[c] != 1) continue;
-    const T* row = ws.geometry.direction + (ne + c) * nv;
-    const double noise = 1e-12 * ws.decision.effort * value(sqrt(dot(nv, row, row)));
+    const double noise = 1e-12 * ws.decision.effort * value(sqrt(ws.geometry.own[ne + c]));
     if (ws.contact.mode[c] * value(slip_acceleration(ws, c, q)) < -noise) return c;
   }
   return -1;
@@ -192,8 +192,11 @@ Verdict settle_contacts(Workspace<T>& ws, int located) {
   if (jammed >= 0) return {Settled::jams, jammed};
   // rounds: those at a bound that accelerate start to slip with their kinetic torque
   for (int round = 0; round <= 4 * ws.sys.contacts + 4; ++round) {
-    BoundedProblem<T> p = pose_problem(ws);
-    if (!solve(p)) return {Settled::no};
+    // among many contacts a release changes few torques
+    const bool warm = round > 0 && !is_few(ws.sys);
+    BoundedProblem<T> p = pose_problem(ws, warm);
+    if (!solve(p, warm)) return {Settled::no};
+    for (int a = 0; a < p.n; ++a) ws.decision.torque[ws.decision.list[a]] = p.x[a];
     const int weak = weakest(ws, p, located, tolerance);
     if (weak >= 0) {
       const int c = ws.decision.list[weak];
@@ -203,13 +206,13 @@ Verdict settle_contacts(Workspace<T>& ws, int located) {
       released[c] = released[c] == 0 ? 1 : 2;
       continue;
     }
-    for (int a = 0; a < p.n; ++a) ws.decision.torque[ws.decision.list[a]] = p.x[a];
     const int driven = unheld(ws, p, tolerance);
     if (driven >= 0) return {Settled::jams, driven};
     const int back = turned_back(ws, p);
     if (back < 0) return {Settled::yes};
     released[back] = -1;
     candidate[back] = 1;
+    ws.decision.torque[back] = T(0);
   }
   return {Settled::no};
 }

@@ -27,13 +27,13 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
   T* x = ws.decision.speed;
   for (int i = 0; i < nv; ++i) x[i] = T(0);
   for (int a = 0; a < p.n; ++a) {
-    axpy(nv, p.x[a], ws.geometry.direction + (ne + list[a]) * nv, x);
+    ws.geometry.white.add(ne + list[a], p.x[a], x);
     // work of an impulse: impulse times mean slip
     const T work = p.x[a] * (p.gradient[a] + p.slope[a]) * T(0.5);
     ws.work[ne + list[a]] += work;
     take_heat(ws, ne + list[a], -work);
   }
-  backward_solve(nv, ws.geometry.factor, nv, x);
+  backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
   for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
   // the sources behind prescribed speeds take their share
   for (int k = 0; k < ws.sys.prescribed; ++k) {
@@ -43,10 +43,10 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
     ws.prescribed_work[k] += impulse * ws.in.prescribed[k];
   }
   // friction transmits no impulse: what was locked and is moved now slips
+  const double tolerance = slip_tolerance(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const double slip = value(rate_of(ws, ne + c));
-    if (ws.contact.mode[c] == locked && abs(slip) > slip_tolerance(ws))
-      ws.contact.mode[c] = slip > 0 ? forward : backward;
+    if (ws.contact.mode[c] == locked && abs(slip) > tolerance) ws.contact.mode[c] = slip > 0 ? forward : backward;
   }
 }
 
@@ -130,11 +130,10 @@ void prescribed_jump(Workspace<T>& ws) {
     axpy(nv, -jump, ws.geometry.prescribed_momentum + p * nv, x);
   }
   if (!any) return;
-  backward_solve(nv, ws.geometry.factor, nv, x);
+  backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
   // impulse of each source: its column of inertia times the jumps of all node speeds
   for (int n = 0; n < sys.nodes; ++n) {
-    T jump = T(0);
-    for (int i = 0; i < nv; ++i) jump += T(sys.basis[n * nv + i]) * x[i];
+    T jump = basis_row(sys, n).times(x);
     for (int p = 0; p < np; ++p) {
       jump += T(sys.basis_prescribed[n * np + p]) * (ws.in.prescribed[p] - ws.in.prescribed_before[p]);
     }
@@ -144,9 +143,10 @@ void prescribed_jump(Workspace<T>& ws) {
     }
   }
   for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
+  const double tolerance = slip_tolerance(ws);
   for (int c = 0; c < sys.contacts; ++c) {
     const double slip = value(rate_of(ws, int(sys.elements) + c));
-    if (abs(slip) > slip_tolerance(ws)) ws.contact.mode[c] = slip > 0 ? forward : backward;
+    if (abs(slip) > tolerance) ws.contact.mode[c] = slip > 0 ? forward : backward;
   }
 }
 

@@ -1,13 +1,51 @@
 #pragma once
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/envelope.hpp>
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/dependent.hpp>
+#include <clutchwork/contacts/eliminate.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// The locked contacts of the present mode: carriers, spares, and the sets that they make. docs/theory/contacts.md
 namespace clutchwork {
+
+/// Factor of the mobility of the carriers, in the order of their places.
+template <class T>
+bool factor_mobility(Workspace<T>& ws) {
+  Held<T>& h = ws.held;
+  const Geometry<T>& g = ws.geometry;
+  int *carrier = ws.problem.slot, *row = ws.problem.row, m = 0;
+  const int nc = int(ws.sys.contacts);
+  h.near.whole = g.near.whole;
+  for (int q = 0; q < nc; ++q) carrier[q] = -1;
+  for (int a = 0; a < h.n; ++a) carrier[g.place[h.contact[a]]] = a;
+  for (int q = 0; q < nc; ++q) {
+    row[q] = m;
+    if (carrier[q] < 0) continue;
+    h.near.low[m] = h.near.whole ? 0 : row[g.near.low[q]];
+    h.turn[m++] = carrier[q];
+  }
+  h.near.lay(m);
+  for (int a = 0; a < m; ++a) {
+    const int c = h.contact[h.turn[a]], own = g.near.sky[g.place[c]];
+    for (int b = h.near.low[a]; b <= a; ++b)
+      h.factor[h.near.sky[a] + b] = g.mobility[own + g.place[h.contact[h.turn[b]]]];
+    if (is_rigid(ws, c)) h.factor[h.near.sky[a] + a] = T(1);
+  }
+  return cholesky(m, h.near, h.factor);
+}
+
+/// Torques x of the carriers for slip accelerations b: mobility x = b.
+template <class T>
+void solve_locked(const Workspace<T>& ws, const T* b, T* x) {
+  const Held<T>& h = ws.held;
+  for (int a = 0; a < h.n; ++a) h.turned[a] = b[h.turn[a]];
+  forward_solve(h.n, h.near, h.factor, h.turned);
+  backward_solve(h.n, h.near, h.factor, h.turned);
+  for (int a = 0; a < h.n; ++a) x[h.turn[a]] = h.turned[a];
+}
 
 /// Direction of row `own` of a split in terms of the pivot rows, in pivot order.
 template <class T>
@@ -65,6 +103,8 @@ void list_sets(Workspace<T>& ws, const int* label) {
     for (int s = 0; s < ws.held.n_spare; ++s) {
       if (label_of(s) == root) add(ws.held.spare[s], s);
     }
+    const int size = at - ws.held.set_first[ws.held.n_sets - 1];
+    if (!is_few(ws.sys) && size > ws.sys.set_size) ws.held.too_many = true;
   }
   ws.held.set_first[ws.held.n_sets] = at;
 }
@@ -82,23 +122,23 @@ double driven_share(const Workspace<T>& ws, int s, int p) {
   return abs(value(share)) > 1e-12 * size ? value(share) : 0.0;
 }
 
-/// The directions of the n contacts in held.all, split; returns their rank.
+/// The directions of the n contacts in held.all, split; returns their rank. For few speeds.
 template <class T>
 int split_held(Workspace<T>& ws, int n) {
   const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
   Held<T>& h = ws.held;
   for (int a = 0; a < n; ++a) {
-    for (int i = 0; i < nv; ++i) h.rows[a * nv + i] = ws.geometry.direction[(ne + h.all[a]) * nv + i];
+    for (int i = 0; i < nv; ++i) h.rows[a * nv + i] = T(0);
+    ws.geometry.white.add(ne + h.all[a], T(1), h.rows + a * nv);
   }
   return orthonormal_split(n, nv, h.rows, h.basis, h.order, h.norms);
 }
 
-/// Of the n locked contacts in held.all the carriers: independent ones, and rigid ones. held.number: place among them.
+/// Of the n locked contacts in held.all the carriers: independent ones, whose held.number is not -1, and rigid ones.
+/// Then held.number is the place among them.
 template <class T>
-void list_carriers(Workspace<T>& ws, int n, int rank) {
+void list_carriers(Workspace<T>& ws, int n) {
   Held<T>& h = ws.held;
-  for (int a = 0; a < n; ++a) h.number[a] = -1;
-  for (int j = 0; j < rank; ++j) h.number[h.order[j]] = 0;
   h.n = 0;
   for (int a = 0; a < n; ++a) {
     if (h.number[a] < 0 && !is_rigid(ws, h.all[a])) continue;
@@ -110,19 +150,49 @@ void list_carriers(Workspace<T>& ws, int n, int rank) {
 /// The others are spares: the direction of each in terms of the carriers.
 template <class T>
 void tie_spares(Workspace<T>& ws, int n, int rank) {
-  const int nc = int(ws.sys.contacts), nv = int(ws.sys.speeds);
+  const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements), nv = int(ws.sys.speeds);
   Held<T>& h = ws.held;
   for (int a = 0; a < n; ++a) {
     if (h.number[a] >= 0) continue;
     T* tie = h.tie + h.n_spare * nc;
     for (int b = 0; b < nc; ++b) tie[b] = T(0);
     resolve_direction(rank, nv, h.rows, h.order, h.rows + a * nv, h.share);
-    const double size = value(ws.geometry.mobility[h.all[a] * nc + h.all[a]]);
+    const double size = value(ws.geometry.own[ne + h.all[a]]);
     for (int j = 0; j < rank; ++j) {
       const T share = h.share[j];
       const int carrier = h.all[h.order[j]];
-      const bool counts = value(share * share * ws.geometry.mobility[carrier * nc + carrier]) > 1e-18 * size;
+      const bool counts = value(share * share * ws.geometry.own[ne + carrier]) > 1e-18 * size;
       if (counts) tie[h.number[h.order[j]]] = share;
+    }
+    h.spare[h.n_spare++] = h.all[a];
+  }
+}
+
+/// As tie_spares for many speeds: the direction of a spare is the sum of those of the carriers that it has most in
+/// common with, solved twice because the mobility squares what is small.
+template <class T>
+void tie_far_spares(Workspace<T>& ws, int n) {
+  const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements), nv = int(ws.sys.speeds);
+  const Compressed<T>& white = ws.geometry.white;
+  Held<T>& h = ws.held;
+  for (int a = 0; a < n; ++a) {
+    if (h.number[a] >= 0) continue;
+    if (h.n_spare >= ws.sys.spares) {
+      h.too_many = true;
+      return;
+    }
+    T *tie = h.tie + h.n_spare * nc, *left = h.motion;
+    for (int b = 0; b < nc; ++b) tie[b] = T(0);
+    for (int i = 0; i < nv; ++i) left[i] = T(0);
+    white.add(ne + h.all[a], T(1), left);
+    for (int round = 0; round < 3; ++round) {
+      for (int b = 0; b < h.n; ++b) h.rhs[b] = white.times(ne + h.contact[b], left);
+      solve_locked(ws, h.rhs, h.solved);
+      for (int b = 0; b < h.n; ++b) tie[b] += h.solved[b], white.add(ne + h.contact[b], -h.solved[b], left);
+    }
+    const double size = value(ws.geometry.own[ne + h.all[a]]);
+    for (int b = 0; b < h.n; ++b) {
+      if (!(value(tie[b] * tie[b] * ws.geometry.own[ne + h.contact[b]]) > 1e-18 * size)) tie[b] = T(0);
     }
     h.spare[h.n_spare++] = h.all[a];
   }
@@ -148,14 +218,25 @@ void list_locked(Workspace<T>& ws) {
   }
   h.n = n;
   h.n_spare = h.n_sets = h.n_driven = 0;
+  h.too_many = false;
   if (!ws.geometry.redundant || n < 2) return;
-  const int rank = split_held(ws, n);
-  list_carriers(ws, n, rank);
-  if (h.n == n) return;
-  tie_spares(ws, n, rank);
+  if (is_few(ws.sys)) {
+    const int rank = split_held(ws, n);
+    for (int a = 0; a < n; ++a) h.number[a] = -1;
+    for (int j = 0; j < rank; ++j) h.number[h.order[j]] = 0;
+    list_carriers(ws, n);
+    if (h.n == n) return;
+    tie_spares(ws, n, rank);
+  } else {
+    h.too_many = eliminate(ws, h.all, n) < 0;
+    list_carriers(ws, n);
+    if (h.n == n || !factor_mobility(ws)) return;
+    tie_far_spares(ws, n);
+  }
   list_driven(ws);
   join_sets(ws, h.order);
   list_sets(ws, h.order);
+  if (h.too_many) h.n_sets = h.n_driven = 0;
 }
 
 /// Set number k under the torques of the carriers, its bounds widened by round-off.

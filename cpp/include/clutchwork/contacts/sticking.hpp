@@ -134,7 +134,7 @@ double slip_tolerance(const Workspace<T>& ws) {
 /// A contact without inertia on either side of its slip: prescribed speeds alone decide it.
 template <class T>
 bool is_rigid(const Workspace<T>& ws, int c) {
-  return value(ws.geometry.mobility[c * ws.sys.contacts + c]) == 0;
+  return value(ws.geometry.own[ws.sys.elements + c]) == 0;
 }
 
 }  // namespace clutchwork

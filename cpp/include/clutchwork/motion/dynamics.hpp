@@ -108,7 +108,7 @@ template <class T>
 CLUTCHWORK_INLINE void multipliers(const Workspace<T>& ws, const T* torque, bool moving, T* out) {
   const System& sys = ws.sys;
   const int m = ws.held.n, nb = ws.n_branches, np = moving ? int(sys.prescribed) : 0;
-  if (!ws.reduced.is_sparse) {
+  if (ws.held.mapped) {
     for (int a = 0; a < m; ++a) {
       out[a] = dot(nb, ws.held.reach + a * nb, torque);
       for (int p = 0; p < np; ++p)

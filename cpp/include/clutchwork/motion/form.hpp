@@ -96,7 +96,16 @@ struct SparseForm {
   CLUTCHWORK_INLINE T rate(int k, const T* z) const { return ws.rows.rate.times(k, z); }
   CLUTCHWORK_INLINE void push(int k, T torque, T* q) const { ws.rows.rate.add(k, torque, q); }
   void add_mass_times(T factor, const T* x, T* y) const {
-    for (int i = 0; i < ws.reduced.nz; ++i) y[i] += factor * ws.rows.mass.times(i, x);
+    const Compressed<T>& mass = ws.rows.mass;
+    for (int i = 0; i < ws.reduced.nz; ++i) {
+      T s = T(0);
+      const T own = factor * x[i];
+      for (int e = mass.first[i]; e < mass.first[i + 1]; ++e) {
+        s += mass.val[e] * x[mass.col[e]];
+        if (mass.col[e] != i) y[mass.col[e]] += mass.val[e] * own;
+      }
+      y[i] += factor * s;
+    }
   }
   /// b := M^-1 b, with a factor of its own beside the one of the step.
   void solve_mass(T* b) {
@@ -126,8 +135,7 @@ struct SparseForm {
     for (int i = 0; i < size; ++i) a[i] = T(0);
     for (int i = 0; i < ws.reduced.nz; ++i) {
       T* row = a + ws.rows.sky[i];
-      for (int e = mass.first[i]; e < mass.first[i + 1] && mass.col[e] <= i; ++e)
-        row[mass.col[e]] = scale * mass.val[e];
+      for (int e = mass.first[i]; e < mass.first[i + 1]; ++e) row[mass.col[e]] = scale * mass.val[e];
     }
     for (int k = 0; stiff != nullptr && k < ws.n_branches; ++k) {
       if (value(stiff[k]) == 0) continue;

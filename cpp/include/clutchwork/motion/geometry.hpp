@@ -1,56 +1,150 @@
 #pragma once
-#include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/envelope.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Directions and inertias of the whole run, mass-weighted: docs/theory/multipliers.md.
 namespace clutchwork {
 
-/// The mass-weighted directions without their zeros, and the mobility of the contacts: their products.
+/// Factor of the mass matrix; massless speeds count as one. False when it is not positive definite.
 template <class T>
-void compress_directions(Workspace<T>& ws) {
-  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
+bool factor_mass(Workspace<T>& ws, const Sizes& room) {
+  const System& sys = ws.sys;
+  const int nv = int(sys.speeds);
+  Envelope& e = ws.geometry.inertia;
+  T* factor = ws.geometry.factor;
+  for (int i = 0; i < nv; ++i) {
+    const MatrixRow row = mass_row(sys, i);
+    e.low[i] = row.n > 0 ? smaller(row.column[0], i) : i;
+  }
+  const std::int64_t size = room.few ? e.lay_whole(nv) : e.lay(nv);
+  if (size > room.factor) return false;
+  for (std::int64_t k = 0; k < size; ++k) factor[k] = T(0);
+  for (int i = 0; i < nv; ++i) {
+    const MatrixRow row = mass_row(sys, i);
+    for (int k = 0; k < row.n && row.column[k] <= i; ++k) factor[e.sky[i] + row.column[k]] = T(row.value[k]);
+    factor[e.sky[i] + i] += T(sys.massless[i] ? 1.0 : 0.0);
+  }
+  return cholesky(nv, e, factor);
+}
+
+/// The mass-weighted directions L^-1 D' without their zeros, and the mobility of each. False: there is no room.
+template <class T>
+bool weigh_directions(Workspace<T>& ws, const Sizes& room) {
+  const System& sys = ws.sys;
+  const int nv = int(sys.speeds);
+  const Envelope& e = ws.geometry.inertia;
+  const T* factor = ws.geometry.factor;
   Compressed<T>& white = ws.geometry.white;
-  int at = 0;
+  T* x = ws.geometry.column;
+  // behind a speed nothing refers to those before `rest`
+  int *rest = ws.geometry.rest, at = 0;
+  for (int i = nv - 1; i >= 0; --i) rest[i] = i + 1 < nv ? smaller(e.low[i], rest[i + 1]) : e.low[i];
+  for (int i = 0; i < nv; ++i) x[i] = T(0);
   for (int d = 0; d < ws.n_directions; ++d) {
     white.first[d] = at;
-    for (int i = 0; i < nv; ++i) {
-      if (value(ws.geometry.direction[d * nv + i]) == 0) continue;
-      white.col[at] = i;
-      white.val[at++] = ws.geometry.direction[d * nv + i];
+    T square = T(0);
+    const MatrixRow row = rate_row(sys, d);
+    for (int k = 0; k < row.n; ++k) x[row.column[k]] = T(row.value[k]);
+    const int first = row.n > 0 ? row.column[0] : nv, end = row.n > 0 ? row.column[row.n - 1] : -1;
+    for (int i = first, last = -1; i < nv && (i <= end || rest[i] <= last); ++i) {
+      T s = x[i];
+      const T* own = factor + e.sky[i];
+      for (int k = larger(e.low[i], first); k < i; ++k) s -= own[k] * x[k];
+      x[i] = s / own[i];
+      if (value(x[i]) == 0) {
+        x[i] = T(0);
+        continue;
+      }
+      if (at >= room.white) return false;
+      last = i, white.col[at] = i, white.val[at++] = x[i];
+      square += x[i] * x[i];
     }
+    for (int k = white.first[d]; k < at; ++k) x[white.col[k]] = T(0);
+    ws.geometry.own[d] = square;
   }
   white.first[ws.n_directions] = at;
-  for (int a = 0; a < nc; ++a) {
-    for (int b = 0; b <= a; ++b) {
-      const T s = dot(nv, ws.geometry.direction + (ne + a) * nv, ws.geometry.direction + (ne + b) * nv);
-      ws.geometry.mobility[a * nc + b] = ws.geometry.mobility[b * nc + a] = s;
-    }
+  return true;
+}
+
+/// Product of two mass-weighted directions.
+template <class T>
+T product(const Compressed<T>& white, int a, int b) {
+  T s = T(0);
+  int e = white.first[a], f = white.first[b];
+  while (e < white.first[a + 1] && f < white.first[b + 1]) {
+    if (white.col[e] == white.col[f]) s += white.val[e] * white.val[f];
+    const int left = white.col[e], right = white.col[f];
+    e += left <= right, f += right <= left;
+  }
+  return s;
+}
+
+/// An order of the contacts in which those with speeds in common are close: by their last speed. Few keep theirs.
+template <class T>
+void order_contacts(Workspace<T>& ws, bool few) {
+  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
+  const Compressed<T>& white = ws.geometry.white;
+  int *place = ws.geometry.place, *at = ws.geometry.at, *start = ws.geometry.rest;
+  // those without inertia come first
+  auto bucket = [&](int c) {
+    const int end = white.first[ne + c + 1];
+    return white.first[ne + c] < end ? white.col[end - 1] + 1 : 0;
+  };
+  for (int i = 0; i <= nv + 1; ++i) start[i] = 0;
+  for (int c = 0; c < nc; ++c) ++start[bucket(c) + 1];
+  for (int i = 1; i <= nv + 1; ++i) start[i] += start[i - 1];
+  for (int c = 0; c < nc; ++c) {
+    place[c] = few ? c : start[bucket(c)]++;
+    at[place[c]] = c;
   }
 }
 
+/// Mobility of the contacts: products of their directions. False: there is no room.
+template <class T>
+bool weigh_contacts(Workspace<T>& ws, const Sizes& room) {
+  const int ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
+  Geometry<T>& g = ws.geometry;
+  order_contacts(ws, room.few);
+  auto first = [&](int p) { return g.white.col[g.white.first[ne + g.at[p]]]; };
+  auto last = [&](int p) { return g.white.col[g.white.first[ne + g.at[p] + 1] - 1]; };
+  auto empty = [&](int p) { return g.white.first[ne + g.at[p]] == g.white.first[ne + g.at[p] + 1]; };
+  for (int p = 0, low = 0; p < nc; ++p) {
+    // the last speeds ascend, so that what overlaps is a stretch of places
+    g.near.low[p] = p;
+    if (empty(p)) continue;
+    for (low = p; low > 0 && !empty(low - 1) && last(low - 1) >= first(p);) --low;
+    g.near.low[p] = low;
+  }
+  const std::int64_t size = room.few ? g.near.lay_whole(nc) : g.near.lay(nc);
+  if (size > room.mobility) return false;
+  for (int p = 0; p < nc; ++p) g.last[p] = p;
+  for (int p = 0; p < nc; ++p) {
+    for (int q = g.near.low[p]; q <= p; ++q) {
+      g.mobility[g.near.sky[p] + q] = product(g.white, ne + g.at[p], ne + g.at[q]);
+      g.last[q] = p;
+    }
+  }
+  return true;
+}
+
 /// Once per run: mass-weighted directions L^-1 D' and prescribed momentum L^-1 M_p. False when M is not positive
-/// definite.
+/// definite, or there is no room.
 template <class T>
 bool prepare_geometry(Workspace<T>& ws) {
   const System& sys = ws.sys;
-  const int nv = int(sys.speeds), np = int(sys.prescribed);
-  for (int i = 0; i < nv * nv; ++i) ws.geometry.factor[i] = T(sys.mass[i]);
-  for (int i = 0; i < nv; ++i) ws.geometry.factor[i * nv + i] += T(sys.massless[i] ? 1.0 : 0.0);
-  if (!cholesky(nv, ws.geometry.factor, nv)) return false;
-  for (int d = 0; d < ws.n_directions; ++d) {
-    const double* row = rate_row(sys, d);
-    for (int i = 0; i < nv; ++i) ws.geometry.direction[d * nv + i] = T(row[i]);
-    forward_solve(nv, ws.geometry.factor, nv, ws.geometry.direction + d * nv);
-  }
+  const Sizes room(sys);
+  const int nv = int(sys.speeds), np = int(sys.prescribed), nc = int(sys.contacts);
+  if (!factor_mass(ws, room) || !weigh_directions(ws, room) || !weigh_contacts(ws, room)) return false;
   for (int p = 0; p < np; ++p) {
-    for (int i = 0; i < nv; ++i) ws.geometry.prescribed_momentum[p * nv + i] = T(sys.mass_prescribed[i * np + p]);
-    forward_solve(nv, ws.geometry.factor, nv, ws.geometry.prescribed_momentum + p * nv);
+    T* momentum = ws.geometry.prescribed_momentum + p * nv;
+    for (int i = 0; i < nv; ++i) momentum[i] = T(sys.mass_prescribed[i * np + p]);
+    forward_solve(nv, ws.geometry.inertia, ws.geometry.factor, momentum);
   }
-  compress_directions(ws);
   // without redundant contacts nothing is ever held by others
-  const int nc = int(sys.contacts);
+  ws.geometry.redundant = room.spares > 0;
+  if (!room.few) return true;
   for (int c = 0; c < nc; ++c) ws.held.all[c] = c;
   ws.geometry.redundant = split_held(ws, nc) < nc;
   return true;

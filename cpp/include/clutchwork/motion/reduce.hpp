@@ -3,16 +3,12 @@
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/geometry.hpp>
+#include <clutchwork/motion/sparse.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// The reduced motion of one mode: v = Z z + Y u with the locked slips gone. docs/theory/multipliers.md.
 namespace clutchwork {
-
-/// Sizes of the exact forms: one speed to small_speeds, no state to small_states.
-inline constexpr int small_speeds = 4, small_states = 2;
-constexpr bool is_small_size(std::int64_t speeds, std::int64_t states) {
-  return speeds >= 1 && speeds <= small_speeds && states <= small_states;
-}
 
 /// Orthonormal directions in held.basis whose first ones, as many as returned, span the carriers; the others the motion
 /// that is left.
@@ -22,36 +18,15 @@ int split_locked(Workspace<T>& ws) {
   return split_held(ws, ws.held.n);
 }
 
-/// Factor of the mobility of the carriers.
-template <class T>
-bool factor_mobility(Workspace<T>& ws) {
-  const int m = ws.held.n, nc = int(ws.sys.contacts);
-  for (int a = 0; a < m; ++a) {
-    for (int b = 0; b <= a; ++b)
-      ws.held.factor[a * m + b] = ws.geometry.mobility[ws.held.contact[a] * nc + ws.held.contact[b]];
-    if (is_rigid(ws, ws.held.contact[a])) ws.held.factor[a * m + a] = T(1);
-  }
-  return cholesky(m, ws.held.factor, m);
-}
-
-/// Torques x of the carriers for slip accelerations b: mobility x = b.
-template <class T>
-void solve_locked(const Workspace<T>& ws, const T* b, T* x) {
-  const int m = ws.held.n;
-  for (int a = 0; a < m; ++a) x[a] = b[a];
-  forward_solve(m, ws.held.factor, m, x);
-  backward_solve(m, ws.held.factor, m, x);
-}
-
-/// Multipliers as a linear map of branch torques and prescribed accelerations; few contacts only.
+/// Multipliers as a linear map of branch torques and prescribed accelerations; few speeds only.
 template <class T>
 void map_multipliers(Workspace<T>& ws) {
-  const int m = ws.held.n, nv = int(ws.sys.speeds), ne = int(ws.sys.elements), np = int(ws.sys.prescribed);
+  const int m = ws.held.n, ne = int(ws.sys.elements), np = int(ws.sys.prescribed), nv = int(ws.sys.speeds);
+  const Compressed<T>& white = ws.geometry.white;
   T *b = ws.held.rhs, *x = ws.held.solved;
   for (int k = 0; k < ws.n_branches; ++k) {
     for (int a = 0; a < m; ++a) {
-      b[a] = -dot(nv, ws.geometry.direction + (ne + ws.held.contact[a]) * nv,
-                  ws.geometry.direction + ws.branch[k].direction * nv);
+      b[a] = -product(white, ne + ws.held.contact[a], ws.branch[k].direction);
     }
     solve_locked(ws, b, x);
     for (int a = 0; a < m; ++a) ws.held.reach[a * ws.n_branches + k] = x[a];
@@ -59,11 +34,38 @@ void map_multipliers(Workspace<T>& ws) {
   for (int p = 0; p < np; ++p) {
     for (int a = 0; a < m; ++a) {
       const int d = ne + ws.held.contact[a];
-      b[a] = dot(nv, ws.geometry.direction + d * nv, ws.geometry.prescribed_momentum + p * nv) -
-             prescribed_share(ws, d, p);
+      b[a] = white.times(d, ws.geometry.prescribed_momentum + p * nv) - prescribed_share(ws, d, p);
     }
     solve_locked(ws, b, x);
     for (int a = 0; a < m; ++a) ws.held.reach_prescribed[a * np + p] = x[a];
+  }
+}
+
+/// The part of a momentum that the carriers leave free, turned round: by the basis of a split.
+template <class T>
+void free_part(const Workspace<T>& ws, const T* momentum, T* x) {
+  const T* basis = ws.held.basis;
+  const int nv = int(ws.sys.speeds);
+  for (int i = 0; i < nv; ++i) x[i] = T(0);
+  for (int j = ws.reduced.rank; j < nv; ++j) {
+    T s = T(0);
+    for (int i = 0; i < nv; ++i) s += basis[i * nv + j] * momentum[i];
+    for (int i = 0; i < nv; ++i) x[i] -= s * basis[i * nv + j];
+  }
+}
+
+/// The same for many speeds, without a basis: less what the carriers take.
+template <class T>
+void far_free_part(Workspace<T>& ws, const T* momentum, T* x) {
+  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), m = ws.held.n;
+  const Compressed<T>& white = ws.geometry.white;
+  T *share = ws.held.rhs, *size = ws.held.solved;
+  for (int i = 0; i < nv; ++i) x[i] = -momentum[i];
+  // what round-off leaves is taken too
+  for (int round = 0; round < 2; ++round) {
+    for (int a = 0; a < m; ++a) share[a] = white.times(ne + ws.held.contact[a], x);
+    solve_locked(ws, share, size);
+    for (int a = 0; a < m; ++a) white.add(ne + ws.held.contact[a], -size[a], x);
   }
 }
 
@@ -71,22 +73,16 @@ void map_multipliers(Workspace<T>& ws) {
 template <class T>
 void map_prescribed(Workspace<T>& ws) {
   const System& sys = ws.sys;
-  const T* basis = ws.held.basis;
   const int nv = int(sys.speeds), np = int(sys.prescribed), ne = int(sys.elements), m = ws.held.n;
   for (int p = 0; p < np; ++p) {
     T* x = ws.reduced.column;
     const T* momentum = ws.geometry.prescribed_momentum + p * nv;
-    for (int i = 0; i < nv; ++i) x[i] = T(0);
-    for (int j = ws.reduced.rank; j < nv; ++j) {
-      T s = T(0);
-      for (int i = 0; i < nv; ++i) s += basis[i * nv + j] * momentum[i];
-      for (int i = 0; i < nv; ++i) x[i] -= s * basis[i * nv + j];
-    }
+    is_few(sys) ? free_part(ws, momentum, x) : far_free_part(ws, momentum, x);
     T *share = ws.held.rhs, *size = ws.held.solved;
     for (int a = 0; a < m; ++a) share[a] = prescribed_share(ws, ne + ws.held.contact[a], p);
     solve_locked(ws, share, size);
-    for (int a = 0; a < m; ++a) axpy(nv, -size[a], ws.geometry.direction + (ne + ws.held.contact[a]) * nv, x);
-    backward_solve(nv, ws.geometry.factor, nv, x);
+    for (int a = 0; a < m; ++a) ws.geometry.white.add(ne + ws.held.contact[a], -size[a], x);
+    backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
     for (int i = 0; i < nv; ++i) ws.reduced.y_basis[i * np + p] = x[i];
   }
 }
@@ -95,19 +91,19 @@ void map_prescribed(Workspace<T>& ws) {
 template <class T>
 void reduce_rates(Workspace<T>& ws) {
   const System& sys = ws.sys;
-  const int nv = int(sys.speeds), np = int(sys.prescribed), nz = ws.reduced.nz;
+  const int np = int(sys.prescribed), nz = ws.reduced.nz;
   for (int k = 0; k < ws.n_rates; ++k) {
     const int d = ws.branch[k].direction;
-    const double* row = rate_row(sys, d);
+    const MatrixRow row = rate_row(sys, d);
     for (int p = 0; p < np; ++p) {
       T s = prescribed_share(ws, d, p);
-      for (int i = 0; i < nv; ++i) s += T(row[i]) * ws.reduced.y_basis[i * np + p];
+      for (int e = 0; e < row.n; ++e) s += T(row.value[e]) * ws.reduced.y_basis[row.column[e] * np + p];
       ws.reduced.offset[k * np + p] = s;
     }
     if (ws.reduced.is_sparse) continue;
     for (int j = 0; j < nz; ++j) {
       T s = T(0);
-      for (int i = 0; i < nv; ++i) s += T(row[i]) * ws.reduced.z_basis[i * nz + j];
+      for (int e = 0; e < row.n; ++e) s += T(row.value[e]) * ws.reduced.z_basis[row.column[e] * nz + j];
       ws.reduced.row_z[k * nz + j] = s;
     }
   }
@@ -119,19 +115,42 @@ void reduce_dense(Workspace<T>& ws) {
   const T* basis = ws.held.basis;
   const int nv = int(ws.sys.speeds), nz = ws.reduced.nz, np = int(ws.sys.prescribed);
   T* x = ws.reduced.momentum;
+  transposed_times(nv, ws.geometry.inertia, ws.geometry.factor, ws.v, x);
   for (int i = 0; i < nv; ++i) {
-    T s = T(0);
-    for (int j = i; j < nv; ++j) s += ws.geometry.factor[j * nv + i] * ws.v[j];
-    for (int p = 0; p < np; ++p) s += ws.geometry.prescribed_momentum[p * nv + i] * ws.in.prescribed[p];
-    x[i] = s;
+    for (int p = 0; p < np; ++p) x[i] += ws.geometry.prescribed_momentum[p * nv + i] * ws.in.prescribed[p];
   }
   T* column = ws.reduced.column;
   for (int j = 0; j < nz; ++j) {
     for (int i = 0; i < nv; ++i) column[i] = basis[i * nv + ws.reduced.rank + j];
     ws.reduced.y[j] = dot(nv, column, x);
-    backward_solve(nv, ws.geometry.factor, nv, column);
+    backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, column);
     for (int i = 0; i < nv; ++i) ws.reduced.z_basis[i * nz + j] = column[i];
   }
+}
+
+/// The same where few of many speeds are left: the kept ones, made orthonormal in the mass. False: they depend on each
+/// other.
+template <class T>
+bool reduce_to_few(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  const int nv = int(sys.speeds), nz = ws.reduced.nz, np = int(sys.prescribed);
+  const Compressed<T>& expansion = ws.rows.expansion;
+  T mass[small_speeds * small_speeds] = {}, *momentum = ws.reduced.momentum;
+  each_mass(ws, [&](int i, int j, T m) { mass[i * nz + j] += m; });
+  if (!cholesky(nz, mass, nz)) return false;
+  for (int i = 0; i < nv; ++i) {
+    T* z = ws.reduced.z_basis + i * nz;
+    for (int j = 0; j < nz; ++j) z[j] = T(0);
+    expansion.add(i, T(1), z);
+    forward_solve(nz, mass, nz, z);
+    momentum[i] = mass_row(sys, i).times(ws.v);
+    for (int p = 0; p < np; ++p) momentum[i] += T(sys.mass_prescribed[i * np + p]) * ws.in.prescribed[p];
+  }
+  for (int j = 0; j < nz; ++j) {
+    ws.reduced.y[j] = T(0);
+    for (int i = 0; i < nv; ++i) ws.reduced.y[j] += ws.reduced.z_basis[i * nz + j] * momentum[i];
+  }
+  return true;
 }
 
 }  // namespace clutchwork

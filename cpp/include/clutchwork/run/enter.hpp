@@ -28,14 +28,12 @@ bool has_massless(const Workspace<T>& ws) {
 /// Whether an explicit step is limited by accuracy and not by stability in the present phase.
 template <class T>
 bool is_soft(Workspace<T>& ws) {
-  const int nv = int(ws.sys.speeds);
   double damping = 0, stiffness = 0;
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
     const StatePartials<T> out = state_partials(ws, k);
     const Partial<T> p = branch_partial(ws, b, rate_of(ws, b.direction), T(0), ws.state, ws.seen.state_rates, out);
-    const T* row = ws.geometry.direction + b.direction * nv;
-    const double mobility = value(dot(nv, row, row));
+    const double mobility = value(ws.geometry.own[b.direction]);
     damping += mobility * abs(value(p.by_rate));
     for (int s = 0; s < b.states; ++s) {
       stiffness += mobility * abs(value(out.f_state[s] * out.g_rate[s]));
@@ -82,20 +80,29 @@ void turn_jumped(Workspace<T>& ws) {
   }
 }
 
-/// Reduced coordinates: dense up to a handful of speeds and states, else sparse.
+/// Reduced coordinates: dense up to a handful of speeds and states, else sparse. False: they cannot be made.
 template <class T>
-void reduce_motion(Workspace<T>& ws, bool eliminated) {
+bool reduce_motion(Workspace<T>& ws) {
+  const bool few = is_few(ws.sys);
   map_prescribed(ws);
-  if (ws.reduced.is_sparse) {
-    if (!eliminated) eliminate_locked(ws);
-    reduce_rates(ws);
-    reduce_sparse(ws);
-  } else {
-    map_multipliers(ws);
-    reduce_dense(ws);
-    reduce_rates(ws);
-  }
+  ws.held.mapped = few && !ws.reduced.is_sparse;
+  if (ws.held.mapped) map_multipliers(ws);
+  if (few && ws.reduced.is_sparse && !eliminate_locked(ws)) return false;
+  if (!ws.reduced.is_sparse && few) reduce_dense(ws);
+  if (!ws.reduced.is_sparse && !few && !reduce_to_few(ws)) return false;
+  reduce_rates(ws);
+  if (ws.reduced.is_sparse && !reduce_sparse(ws)) return false;
   for (int i = 0; i < ws.sys.states; ++i) ws.reduced.y[ws.reduced.nz + i] = ws.state[i];
+  return true;
+}
+
+/// Which reduced speeds there are: for many from sparse elimination, for few from a split of the directions.
+template <class T>
+bool count_reduced(Workspace<T>& ws) {
+  if (!is_few(ws.sys)) return eliminate_locked(ws);
+  ws.reduced.rank = split_locked(ws);
+  ws.reduced.nz = int(ws.sys.speeds) - ws.reduced.rank;
+  return true;
 }
 
 /// Reduced motion of the present modes; the state goes to ws.reduced.y. False: the inertias differ too much to tell
@@ -108,16 +115,11 @@ bool enter_mode(Workspace<T>& ws) {
   pack_branches(ws);
   list_laws(ws);
   turn_jumped(ws);
-  // many speeds: the rank from sparse elimination, the dense basis only where it is used
-  const bool many = sys.speeds > 3 * small_speeds;
-  ws.reduced.rank = many ? eliminate_locked(ws) : split_locked(ws);
-  ws.reduced.nz = int(sys.speeds) - ws.reduced.rank;
+  if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);
   ws.reduced.is_sparse =
       !is_small(ws.reduced.method) || sys.shared > 0 || !is_small_size(ws.reduced.nz, sys.states) || has_massless(ws);
-  if (many && (!ws.reduced.is_sparse || sys.prescribed > 0)) split_locked(ws);
-  if (!factor_mobility(ws)) return false;
-  reduce_motion(ws, many);
+  if (!factor_mobility(ws) || !reduce_motion(ws)) return false;
   list_lines(ws);
   ++ws.statistics.phases;
   return true;

@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/dynamics.hpp>
@@ -56,7 +57,8 @@ void angles_at(Form& form, Step<Form>& step, double s, T* angle) {
   }
   for (int n = 0; n < sys.nodes; ++n) {
     T a = ws.angle[n];
-    for (int i = 0; i < nv; ++i) a += T(sys.basis[n * nv + i]) * v[i];
+    const MatrixRow row = basis_row(sys, n);
+    for (int e = 0; e < row.n; ++e) a += T(row.value[e]) * v[row.column[e]];
     for (int p = 0; p < np; ++p) a += T(sys.basis_prescribed[n * np + p]) * given[p];
     angle[n] = a;
   }
@@ -97,11 +99,10 @@ bool is_finite(Workspace<T>& ws, const double* row) {
 template <class T>
 void fill_nodes(const Workspace<T>& ws, const Snapshot<T>& shot, double* row) {
   const System& sys = ws.sys;
-  const int nv = int(sys.speeds), np = int(sys.prescribed);
+  const int np = int(sys.prescribed);
   for (int n = 0; n < sys.nodes; ++n) {
-    double w = 0, a = 0;
-    for (int i = 0; i < nv; ++i)
-      w += sys.basis[n * nv + i] * value(shot.v[i]), a += sys.basis[n * nv + i] * value(shot.dv[i]);
+    const MatrixRow share = basis_row(sys, n);
+    double w = value(share.times(shot.v)), a = value(share.times(shot.dv));
     for (int p = 0; p < np; ++p) {
       w += sys.basis_prescribed[n * np + p] * value(ws.in.prescribed[p]);
       a += sys.basis_prescribed[n * np + p] * value(ws.in.prescribed_slope[p]);

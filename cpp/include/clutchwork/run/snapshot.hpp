@@ -16,8 +16,7 @@ double kinetic_energy(const Workspace<T>& ws) {
   const System& sys = ws.sys;
   double e = 0;
   for (int n = 0; n < sys.nodes; ++n) {
-    double w = 0;
-    for (int i = 0; i < sys.speeds; ++i) w += sys.basis[n * sys.speeds + i] * value(ws.v[i]);
+    double w = value(basis_row(sys, n).times(ws.v));
     for (int p = 0; p < sys.prescribed; ++p)
       w += sys.basis_prescribed[n * sys.prescribed + p] * value(ws.in.prescribed[p]);
     e += 0.5 * sys.inertia[n] * w * w;

@@ -65,12 +65,10 @@ template <class T>
 double collision_step(const Workspace<T>& ws, int k) {
   const Branch<T>& b = ws.branch[k];
   if (b.law >= 0) return infinity;
-  const int nv = int(ws.sys.speeds);
-  const T* row = ws.geometry.direction + b.direction * nv;
   double stiffness = 0;
   for (int s = 0; s < b.states; ++s)
     stiffness += abs(value(ws.jacobian.f_state[b.state + s] * ws.jacobian.g_rate[b.state + s]));
-  const double square = stiffness * value(dot(nv, row, row));
+  const double square = stiffness * value(ws.geometry.own[b.direction]);
   return square > 0 ? 0.5 / sqrt(square) : infinity;
 }
 

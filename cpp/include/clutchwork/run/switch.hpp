@@ -31,14 +31,14 @@ T torque_after(const Workspace<T>& ws, int c) {
 /// Slip acceleration of every contact right after the decision, in decision.acceleration.
 template <class T>
 void accelerations_after(Workspace<T>& ws) {
-  const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements), nv = int(ws.sys.speeds);
+  const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements);
   int* stuck = ws.decision.candidate;
   T *q = ws.decision.motion, *out = ws.decision.acceleration;
   for (int c = 0; c < nc; ++c) stuck[c] = ws.contact.mode[c] == locked;
   free_motion(ws, stuck, q);
   for (int c = 0; c < nc; ++c) {
     const bool holds = ws.contact.mode[c] == locked && ws.contact.loaded[c];
-    if (holds) axpy(nv, ws.decision.torque[c], ws.geometry.direction + (ne + c) * nv, q);
+    if (holds) ws.geometry.white.add(ne + c, ws.decision.torque[c], q);
   }
   for (int c = 0; c < nc; ++c) out[c] = ws.contact.mode[c] == locked ? T(0) : slip_acceleration(ws, c, q);
 }

@@ -8,10 +8,22 @@
 /// Memory of a run in one block, and the sizes of its arrays.
 namespace clutchwork {
 
-/// Numbers of things in a system, by which arrays are sized.
+/// Whether a system is one of few speeds.
+inline bool is_few(const System& s) { return s.speeds <= few_speeds; }
+
+/// Numbers of things in a system, by which arrays are sized; for few speeds the matrices are whole.
 struct Sizes {
   std::int64_t speeds, prescribed, states, shared, nodes, elements, contacts, directions, references, signals;
-  std::int64_t spares;  ///< most locked contacts that can depend on others
+  bool few;
+  std::int64_t spares;      ///< most locked contacts that can depend on others
+  std::int64_t set;         ///< most contacts of a set that depend on each other
+  std::int64_t factor;      ///< of the mass matrix
+  std::int64_t white;       ///< mass-weighted directions
+  std::int64_t mobility;    ///< of the contacts
+  std::int64_t expansion;   ///< speeds over reduced ones, and on the way there
+  std::int64_t rate, mass;  ///< over reduced speeds
+  std::int64_t envelope;    ///< of the reduced motion
+  std::int64_t blocks;      ///< of the own states
 
   explicit Sizes(const System& s)
       : speeds(s.speeds),
@@ -24,7 +36,15 @@ struct Sizes {
         directions(s.elements + s.contacts),
         references(s.n_input_refs + s.prescribed),
         signals(s.inputs),
-        spares(s.contacts > 1 ? s.contacts : 0) {}
+        few(is_few(s)) {
+    const auto nv = speeds, nc = contacts;
+    spares = few ? (nc > 1 ? nc : 0) : s.spares, set = few ? spares : s.set_size;
+    factor = few ? nv * (nv + 1) / 2 : s.factor_room, white = few ? directions * nv : s.direction_room;
+    mobility = few ? nc * (nc + 1) / 2 : s.mobility_room;
+    expansion = few ? nv * nv : s.expansion_room, rate = few ? directions * nv : s.rate_room;
+    envelope = few ? nv * (nv + 1) / 2 : s.envelope_room, mass = few ? envelope : s.mass_room;
+    blocks = states <= 8 ? states * states : states * most_own_states;
+  }
 };
 
 /// Fences between the arrays, which the address sanitizer watches; none without it.

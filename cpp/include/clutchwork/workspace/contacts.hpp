@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/envelope.hpp>
 #include <clutchwork/workspace/arena.hpp>
 #include <clutchwork/workspace/settings.hpp>
 
@@ -45,7 +46,10 @@ template <class T>
 struct Held {
   int n = 0;                                        ///< number of carriers
   int* contact = nullptr;                           ///< of each carrier
+  Envelope near;                                    ///< of the factor
+  int* turn = nullptr;                              ///< carrier at each row of the factor
   T* factor = nullptr;                              ///< Cholesky factor of the mobility of the carriers
+  bool mapped = false;                              ///< the torques of the carriers are a linear map, below
   T *reach = nullptr, *reach_prescribed = nullptr;  ///< torques by those of branches and prescribed accelerations
 
   int n_spare = 0, n_sets = 0, n_driven = 0;
@@ -53,23 +57,26 @@ struct Held {
   int* in_set = nullptr;  ///< of each carrier
   int* driven = nullptr;  ///< spares whose slip the prescribed speeds can move though the carriers are locked
   T* tie = nullptr;       ///< n_spare x contacts: direction of a spare in terms of the carriers
+  bool too_many = false;  ///< more than there is room for: the system is not what it says
 
   // scratch
   T *rhs = nullptr, *solved = nullptr;  ///< of each carrier: right-hand side of its mobility, and the solution
   T* carried = nullptr;                 ///< torques of the carriers
   T* motion = nullptr;                  ///< mass-weighted acceleration, of each speed
+  T* turned = nullptr;                  ///< a right-hand side in the order of the factor
   T *rows = nullptr, *basis = nullptr, *norms = nullptr, *share = nullptr;  ///< of a split of directions
   int *order = nullptr, *all = nullptr, *number = nullptr;                  ///< of the same
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    const auto nc = n.contacts, most = n.spares;
-    a.take(p.contact, nc), a.take(p.factor, nc * nc), a.take(p.reach, nc * n.directions);
-    a.take(p.reach_prescribed, nc * n.prescribed);
-    a.take(p.spare, most), a.take(p.set_first, most + 1), a.take(p.set_rank, most), a.take(p.set_member, most);
-    a.take(p.set_place, most), a.take(p.in_set, nc), a.take(p.driven, most), a.scratch(p.tie, most * most);
+    const auto nc = n.contacts, most = n.spares, nv = n.few ? n.speeds : 0;
+    a.take(p.contact, nc), a.take(p.near.low, nc), a.take(p.near.sky, nc), a.take(p.turn, nc);
+    a.scratch(p.factor, n.mobility), a.take(p.reach, n.few ? nc * n.directions : 0);
+    a.take(p.reach_prescribed, n.few ? nc * n.prescribed : 0);
+    a.take(p.spare, most), a.take(p.set_first, most + 1), a.take(p.set_rank, most), a.take(p.set_member, nc);
+    a.take(p.set_place, nc), a.take(p.in_set, nc), a.take(p.driven, most), a.scratch(p.tie, most * nc);
     a.scratch(p.rhs, nc), a.scratch(p.solved, nc), a.scratch(p.carried, nc), a.scratch(p.motion, n.speeds);
-    a.scratch(p.rows, nc * n.speeds), a.scratch(p.basis, n.speeds * n.speeds);
+    a.scratch(p.turned, nc), a.scratch(p.rows, nc * nv), a.scratch(p.basis, nv * nv);
     a.scratch(p.norms, nc), a.scratch(p.share, nc);
     a.take(p.order, nc), a.take(p.all, nc), a.take(p.number, nc);
   }
@@ -85,7 +92,7 @@ struct SetMemory {
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    const auto m = n.spares;
+    const auto m = n.set;
     a.scratch(p.column, m * m), a.scratch(p.load, m), a.scratch(p.lower, m), a.scratch(p.upper, m), a.scratch(p.x, m);
     a.scratch(p.tableau, m * (m + 1)), a.scratch(p.limit_x, m + 1), a.scratch(p.price, m + 1);
     a.scratch(p.deflection, m), a.scratch(p.step, m), a.scratch(p.residual, m), a.scratch(p.matrix, m * m);
@@ -96,16 +103,21 @@ struct SetMemory {
 /// Memory of the convex problem: contacts/problem.hpp.
 template <class T>
 struct ProblemMemory {
-  T *matrix = nullptr, *gradient = nullptr, *lower = nullptr, *upper = nullptr, *weight = nullptr, *capacity = nullptr;
+  T *diagonal = nullptr, *gradient = nullptr, *lower = nullptr, *upper = nullptr, *weight = nullptr,
+    *capacity = nullptr;
   T *x = nullptr, *slope = nullptr, *trial = nullptr, *factor = nullptr;
   int *bound = nullptr, *free = nullptr;
+  Envelope near;        ///< of the factor
+  int* slot = nullptr;  ///< number in the problem of the contact at each place, -1: none
+  int* row = nullptr;   ///< row in the factor of the contact at each place
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     const auto nc = n.contacts;
-    a.scratch(p.matrix, nc * nc), a.scratch(p.gradient, nc), a.scratch(p.lower, nc), a.scratch(p.upper, nc);
+    a.scratch(p.diagonal, nc), a.scratch(p.gradient, nc), a.scratch(p.lower, nc), a.scratch(p.upper, nc);
     a.scratch(p.weight, nc), a.scratch(p.capacity, nc), a.scratch(p.x, nc), a.scratch(p.slope, nc);
-    a.scratch(p.trial, nc), a.scratch(p.factor, nc * nc), a.take(p.bound, nc), a.take(p.free, nc);
+    a.scratch(p.trial, nc), a.scratch(p.factor, n.mobility), a.take(p.bound, nc), a.take(p.free, nc);
+    a.take(p.near.low, nc), a.take(p.near.sky, nc), a.take(p.slot, nc), a.take(p.row, nc);
   }
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/envelope.hpp>
 #include <clutchwork/workspace/signals.hpp>
 
 /// The motion of one mode: geometry, reduced coordinates, derivatives, shared states.
@@ -22,26 +23,42 @@ struct Compressed {
   }
 
   template <class P, class A>
-  static void lay_out(P& p, A& a, std::int64_t rows, std::int64_t cols) {
-    a.take(p.first, rows + 1), a.take(p.col, rows * cols), a.scratch(p.val, rows * cols);
+  static void lay_out(P& p, A& a, std::int64_t rows, std::int64_t entries) {
+    a.take(p.first, rows + 1), a.take(p.col, entries), a.scratch(p.val, entries);
   }
 };
 
 /// Of the whole run, in mass-weighted coordinates x = L' v.
 template <class T>
 struct Geometry {
-  T *factor = nullptr, *direction = nullptr, *prescribed_momentum = nullptr;
-  Compressed<T> white;     ///< the directions
-  T* mobility = nullptr;   ///< of the contacts
-  bool redundant = false;  ///< contacts can depend on each other
+  Envelope inertia;                                     ///< of the factor
+  T *factor = nullptr, *prescribed_momentum = nullptr;  ///< of the mass matrix
+  Compressed<T> white;                                  ///< the directions
+  T* own = nullptr;                                     ///< mobility of each direction, the square of its length
+  Envelope near;                                        ///< of the mobility
+  T* mobility = nullptr;                                ///< of the contacts, in an order in which neighbours are close
+  int *place = nullptr, *at = nullptr;  ///< of each contact in that order, and the contact at each place
+  int* last = nullptr;                  ///< last place that a place has mobility in common with
+  bool redundant = false;               ///< contacts can depend on each other
+  T* column = nullptr;                  ///< scratch, of each speed
+  int* rest = nullptr;                  ///< scratch, of each speed
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    a.scratch(p.factor, n.speeds * n.speeds), a.scratch(p.direction, n.directions * n.speeds);
-    a.scratch(p.prescribed_momentum, n.prescribed * n.speeds), a.scratch(p.mobility, n.contacts * n.contacts);
-    Compressed<T>::lay_out(p.white, a, n.directions, n.speeds);
+    a.take(p.inertia.low, n.speeds), a.take(p.inertia.sky, n.speeds), a.scratch(p.factor, n.factor);
+    a.scratch(p.prescribed_momentum, n.prescribed * n.speeds);
+    Compressed<T>::lay_out(p.white, a, n.directions, n.white), a.scratch(p.own, n.directions);
+    a.take(p.near.low, n.contacts), a.take(p.near.sky, n.contacts), a.scratch(p.mobility, n.mobility);
+    a.take(p.place, n.contacts), a.take(p.at, n.contacts), a.take(p.last, n.contacts);
+    a.scratch(p.column, n.speeds), a.take(p.rest, n.speeds + 2);
   }
 };
+
+/// Sizes of the exact forms: one speed to small_speeds, no state to small_states.
+inline constexpr int small_speeds = 4, small_states = 2;
+constexpr bool is_small_size(std::int64_t speeds, std::int64_t states) {
+  return speeds >= 1 && speeds <= small_speeds && states <= small_states;
+}
 
 /// v = Z z + Y u, and the rates of the branches in it.
 template <class T>
@@ -56,9 +73,9 @@ struct Reduced {
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    a.take(p.y, n.speeds + n.states), a.take(p.z_basis, n.speeds * n.speeds),
+    a.take(p.y, n.speeds + n.states), a.take(p.z_basis, n.speeds * small_speeds),
         a.take(p.y_basis, n.speeds * n.prescribed);
-    a.take(p.row_z, n.directions * n.speeds), a.take(p.offset, n.directions * n.prescribed);
+    a.take(p.row_z, n.directions * small_speeds), a.take(p.offset, n.directions * n.prescribed);
     a.scratch(p.momentum, n.speeds), a.scratch(p.column, n.speeds), a.scratch(p.row, n.speeds);
   }
 };
@@ -66,18 +83,25 @@ struct Reduced {
 /// The sparse form: rates, mass and expansion of reduced coordinates, and the envelope in which they are factored.
 template <class T>
 struct SparseRows {
-  Compressed<T> rate, mass, expansion;
-  int* eliminated_by = nullptr;        ///< of each speed: locked contact, -1: it is kept
+  Compressed<T> rate, expansion;
+  Compressed<T> mass;                     ///< lower half
+  Compressed<T> solved;                   ///< each eliminated speed over those left then, in the order of elimination
+  Compressed<T> spread;                   ///< speeds over those that are kept, `spread_at` tells the row of a speed
+  int *pivot = nullptr, *step = nullptr;  ///< speed of each elimination; elimination of each speed, -1: it is kept
+  int* spread_at = nullptr;
   int* number = nullptr;               ///< of each speed among those that are kept, or -1
   int *low = nullptr, *sky = nullptr;  ///< of each row: first column in the envelope; place of column 0
   T *envelope = nullptr, *mass_envelope = nullptr;
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    Compressed<T>::lay_out(p.rate, a, n.directions, n.speeds), Compressed<T>::lay_out(p.mass, a, n.speeds, n.speeds);
-    Compressed<T>::lay_out(p.expansion, a, n.speeds, n.speeds);
-    a.take(p.eliminated_by, n.speeds), a.take(p.number, n.speeds), a.take(p.low, n.speeds), a.take(p.sky, n.speeds + 1);
-    a.scratch(p.envelope, n.speeds * n.speeds), a.scratch(p.mass_envelope, n.speeds * n.speeds);
+    Compressed<T>::lay_out(p.rate, a, n.directions, n.rate), Compressed<T>::lay_out(p.mass, a, n.speeds, n.mass);
+    Compressed<T>::lay_out(p.expansion, a, n.speeds, n.expansion);
+    Compressed<T>::lay_out(p.solved, a, n.speeds, n.expansion);
+    Compressed<T>::lay_out(p.spread, a, n.speeds, n.expansion);
+    a.take(p.pivot, n.speeds), a.take(p.step, n.speeds), a.take(p.spread_at, n.speeds);
+    a.take(p.number, n.speeds), a.take(p.low, n.speeds), a.take(p.sky, n.speeds);
+    a.scratch(p.envelope, n.envelope), a.scratch(p.mass_envelope, n.envelope);
   }
 };
 
@@ -93,7 +117,7 @@ struct Jacobian {
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.partial, n.directions), a.take(p.f_state, n.states), a.take(p.g_rate, n.states),
         a.take(p.g_time, n.states);
-    a.take(p.g_state, n.states * n.states), a.take(p.block, n.directions);
+    a.take(p.g_state, n.blocks), a.take(p.block, n.directions);
   }
 };
 
@@ -130,7 +154,7 @@ struct Stages {
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.scratch(p.rows, step_rows * (n.speeds + n.states)), a.scratch(p.stiff, n.directions);
-    a.take(p.inverse, n.states * n.states), a.scratch(p.own, n.states), a.take(p.pivot, n.states);
+    a.take(p.inverse, n.blocks), a.scratch(p.own, n.states), a.take(p.pivot, n.states);
   }
   static constexpr int step_rows = 20;
 };
