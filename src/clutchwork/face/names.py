@@ -31,7 +31,18 @@ NAMES = {
     "UnknownName": "base.errors",
     "UseError": "base.errors",
     "export_c": "codegen",
+    "Sweep": "sweeps.result",
+    "SweepInterrupted": "sweeps.result",
+    "at": "sweeps.outputs",
+    "break_away": "sweeps.outputs",
+    "integral": "sweeps.outputs",
+    "lock": "sweeps.outputs",
+    "maximum": "sweeps.outputs",
+    "minimum": "sweeps.outputs",
+    "peak": "sweeps.outputs",
     "simulate": "run.simulation",
+    "sweep": "sweeps.sweep",
+    "variants": "sweeps.variants",
 }
 
 PACKAGES = ("fit", "rig")

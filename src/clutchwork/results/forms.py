@@ -57,7 +57,10 @@ class Total:
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """Product with a constant vector; columns with factor 0 are left out, for they may be infinite."""
+    """Product with a constant vector; columns with factor 0 are left out, for they may be infinite.
+
+    Terms are added in their order, so that a row has the same value whatever rows stand beside it.
+    """
 
     used: NDArray[np.intp]
     factors: Array
@@ -70,7 +73,8 @@ class Linear:
 
     def __call__(self, rows: Rows) -> Array:
         """Values on a matrix of rows."""
-        return rows[:, self.used] @ self.factors
+        terms = [factor * rows[:, index] for index, factor in zip(self.used, self.factors, strict=True)]
+        return sum(terms[1:], terms[0]) if terms else np.zeros(len(rows))
 
 
 @dataclass(frozen=True)

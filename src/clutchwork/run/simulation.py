@@ -176,15 +176,25 @@ def refined(steps: Array, spacing: float, jumps: Array) -> Array:
 def _message(system: System, status: int, run: Any) -> str:
     """Why a run stopped. What is not finite is an element, or a number of a row; else the largest one is named."""
     index, at, value, column = run.detail()
-    parts = [*system.elements, *system.contacts]
-    if NAMES[status] == "zeno" and index < 0:
-        return explain(status, None, at, value, system.inputs[int(value)].name)
-    if status != NOT_FINITE or 0 <= index < len(parts):
-        return explain(status, parts[index] if 0 <= index < len(parts) else None, at, value)
-    if column < 0:
+    if status == NOT_FINITE and not names_part(system, index) and column < 0:
         row = np.asarray(run.row())
         column = int(np.argmax(np.abs(row)))
         value = float(row[column])
+    return told(system, status, index, at, value, column)
+
+
+def names_part(system: System, index: int) -> bool:
+    """Whether a number is that of an element or a contact."""
+    return 0 <= index < len(system.elements) + len(system.contacts)
+
+
+def told(system: System, status: int, index: int, at: float, value: float, column: int) -> str:
+    """Why a run stopped at a time: an element or contact by its number, and its value, or a number of the row."""
+    parts = [*system.elements, *system.contacts]
+    if NAMES[status] == "zeno" and index < 0:
+        return explain(status, None, at, value, system.inputs[int(value)].name)
+    if status != NOT_FINITE or names_part(system, index):
+        return explain(status, parts[index] if names_part(system, index) else None, at, value)
     from clutchwork.results.rows import numbers
 
     name, _ = numbers(wiring(system))[column]

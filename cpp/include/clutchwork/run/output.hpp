@@ -167,8 +167,8 @@ Status emit_parts(Form& form, Step<Form>& step, double s_end, Sink& sink) {
   const std::int64_t size = form.ws.row.size, parts = s_end > 0 ? sink.steps : 1;
   for (std::int64_t k = 1; k <= parts; ++k) {
     const double t = step.t + (k == parts ? s_end : s_end * double(k) / double(parts)) * step.h;
-    // as a grid with this instant has it
-    const double s = k == parts ? s_end : smaller(s_end, (t - step.t) / step.h);
+    // as a grid with this instant has it, but for the bare steps
+    const double s = parts == 1 ? s_end : smaller(s_end, (t - step.t) / step.h);
     sink.times[sink.at] = t;
     if (!fill_row(form, step, s, s_end, sink.rows + size * sink.at)) return Status::not_finite;
     ++sink.at;

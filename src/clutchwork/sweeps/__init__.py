@@ -1,0 +1,1 @@
+"""Many runs of one driveline with other numbers, in one call: `clutchwork.sweep`."""

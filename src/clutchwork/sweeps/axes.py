@@ -1,0 +1,305 @@
+"""From variants to what the core takes: bytes of Systems, words that change in them, and who has which.
+
+Names whose numbers stand at places of their own, such as a gain or a pressure, become axes: words of eight bytes in
+the System that are replaced for each value. Where values act together, as inertias and ratios do in the mass matrix,
+each combination gets a System of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.changes import UNKNOWN_SOURCE
+from clutchwork.assembly.patches import PLAIN, Patch, Unpatched, patches
+from clutchwork.base.errors import ModelError, Problem
+from clutchwork.declare.layout import COUNTS, FIELDS
+from clutchwork.declare.node import Component, Law, Signal, ThermalNode
+from clutchwork.declare.schema import specs
+from clutchwork.declare.speech import path_of
+from clutchwork.model.changes import Target, renewed, targets_of
+from clutchwork.model.components import component_problems
+from clutchwork.model.fields import law_problems
+from clutchwork.model.numbers import At, is_right, number_problems
+from clutchwork.model.parts import role
+from clutchwork.model.thermal import thermal_problems
+from clutchwork.sweeps.variants import Codes, Variants, Varied
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+
+Words = NDArray[np.uint64]
+# so many mistakes of a sweep are told
+MOST_PROBLEMS = 20
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """A name on its own: places of words in the System, and what they are for each of its values."""
+
+    name: str
+    place: NDArray[np.int64]
+    words: Words
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Where each array of a System begins in its bytes."""
+
+    starts: dict[str, int]
+
+    @classmethod
+    def of(cls, system: System) -> Layout:
+        """The places in `System.to_bytes`."""
+        starts, at = {}, 16 + 8 * len(COUNTS)
+        for name, _, _, _ in FIELDS:
+            starts[name] = at
+            at += -(-system.arrays[name].nbytes // 8) * 8
+        return cls(starts)
+
+    def places(self, patch: Patch, array: NDArray[Any]) -> NDArray[np.int64]:
+        """Words that a patch of numbers of eight bytes touches."""
+        if array.dtype.itemsize != 8:
+            raise Unpatched
+        first = self.starts[patch.array] // 8 + patch.start
+        return np.arange(first, first + len(patch.values), dtype=np.int64)
+
+
+@dataclass
+class Plan:
+    """The axes of a sweep, and the names whose values act together."""
+
+    base: System
+    variants: Variants
+    axes: list[Axis] = field(default_factory=list)
+    bound: list[Varied] = field(default_factory=list)
+    targets: dict[str, Target] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, base: System, variants: Variants) -> Plan:
+        """Look at every value; ModelError names all that are wrong."""
+        plan = cls(base, variants)
+        if base.source is None:
+            raise ModelError([UNKNOWN_SOURCE])
+        plan.targets, problems = targets_of(base.source, [one.name for one in variants.varied])
+        if problems:
+            raise ModelError(problems, base.name)
+        for one in variants.varied:
+            try:
+                plan._add(one)
+            except ModelError as error:
+                problems += error.problems
+        if problems:
+            raise ModelError(problems[:MOST_PROBLEMS], base.name)
+        problems = list(islice(plan._together(), MOST_PROBLEMS))
+        if problems:
+            raise ModelError(problems, base.name)
+        plan._part()
+        return plan
+
+    def _add(self, one: Varied) -> None:
+        """A name as an axis of its own where it is one."""
+        aim = self.targets[one.name]
+        others = [other for name, other in self.targets.items() if name != one.name and other.owner is aim.owner]
+        if not _alone(aim, others, self.base):
+            self.bound.append(one)
+            return
+        try:
+            self.axes.append(self._axis(one, aim))
+        except Unpatched:
+            self.bound.append(one)
+
+    def _axis(self, one: Varied, aim: Target) -> Axis:
+        slot = self.base.parameters.get(one.name)
+        spec = _plain_number(aim)
+        if slot is not None and spec is not None:
+            first = self._layout.starts["params"] // 8 + slot
+            problems = [found for value in one.values for found in _number_problems(value, spec, aim)]
+            if problems:
+                raise ModelError(problems[:MOST_PROBLEMS], self.base.name)
+            words = np.array(one.values, dtype=float).view(np.uint64).reshape(-1, 1)
+            return Axis(one.name, np.array([first], dtype=np.int64), words)
+        lines = [self._line(patches(self.base.numbered, aim.owner, self._renewed(aim, value))) for value in one.values]
+        place = np.array(sorted({word for place, _ in lines for word in place.tolist()}), dtype=np.int64)
+        base = np.frombuffer(self.base.to_bytes(), dtype=np.uint64)
+        words = np.tile(base[place], (len(lines), 1))
+        for line, (own, numbers) in zip(words, lines, strict=True):
+            line[np.searchsorted(place, own)] = numbers
+        return Axis(one.name, place, words)
+
+    def _line(self, found: Sequence[Patch]) -> tuple[NDArray[np.int64], Words]:
+        """Words that patches change, and what to."""
+        arrays = self.base.arrays
+        changing = [patch for patch in found if _differs(arrays[patch.array], patch)]
+        place = [self._layout.places(patch, arrays[patch.array]) for patch in changing]
+        words = [np.array(patch.values, dtype=float).view(np.uint64) for patch in changing]
+        empty = np.zeros(0, dtype=np.int64)
+        return np.concatenate([empty, *place]), np.concatenate([empty.view(np.uint64), *words])
+
+    def _renewed(self, aim: Target, value: Any) -> Any:
+        """The owner with one value, which must be right on its own."""
+        made = renewed(aim.owner, [(aim.path, value)])
+        found = list(thermal_problems(made) if isinstance(made, ThermalNode) else component_problems(made))
+        if found:
+            raise ModelError(found[:MOST_PROBLEMS], self.base.name)
+        return made
+
+    @cached_property
+    def _layout(self) -> Layout:
+        return Layout.of(self.base)
+
+    def _together(self) -> Iterable[Problem]:
+        """Mistakes of values that are right one by one, where an element or its friction law has rules between them."""
+        free = {axis.name for axis in self.axes}
+        groups = dict[tuple[int, bool], list[Varied]]()
+        for one in self.variants.varied:
+            aim = self.targets[one.name]
+            if one.name in free and _has_rules(aim):
+                of_law = aim.path[0] == "friction" and type(aim.owner).law_problems is Component.law_problems
+                groups.setdefault((id(aim.owner), of_law), []).append(one)
+        for (_, of_law), varied in groups.items():
+            aims = [self.targets[one.name] for one in varied]
+            at = At(path_of(aims[0].owner), "friction")
+            for values in combinations(varied):
+                new = renewed(aims[0].owner, [(aim.path, value) for aim, value in zip(aims, values, strict=True)])
+                yield from law_problems(new.friction, at) if of_law else component_problems(new)
+
+    def _part(self) -> None:
+        """Axes that touch the same words act together after all."""
+        owner = dict[int, str]()
+        both = set[str]()
+        for axis in self.axes:
+            for word in axis.place.tolist():
+                both |= {axis.name, owner[word]} if word in owner else set()
+                owner[word] = axis.name
+        self.bound += [one for one in self.variants.varied if one.name in both]
+        self.axes = [axis for axis in self.axes if axis.name not in both]
+
+    # --------------------------------------------------------------------------------------------------------- batches
+
+    def systems(self, first: int, last: int) -> tuple[list[System], Codes]:
+        """The Systems of some variants, without their axes, and which of them each has."""
+        return systems_of(self.base, self.bound, first, last)
+
+    def key(self, system: System) -> tuple[Any, ...]:
+        """What two Systems share where the words of an axis are at the same places in both."""
+        if any(_holds_points(self.targets[one.name], one.values) for one in self.bound):
+            return (id(system),)
+        names = [name for name, kind, _, _ in FIELDS if kind == "i4"]
+        return (*system.counts.values(), *(system.arrays[name].tobytes() for name in names))
+
+    def axes_on(self, system: System) -> list[Axis]:
+        """The axes for a System of another layout."""
+        named = {axis.name for axis in self.axes}
+        varied = tuple(one for one in self.variants.varied if one.name in named)
+        return Plan.of(system, replace(self.variants, varied=varied, shape=None)).axes
+
+    def relevant(self, signal: str) -> list[Varied]:
+        """Names that the form of a signal may depend on."""
+        bound = {one.name for one in self.bound}
+        return [one for one in self.variants.varied if one.name in bound or self._of(one.name, signal)]
+
+    def _of(self, name: str, signal: str) -> bool:
+        owner = self.targets[name].owner
+        return isinstance(owner, ThermalNode) or signal.startswith(f"{owner.name}.")
+
+
+def systems_of(base: System, varied: Sequence[Varied], first: int, last: int) -> tuple[list[System], Codes]:
+    """A System for each combination of values that variants from first to last have, and which of them each has."""
+    if not varied:
+        return [base], np.zeros(last - first, dtype=np.int64)
+    lines = list(zip(*(one.codes[first:last].tolist() for one in varied), strict=True))
+    number = {line: place for place, line in enumerate(dict.fromkeys(lines))}
+    made, problems = list["System"](), list[Problem]()
+    for line in number:
+        try:
+            made.append(base.changed({one.name: one.values[code] for one, code in zip(varied, line, strict=True)}))
+        except ModelError as error:
+            problems += error.problems
+    if problems:
+        raise ModelError(list(dict.fromkeys(problems))[:MOST_PROBLEMS], base.name)
+    return made, np.array([number[line] for line in lines], dtype=np.int64)
+
+
+def combinations(varied: Sequence[Varied]) -> Iterable[tuple[Any, ...]]:
+    """Values of names that variants have together, each combination once."""
+    lines = dict.fromkeys(zip(*(one.codes.tolist() for one in varied), strict=True))
+    return [tuple(one.values[code] for one, code in zip(varied, line, strict=True)) for line in lines]
+
+
+def _alone(aim: Target, others: Sequence[Target], base: System) -> bool:
+    """Whether what follows from a value does not depend on the other values of its owner that vary."""
+    owner = aim.owner
+    if isinstance(owner, ThermalNode):
+        return True
+    if not isinstance(owner, Component) or role(owner) not in PLAIN or type(owner).parts is not Component.parts:
+        return False
+    if base.numbered.massless and type(owner).passive is not Component.passive:
+        return False
+    if not others:
+        return True
+    if any(getattr(type(owner), hook) is not getattr(Component, hook) for hook in ("initial_states", "state_scales")):
+        return False
+    if any(_slot(other) == _slot(aim) for other in others):
+        return False
+    return not (_entangled(aim) and any(map(_entangled, others)))
+
+
+def _slot(aim: Target) -> tuple[str, ...]:
+    """The field whose numbers stand together: one of the element, or one of its friction law."""
+    return aim.path[: 2 if aim.path[0] == "friction" else 1]
+
+
+def _entangled(aim: Target) -> bool:
+    """Whether a value goes into numbers that others of its owner go into, such as the tolerance of a contact."""
+    known = {item.name: spec for item, spec in specs(type(aim.owner))}
+    return aim.path in (("friction",), ("friction", "band")) or known[aim.path[0]].what == "option"
+
+
+def _holds_points(aim: Target, values: Sequence[Any]) -> bool:
+    """Whether values are curves or friction laws, whose points may be more or fewer; those of signals are counted."""
+    thing = aim.owner
+    for name in aim.path:
+        if isinstance(thing, Signal):
+            return False
+        thing = getattr(thing, name)
+    return not all(isinstance(value, int | float | str | Signal | None) for value in values)
+
+
+def _plain_number(aim: Target) -> Any:
+    """The spec of a parameter that is a plain number, None for anything else."""
+    thing = aim.owner
+    for name in aim.path[:-1]:
+        thing = getattr(thing, name)
+    found = next((spec for item, spec in specs(type(thing), "param") if item.name == aim.path[-1]), None)
+    return None if found is None or found.choices or found.flag or found.optional else found
+
+
+def _number_problems(value: Any, spec: Any, aim: Target) -> Iterable[Problem]:
+    if is_right(value, spec):
+        return ()
+    return list(number_problems(value, spec, At(path_of(aim.owner), ".".join(aim.path), spec.unit)))
+
+
+def _has_rules(aim: Target) -> bool:
+    """Whether what has a value has rules between its values."""
+    owner = aim.owner
+    if not isinstance(owner, Component):
+        return False
+    if type(owner).law_problems is not Component.law_problems:
+        return True
+    law = owner.friction
+    if isinstance(law, Law) and aim.path[0] == "friction":
+        return law.sticks or type(law).problems is not Law.problems
+    return type(owner).problems is not Component.problems
+
+
+def _differs(array: NDArray[Any], patch: Patch) -> bool:
+    part = array.reshape(-1)[patch.start : patch.start + len(patch.values)]
+    return part.tobytes() != np.array(patch.values, dtype=part.dtype).tobytes()

@@ -1,0 +1,372 @@
+"""Blocks of variants through the compiled core, and the outputs from what it gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.wiring import row_columns, wiring
+from clutchwork.base.errors import UseError, near
+from clutchwork.declare.core import core
+from clutchwork.declare.status import DONE, INTERRUPTED
+from clutchwork.results.channels import Channels
+from clutchwork.results.forms import LOCKED
+from clutchwork.sweeps.axes import Axis, Plan, systems_of
+from clutchwork.sweeps.columns import all_needed, fixed, moved
+from clutchwork.sweeps.outputs import PARTS, AtEnd, AtTimes, Computed, Extreme, Integral, Output, When
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.declare.options import Options
+
+Array = NDArray[Any]
+Progress = Callable[[int], None]
+
+# numbers that one block may keep, some 64 MB
+MOST_KEPT = 8_000_000
+# variants of one block: enough that threads seldom wait for the last one, few enough to tell of progress
+MOST_VARIANTS = 2048
+# rows that a variant is expected to have in steps
+ROWS_EXPECTED = 2000
+
+
+@dataclass(frozen=True)
+class Way:
+    """How the core is to run: up to when, with which options, on how many threads."""
+
+    t_end: float
+    options: Options
+    threads: int
+
+
+@dataclass(frozen=True, eq=False)
+class Wanted:
+    """The outputs that the core gives, and the rows they need."""
+
+    outputs: Mapping[str, Output]
+    channels: Channels
+    contacts: tuple[str, ...]
+    t_end: float
+
+    @classmethod
+    def of(cls, system: System, options: Options, outputs: Mapping[str, Output], t_end: float) -> Wanted:
+        """Of a System, without those that need a Trajectory."""
+        channels = Channels(wiring(system), angles=options.angles, work=options.work)
+        native = {name: one for name, one in outputs.items() if not isinstance(one, Computed)}
+        return cls(native, channels, tuple(contact.name for contact in system.contacts), t_end)
+
+    def __post_init__(self) -> None:
+        """Refuse names that are not there, all at once."""
+        problems = [text for one in self.outputs.values() for text in self._faults(one)]
+        if problems:
+            raise UseError("sweep", problems)
+
+    def _faults(self, one: Output) -> Iterator[str]:
+        if isinstance(one, When):
+            if one.contact not in self.contacts:
+                yield f"no contact {one.contact!r}{near(one.contact, self.contacts)}"
+        elif not isinstance(one, Computed):
+            try:
+                self.channels[one.signal]
+            except KeyError as error:
+                yield str(error)
+                return
+            if isinstance(one, Integral) and not one.kept_as(self.channels):
+                remedy = "give a power, a speed or an acceleration, or a function of the run"
+                yield f"{one.signal} has no exact integral: {remedy}"
+            if isinstance(one, AtTimes) and one.times[-1] > self.t_end:
+                yield f"{one.name} {one.times[-1]:g} s is after t_end = {self.t_end:g} s"
+
+    def signals(self, *kinds: type) -> list[str]:
+        """Signals that outputs of some kinds are made of."""
+        found = list[Any](one for one in self.outputs.values() if isinstance(one, kinds))
+        return [one.signal if isinstance(one, Extreme) else self.kept_as(one) for one in found]
+
+    @cached_property
+    def grid(self) -> Array:
+        """Instants of the grid: those asked for, the start of integrals, the end."""
+        asked = {time for one in self.outputs.values() if isinstance(one, AtTimes) for time in one.times}
+        start = {0.0} if self.signals(Integral) else set()
+        # one at an event is shown once, from the left, as a run that is asked for it
+        return np.array(sorted(asked | start | {self.t_end}))
+
+    @cached_property
+    def all_signals(self) -> tuple[str, ...]:
+        """Signals that any output is made of."""
+        return tuple(dict.fromkeys(self.signals(AtEnd, AtTimes, Integral, Extreme)))
+
+    @property
+    def in_steps(self) -> bool:
+        """Whether rows within the steps of the solver are needed."""
+        return bool(self.signals(Extreme))
+
+    @property
+    def needs_grid(self) -> bool:
+        """Whether rows at instants are needed that the steps do not give."""
+        return bool(self.signals(AtTimes)) or not self.in_steps
+
+    def kept_as(self, one: AtEnd | AtTimes | Integral) -> str:
+        """The signal that an output is read from."""
+        return one.kept_as(self.channels) if isinstance(one, Integral) else one.signal
+
+    @property
+    def events(self) -> bool:
+        """Whether events are needed."""
+        return any(isinstance(one, When) for one in self.outputs.values())
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """What the core gave for consecutive variants."""
+
+    first: int
+    status: Array
+    detail: Array
+    values: dict[str, Array]
+    raised: BaseException | None
+
+
+class Batch:
+    """All variants of a plan, block by block."""
+
+    def __init__(self, plan: Plan, wanted: Wanted, way: Way) -> None:
+        self.plan, self.wanted, self.way = plan, wanted, way
+
+    @property
+    def length(self) -> int:
+        """Variants of one block."""
+        columns = all_needed(self.wanted.channels[name].evaluate for name in self.wanted.all_signals)
+        rows = len(self.wanted.grid) + (ROWS_EXPECTED if self.wanted.in_steps else 0)
+        return max(1, min(MOST_VARIANTS, MOST_KEPT // (rows * (len(columns) + 1))))
+
+    def run(self, first: int, last: int, progress: Progress | None) -> Block:
+        """Variants from first to last."""
+        systems, base = self.plan.systems(first, last)
+        self._refuse_other_rows(systems)
+        forms = Forms(self.plan, self.wanted, first, last, systems, base)
+        block = Block(first, np.full(last - first, INTERRUPTED), np.full((last - first, 4), np.nan), {}, None)
+        before = 0
+        for axes, members in self._layouts(systems):
+            who = np.flatnonzero(np.isin(base, members))
+            call = Call(axes, [systems[member] for member in members], np.searchsorted(members, base[who]), who)
+            told = None if progress is None else partial(_add, progress, before)
+            block = self._ran(block, call, forms, told)
+            if block.raised is not None:
+                break
+            before += len(who)
+        return block
+
+    def _refuse_other_rows(self, systems: Sequence[System]) -> None:
+        sizes = row_columns(self.plan.base.counts)
+        if any(row_columns(system.counts) != sizes for system in systems):
+            message = "values that vary give the driveline other states, so that its signals are others"
+            raise UseError("sweep", [f"{message}; sweep over each kind of driveline on its own"])
+
+    def _layouts(self, systems: Sequence[System]) -> Iterator[tuple[list[Axis], NDArray[np.int64]]]:
+        """Axes, and numbers of the systems that they fit: all whose arrays have the same lengths."""
+        if not self.plan.axes:
+            yield [], np.arange(len(systems))
+            return
+        own, groups = self.plan.key(self.plan.base), dict[Any, list[int]]()
+        for number, system in enumerate(systems):
+            groups.setdefault(self.plan.key(system), []).append(number)
+        for key, members in groups.items():
+            axes = self.plan.axes if key == own else self.plan.axes_on(systems[members[0]])
+            yield axes, np.array(members)
+
+    def _ran(self, block: Block, call: Call, forms: Forms, progress: Progress | None) -> Block:
+        """The block with what the core gave for some of its variants."""
+        wanted, found = self.wanted, None
+        if wanted.in_steps:
+            found = self._native(call, forms, PARTS, None if wanted.needs_grid else progress)
+            _keep_ends(block, call, found)
+            _from_steps(block, call, forms, found)
+        if wanted.needs_grid and (found is None or found.raised is None):
+            found = self._native(call, forms, 0, progress)
+            _keep_ends(block, call, found)
+            _from_grid(block, call, forms, found)
+        assert found is not None  # noqa: S101, one of both is needed
+        if wanted.events:
+            _from_events(block, call, wanted, found)
+        # what was begun and not ended counts as not begun
+        for values in block.values.values():
+            values[block.status == INTERRUPTED] = np.nan if values.dtype.kind == "f" else ""
+        return replace(block, raised=found.raised)
+
+    def _native(self, call: Call, forms: Forms, parts: int, progress: Progress | None) -> Native:
+        axes = [(axis.place, axis.words) for axis in call.axes]
+        codes = [forms.codes[axis.name][call.who] for axis in call.axes]
+        choice = np.ascontiguousarray(np.stack([call.base, *codes], axis=1), dtype=np.int64)
+        options = list(self.way.options.core_options().items())
+        grid = np.zeros(0) if parts else self.wanted.grid
+        systems = [system.to_bytes() for system in call.systems]
+        threads = min(self.way.threads, max(1, len(call.who) // 2))
+        columns = np.array(forms.columns, dtype=np.int64)
+        return Native(
+            *core().sweep(
+                systems,
+                axes,
+                choice,
+                options,
+                self.way.t_end,
+                grid,
+                parts,
+                columns,
+                self.wanted.events,
+                threads,
+                progress,
+            )
+        )
+
+
+def _add(progress: Progress, before: int, done: int) -> None:
+    progress(before + done)
+
+
+@dataclass(frozen=True, eq=False)
+class Call:
+    """Variants of one layout: their axes, their Systems, which of these each has, and its place in the block."""
+
+    axes: Sequence[Axis]
+    systems: Sequence[System]
+    base: NDArray[np.int64]
+    who: NDArray[np.intp]
+
+
+class Native(NamedTuple):
+    """What one call of the core gives."""
+
+    status: Array
+    detail: Array
+    rows: Array | None  # of a grid: variants, instants, columns
+    parts: list[tuple[Array, Array, Array, Array, Array]]  # of each thread: variants, counts, times, rows, events
+    raised: BaseException | None
+
+
+class Forms:
+    """How signals follow from the columns that are kept, for each variant of a block."""
+
+    def __init__(
+        self, plan: Plan, wanted: Wanted, first: int, last: int, systems: Sequence[System], base: NDArray[np.int64]
+    ) -> None:
+        self.wanted, self.codes = wanted, {one.name: one.codes[first:last] for one in plan.variants.varied}
+        made = dict[tuple[str, ...], tuple[list[Channels], NDArray[np.int64]]]()
+        bound = tuple(one.name for one in plan.bound)
+        whole = dict[str, tuple[list[Any], NDArray[np.int64]]]()
+        for name in wanted.all_signals:
+            form = wanted.channels[name].evaluate
+            if fixed(name, form):
+                whole[name] = [form], np.zeros(last - first, dtype=np.int64)
+                continue
+            relevant = plan.relevant(name)
+            names = tuple(one.name for one in relevant)
+            if names not in made:
+                own, which = (systems, base) if names == bound else systems_of(plan.base, relevant, first, last)
+                made[names] = [Channels(wiring(system)) for system in own], which
+            found, which = made[names]
+            whole[name] = [channels[name].evaluate for channels in found], which
+        self.columns = all_needed(form for forms, _ in whole.values() for form in forms)
+        places = {column: place for place, column in enumerate(self.columns)}
+        self.forms = {name: ([moved(form, places) for form in forms], which) for name, (forms, which) in whole.items()}
+
+    def values(self, name: str, rows: Array, variant: Array) -> Array:
+        """A signal over rows, each of which is of a variant of the block."""
+        forms, which = self.forms[name]
+        if len(forms) == 1:
+            return np.asarray(forms[0](rows))
+        found = np.empty(len(rows))
+        codes = which[variant]
+        for code, form in enumerate(forms):
+            mine = codes == code
+            found[mine] = form(rows[mine])
+        return found
+
+
+def _keep_ends(block: Block, call: Call, found: Native) -> None:
+    """Take over how the variants ended."""
+    block.status[call.who] = found.status
+    block.detail[call.who] = found.detail
+
+
+def _place(block: Block, name: str, like: Array, more: tuple[int, ...] = ()) -> Array:
+    """The values of an output for the whole block, empty before the first call."""
+    if name not in block.values:
+        plain = like.dtype.kind in "fiub"
+        shape = (len(block.status), *more)
+        block.values[name] = np.full(shape, np.nan) if plain else np.full(shape, "", dtype=like.dtype)
+    return block.values[name]
+
+
+def _from_grid(block: Block, call: Call, forms: Forms, found: Native) -> None:
+    """Signals at instants and at the end, and what the change from the start to the end tells."""
+    wanted, rows = forms.wanted, found.rows
+    assert rows is not None  # noqa: S101, the call was for a grid
+    flat = rows.reshape(rows.shape[0] * rows.shape[1], rows.shape[2])
+    variant = np.repeat(call.who, rows.shape[1])
+    reached = (found.status == DONE)[:, None] | ~np.isnan(rows).all(axis=2) if rows.shape[2] else None
+    for name, one in wanted.outputs.items():
+        if isinstance(one, AtTimes | AtEnd | Integral):
+            signal = wanted.kept_as(one)
+            whole = forms.values(signal, _finite(flat), variant).reshape(rows.shape[:2])
+            _set_grid(block, call, name, one, wanted, whole, reached)
+
+
+def _finite(rows: Array) -> Array:
+    """Rows that were not reached hold NaN; as a mode of a contact they must be a number."""
+    return np.where(np.isnan(rows), 0.0, rows)
+
+
+def _set_grid(
+    block: Block, call: Call, name: str, one: Output, wanted: Wanted, values: Array, reached: Array | None
+) -> None:
+    there = np.ones(values.shape, dtype=bool) if reached is None else reached
+    if isinstance(one, AtTimes):
+        at = np.searchsorted(wanted.grid, one.times)
+        out = _place(block, name, values, (len(one.times),))
+        out[call.who] = np.where(there[:, at], values[:, at], out[call.who])
+        return
+    out = _place(block, name, values)
+    ended = block.status[call.who] == DONE
+    chosen = values[:, -1] - values[:, 0] if isinstance(one, Integral) else values[:, -1]
+    out[call.who[ended]] = chosen[ended]
+
+
+def _from_steps(block: Block, call: Call, forms: Forms, found: Native) -> None:
+    """Extremes over the steps, and the same as from a grid where the last row is enough."""
+    wanted = forms.wanted
+    for variants, counts, _, rows, _ in found.parts:
+        some = counts > 0
+        who, starts = call.who[variants[some]], (np.cumsum(counts) - counts)[some]
+        variant = np.repeat(call.who[variants], counts)
+        ends, ended = starts + counts[some] - 1, block.status[who] == DONE
+        for name, one in wanted.outputs.items():
+            if isinstance(one, Extreme):
+                values = forms.values(one.signal, rows, variant)
+                _place(block, name, values)[who] = one.reduced(values, starts) if len(starts) else ()
+            elif isinstance(one, AtEnd | Integral) and not wanted.needs_grid:
+                last = forms.values(wanted.kept_as(one), rows[ends], variant[ends])
+                if isinstance(one, Integral):
+                    last = last - forms.values(wanted.kept_as(one), rows[starts], variant[starts])
+                _place(block, name, last)[who[ended]] = last[ended]
+
+
+def _from_events(block: Block, call: Call, wanted: Wanted, found: Native) -> None:
+    """Times of events."""
+    events = np.concatenate([part[4] for part in found.parts]) if found.parts else np.zeros((0, 5))
+    for name, one in wanted.outputs.items():
+        if isinstance(one, When):
+            mine = events[events[:, 2] == wanted.contacts.index(one.contact)]
+            was, became = mine[:, 3] == LOCKED, mine[:, 4] == LOCKED
+            mine = mine[became & ~was if one.kind == "lock" else was & ~became]
+            mine = mine[np.lexsort((mine[:, 1], mine[:, 0]))]
+            variants = mine[:, 0].astype(np.int64)
+            firsts = np.searchsorted(variants, np.arange(len(call.who)), "left")
+            lasts = np.searchsorted(variants, np.arange(len(call.who)), "right")
+            place = firsts + one.number - 1 if one.number > 0 else lasts + one.number
+            there = (place >= firsts) & (place < lasts)
+            _place(block, name, np.zeros(1))[call.who[there]] = mine[place[there], 1]

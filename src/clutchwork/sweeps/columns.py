@@ -1,0 +1,62 @@
+"""Which numbers of an output row signals need, and the same forms over those alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Slip, Total
+
+
+def needed(form: Form) -> set[int]:
+    """Places of the row that a form reads."""
+    match form:
+        case Column(index) | Mode(index) | Affine(index):
+            return {index}
+        case Total(indices):
+            return set(indices)
+        case Linear(used):
+            return {int(place) for place in used}
+        case Slip(rate, mode):
+            return needed(rate) | {mode}
+        case Power(torque, rate):
+            return needed(torque) | needed(rate)
+
+
+def moved(form: Form, places: Mapping[int, int]) -> Any:
+    """The form over rows that hold what stood at a place at another one."""
+    match form:
+        case Column(index) | Mode(index) | Affine(index):
+            return replace(form, index=places[index])
+        case Total(indices):
+            return replace(form, indices=tuple(places[index] for index in indices))
+        case Linear(used):
+            return replace(form, used=np.array([places[int(place)] for place in used], dtype=np.intp))
+        case Slip(rate, mode):
+            return Slip(moved(rate, places), places[mode])
+        case Power(torque, rate):
+            return Power(moved(torque, places), moved(rate, places))
+
+
+def all_needed(forms: Iterable[Form]) -> list[int]:
+    """Places that any of the forms reads, in order."""
+    return sorted(set[int]().union(*map(needed, forms)))
+
+
+def fixed(signal: str, form: Form) -> bool:
+    """Whether the form of a signal is the same for all drivelines of one structure.
+
+    Ratios, inertias, stiffnesses and capacities are part of the others.
+    """
+    match form:
+        case Affine():
+            return False
+        case Linear():
+            return signal.endswith(".rate")
+        case Power(torque, _):
+            return isinstance(torque, Total)
+        case _:
+            return True

@@ -1,0 +1,160 @@
+"""`clutchwork sweep`: arguments, report and files."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from clutchwork.base.errors import UseError, near
+from clutchwork.base.text import columns
+from clutchwork.declare.options import SIMULATION
+from clutchwork.declare.speech import words_of_files
+from clutchwork.face.driveline import Driveline
+from clutchwork.run.flags import add_options, given_options
+from clutchwork.sweeps import outputs as made
+from clutchwork.sweeps.result import Sweep, SweepInterrupted
+from clutchwork.sweeps.sweep import ROWS, sweep
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+DONE, STOPPED, INTERRUPTED = 0, 1, 130
+CALLS = ("at", "maximum", "minimum", "peak", "integral", "lock", "break_away")
+KNOWN = f"known: {', '.join(CALLS)}"
+WRITERS = {".parquet": Sweep.to_parquet, ".csv": Sweep.to_csv}
+
+
+def add_command(subparsers: Any) -> None:
+    """Add `sweep` to the commands of the command line."""
+    parser = subparsers.add_parser(
+        "sweep",
+        help="run a model with many sets of values",
+        epilog="Exit code 1: a variant stopped early, 130: interrupted; what was asked for is written all the same.",
+    )
+    parser.set_defaults(command=sweep_command)
+    parser.add_argument("model", type=Path, help="model file, TOML or JSON")
+    parser.add_argument(
+        "--vary",
+        metavar="NAME=VALUES",
+        action="append",
+        default=[],
+        help="values in SI: FIRST:LAST:COUNT or A,B,C; given several times: all combinations",
+    )
+    parser.add_argument(
+        "--outputs",
+        metavar="A,B",
+        help=f"signals at the end, or {', '.join(f'{call}(NAME)' for call in CALLS)}; "
+        "default: speeds at the end, and when contacts lock",
+    )
+    parser.add_argument("--threads", type=int, metavar="N", help="default: as many as there are cores")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="table of all variants, .parquet or .csv")
+    parser.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
+    parser.add_argument("--quiet", action="store_true", help="print no report")
+    add_options(parser, [name for name in SIMULATION if name not in ROWS])
+
+
+def sweep_command(asked: argparse.Namespace) -> int:
+    """Run, report, write; the exit code."""
+    if asked.out is not None and asked.out.suffix not in WRITERS:
+        raise UseError("sweep", [f"--out {asked.out}: must end in .parquet or .csv"])
+    vary = dict(map(_varied, asked.vary))
+    model = Driveline.load(asked.model)
+    wanted = _outputs(asked.outputs) if asked.outputs else _by_default(model)
+    code = DONE
+    with words_of_files():
+        try:
+            found = sweep(model, vary=vary, outputs=wanted, threads=asked.threads, **given_options(asked))
+            code = DONE if found.finished.all() else STOPPED
+        except SweepInterrupted as stop:
+            found, code = stop.sweep, INTERRUPTED
+    _report(found, asked)
+    return code
+
+
+def _report(found: Sweep, asked: argparse.Namespace) -> None:
+    if asked.out is not None:
+        asked.out.parent.mkdir(parents=True, exist_ok=True)
+        WRITERS[asked.out.suffix](found, asked.out)
+    files = [str(asked.out)] if asked.out is not None else []
+    if asked.json:
+        sys.stdout.write(json.dumps(_data(found) | {"files": files}, indent=2) + "\n")
+    elif not asked.quiet:
+        sys.stdout.write("\n".join([*_text(found), *(f"wrote {path}" for path in files)]) + "\n")
+    stopped = [number for number in np.flatnonzero(~found.finished.reshape(-1)).tolist() if found.message(number)]
+    for number in stopped[:1]:
+        sys.stderr.write(f"clutchwork: variant {number} {found.message(number)}\n")
+
+
+def _text(found: Sweep) -> list[str]:
+    """Counts, and the range of every output."""
+    lines = [("output", "least", "most", "unit")]
+    lines += [(name, f"{low:.6g}", f"{high:.6g}", found.units[name]) for name, low, high in _ranges(found)]
+    ends = ", ".join(f"{count} {end}" for end, count in _ends(found).items())
+    return [f"{len(found)} variants: {ends}", columns(lines, right={1, 2})]
+
+
+def _data(found: Sweep) -> dict[str, Any]:
+    ranges = {name: {"least": low, "most": high, "unit": found.units[name]} for name, low, high in _ranges(found)}
+    return {"variants": len(found), "status": _ends(found), "outputs": ranges}
+
+
+def _ends(found: Sweep) -> dict[str, int]:
+    names, counts = np.unique(found.status, return_counts=True)
+    return dict(zip(names.tolist(), counts.tolist(), strict=True))
+
+
+def _ranges(found: Sweep) -> Iterator[tuple[str, float, float]]:
+    for name in found.names:
+        values = found.flat(name)
+        known = values[~np.isnan(values)] if values.dtype.kind == "f" else values[:0]
+        if len(known):
+            yield name, float(known.min()), float(known.max())
+
+
+def _varied(text: str) -> tuple[str, Any]:
+    """c1.gain=4e-4:8e-4:21, or c1.gain=4e-4,8e-4."""
+    name, sign, values = text.partition("=")
+    try:
+        if values.count(":") == 2:
+            first, last, count = values.split(":")
+            numbers: Sequence[float] = np.linspace(float(first), float(last), int(count)).tolist()
+        else:
+            numbers = [float(value) for value in values.split(",")]
+    except ValueError:
+        sign, numbers = "", []
+    if not sign or not name or not numbers:
+        remedy = "write NAME=FIRST:LAST:COUNT or NAME=A,B,C, such as c1.gain=4e-4:8e-4:21"
+        raise UseError("sweep", [f"--vary {text}: {remedy}"])
+    return name, numbers
+
+
+def _outputs(text: str) -> list[Any]:
+    """Signals and calls, with commas between them."""
+    return [_output(part.strip()) for part in re.split(r",(?![^()]*\))", text) if part.strip()]
+
+
+def _output(text: str) -> Any:
+    found = re.fullmatch(r"(\w+)\((.*)\)", text)
+    if found is None:
+        return text
+    call, (name, *rest) = found[1], [part.strip() for part in found[2].split(",")]
+    if call not in CALLS:
+        raise UseError("sweep", [f"--outputs {text}: no output {call!r}{near(call, CALLS, KNOWN)}"])
+    try:
+        numbers = [float(part) if call == "at" else int(part) for part in rest]
+    except ValueError:
+        raise UseError("sweep", [f"--outputs {text}: {', '.join(rest)} must be numbers"]) from None
+    return getattr(made, call)(name, *([numbers] if call == "at" else numbers))
+
+
+def _by_default(model: Driveline) -> list[Any]:
+    """Speeds at the end, and when each contact locks for the last time."""
+    system = model.assemble()
+    speeds = [f"{node.name}.speed" for node in system.nodes]
+    return [*speeds, *(made.lock(contact.name, -1) for contact in system.contacts)]

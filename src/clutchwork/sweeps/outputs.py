@@ -1,0 +1,243 @@
+"""What a sweep tells of each variant: signals at the end or at instants, extremes, integrals, times of events.
+
+Each output is asked for by name before the runs, and is also a function of a run: `cw.maximum("shaft.torque").of(run)`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.errors import UseError
+from clutchwork.base.shown import shown
+
+if TYPE_CHECKING:
+    from clutchwork.results.events import Event
+    from clutchwork.results.trajectory import Trajectory
+
+Array = NDArray[Any]
+
+# rows in every step of the solver that extremes are looked for in
+PARTS = 4
+# what an integral over time is kept as
+INTEGRALS = {"power": "work", "speed": "angle", "acceleration": "speed"}
+ON_MASSES = {"speed": "position"}
+
+
+@dataclass(frozen=True)
+class AtEnd:
+    """A signal at the end time."""
+
+    signal: str
+
+    @property
+    def name(self) -> str:
+        """What a table calls it."""
+        return self.signal
+
+    def of(self, run: Trajectory) -> Any:
+        """Its value in a run; NaN where that did not reach its end."""
+        return run[self.signal][-1].item() if run.finished else _missing(run, self.signal)
+
+
+@dataclass(frozen=True)
+class AtTimes:
+    """A signal at instants."""
+
+    signal: str
+    times: tuple[float, ...]
+
+    @property
+    def name(self) -> str:
+        """What a table calls it."""
+        return f"{self.signal} at"
+
+    def of(self, run: Trajectory) -> Array:
+        """Its values in a run, NaN at instants that it did not reach."""
+        there = run.at(self.times)
+        found = np.full(len(self.times), _missing(run, self.signal))
+        found[: len(there)] = there[self.signal]
+        return found
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """Largest or smallest value of a signal over the steps of the solver, each cut into equal parts."""
+
+    signal: str
+    kind: str  # maximum, minimum or peak: the one that is further from zero, without its sign
+
+    @property
+    def name(self) -> str:
+        """What a table calls it."""
+        return f"{self.kind}({self.signal})"
+
+    def of(self, run: Trajectory) -> Any:
+        """Its value in a run up to where that came, from the rows of `run` as they are."""
+        return self.reduced(run[self.signal], np.zeros(1, np.intp))[0].item() if len(run) else np.nan
+
+    def reduced(self, values: Array, starts: Array) -> Array:
+        """Its value in each stretch of rows that begins at one of the starts."""
+        if self.kind == "minimum":
+            return np.minimum.reduceat(values, starts)
+        return np.maximum.reduceat(np.abs(values) if self.kind == "peak" else values, starts)
+
+
+@dataclass(frozen=True)
+class Integral:
+    """A power, speed or acceleration over the whole run: the work, angle or speed that the solver integrated."""
+
+    signal: str
+
+    @property
+    def name(self) -> str:
+        """What a table calls it."""
+        return f"integral({self.signal})"
+
+    def kept_as(self, names: Any) -> str:
+        """The signal whose change it is, empty where there is none."""
+        owner, _, last = self.signal.rpartition(".")
+        found = (f"{owner}.{word}" for word in (INTEGRALS.get(last), ON_MASSES.get(last)) if word)
+        return next((name for name in found if name in names), "")
+
+    def of(self, run: Trajectory) -> Any:
+        """Its value in a run; NaN where that did not reach its end."""
+        values = run.at([0.0, run.t_end])[self.kept_as(run)]
+        return (values[-1] - values[0]).item() if run.finished else np.nan
+
+
+@dataclass(frozen=True)
+class When:
+    """Time at which a contact locks or breaks away, counted from the start, or with -1 from the end."""
+
+    contact: str
+    kind: str  # lock or break_away
+    number: int = 1
+
+    @property
+    def name(self) -> str:
+        """What a table calls it."""
+        return f"{self.kind}({self.contact})" if self.number == 1 else f"{self.kind}({self.contact}, {self.number})"
+
+    def of(self, run: Trajectory) -> float:
+        """Its value in a run; NaN where that did not happen."""
+        times = [event.time for event in run.events.of(self.contact) if self.fits(event)]
+        place = self.number - 1 if self.number > 0 else len(times) + self.number
+        return times[place] if 0 <= place < len(times) else float("nan")
+
+    def fits(self, event: Event) -> bool:
+        """Whether an event is one of those that are counted."""
+        from_locked, to_locked = event.before == "locked", event.after == "locked"
+        return from_locked != to_locked and to_locked == (self.kind == "lock")
+
+
+@dataclass(frozen=True)
+class Computed:
+    """What a Python function tells of a run."""
+
+    function: Callable[[Trajectory], Any]
+    name: str
+
+    def of(self, run: Trajectory) -> Any:
+        """Its value."""
+        return self.function(run)
+
+
+Output: TypeAlias = AtEnd | AtTimes | Extreme | Integral | When | Computed
+Asked: TypeAlias = "str | Output | Callable[[Trajectory], Any]"
+
+
+def at(signal: str, times: Sequence[float] | float) -> AtTimes:
+    """A signal at instants, for `sweep`.
+
+    Parameters: signal, its name; times [s], one or several that rise.
+    """
+    instants = tuple(float(time) for time in np.atleast_1d(np.asarray(times, dtype=float)))
+    if not instants or not all(0.0 <= time < np.inf for time in instants) or list(instants) != sorted(instants):
+        raise UseError("at", [f"times are {shown(times)}: give instants [s] from zero on that rise"])
+    return AtTimes(_named("at", signal), instants)
+
+
+def maximum(signal: str) -> Extreme:
+    """The largest value of a signal, for `sweep`."""
+    return Extreme(_named("maximum", signal), "maximum")
+
+
+def minimum(signal: str) -> Extreme:
+    """The smallest value of a signal, for `sweep`."""
+    return Extreme(_named("minimum", signal), "minimum")
+
+
+def peak(signal: str) -> Extreme:
+    """The largest size of a signal, whatever its sign, for `sweep`."""
+    return Extreme(_named("peak", signal), "peak")
+
+
+def integral(signal: str) -> Integral:
+    """The integral over time of a power, a speed or an acceleration, for `sweep`."""
+    return Integral(_named("integral", signal))
+
+
+def lock(contact: str, number: int = 1) -> When:
+    """When a contact locks [s], for `sweep`.
+
+    Parameters: contact, its name; number, which time: 1 the first, -1 the last.
+    """
+    return When(_named("lock", contact), "lock", _counted("lock", number))
+
+
+def break_away(contact: str, number: int = 1) -> When:
+    """When a locked contact breaks away or opens [s], for `sweep`.
+
+    Parameters: contact, its name; number, which time: 1 the first, -1 the last.
+    """
+    return When(_named("break_away", contact), "break_away", _counted("break_away", number))
+
+
+def _named(call: str, name: object) -> str:
+    if not isinstance(name, str):
+        raise UseError(call, [f"{shown(name)} is not a name; give one such as 'shaft.torque'"])
+    return name
+
+
+def _counted(call: str, number: object) -> int:
+    if not isinstance(number, int) or number == 0:
+        raise UseError(call, [f"number is {shown(number)}: give 1 for the first, -1 for the last"])
+    return number
+
+
+def asked(outputs: Any) -> dict[str, Output]:
+    """The outputs that a call means, by the name that the result gives them."""
+    if isinstance(outputs, Mapping):
+        return {str(name): _output(one) for name, one in outputs.items()}
+    listed = [outputs] if isinstance(outputs, str) or callable(outputs) or not hasattr(outputs, "__iter__") else outputs
+    made = [_output(one) for one in listed]
+    found = dict[str, Output]()
+    for one in made:
+        if one.name in found and found[one.name] != one:
+            remedy = "name them: outputs={'first': ..., 'second': ...}"
+            raise UseError("sweep", [f"two outputs are called {one.name!r}; {remedy}"])
+        found[one.name] = one
+    if not found:
+        raise UseError("sweep", ["outputs are missing; name signals, such as 'load.speed', or cw.lock('c1')"])
+    return found
+
+
+def _output(one: Any) -> Output:
+    if isinstance(one, AtEnd | AtTimes | Extreme | Integral | When | Computed):
+        return one
+    if isinstance(one, str):
+        return AtEnd(one)
+    if callable(one):
+        return Computed(one, getattr(one, "__name__", "function"))
+    remedy = "give the name of a signal, cw.at, cw.maximum, cw.lock ... of one, or a function of the run"
+    raise UseError("sweep", [f"{shown(one)} is not an output; {remedy}"])
+
+
+def _missing(run: Trajectory, signal: str) -> Any:
+    """What stands for a value that was not reached."""
+    return "" if run.units[signal] == "" else np.nan

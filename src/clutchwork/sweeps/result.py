@@ -1,0 +1,272 @@
+"""What a sweep found: an array for each output, how each variant ended, and tables for other programs."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.wiring import wiring
+from clutchwork.base.errors import ModelError, UnknownName, near
+from clutchwork.base.shown import shown
+from clutchwork.base.text import counted
+from clutchwork.declare.status import DONE, INTERRUPTED, NAMES
+from clutchwork.results.channels import Channels
+from clutchwork.run.simulation import told
+from clutchwork.sweeps.outputs import AtTimes, Computed, Integral, Output, When
+from clutchwork.sweeps.single import single
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from clutchwork.assembly.system import System
+    from clutchwork.declare.options import Options
+    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.sweeps.batch import Block
+    from clutchwork.sweeps.variants import Variants
+
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Swept:
+    """What a sweep was asked for."""
+
+    system: System
+    variants: Variants
+    outputs: Mapping[str, Output]
+    t_end: float  # s
+    options: Options
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """The result of a sweep.
+
+    `result["lock(c1)"]` is an array with one value for each variant, in the shape of the grid where there is one;
+    outputs at several instants have these as their last axis. `result.names` lists all outputs, `result.status` how
+    each variant ended: "done", or why it stopped early.
+    """
+
+    swept: Swept = field(repr=False)
+    codes: NDArray[np.int32] = field(repr=False)  # of the status of each variant, layout.STATUS
+    detail: NDArray[np.float64] = field(repr=False)
+    values: dict[str, Array] = field(repr=False)  # one line for each variant, whatever the shape
+
+    @classmethod
+    def empty(cls, swept: Swept) -> Sweep:
+        """Nothing is done yet."""
+        count = len(swept.variants)
+        return cls(swept, np.full(count, INTERRUPTED, dtype=np.int32), np.full((count, 4), np.nan), {})
+
+    def take(self, block: Block) -> None:
+        """Take over what the core gave for some variants."""
+        last = block.first + len(block.status)
+        self.codes[block.first : last] = block.status
+        self.detail[block.first : last] = block.detail
+        for name, values in block.values.items():
+            if name not in self.values:
+                self.values[name] = empty_like(values, len(self))
+            self.values[name][block.first : last] = values
+
+    def take_one(self, number: int, found: Mapping[str, Any], status: str) -> None:
+        """Take over what was made of the run of one variant."""
+        if self.codes[number] == INTERRUPTED:
+            self.codes[number] = NAMES.index(status)
+        for name, value in found.items():
+            if name not in self.values:
+                self.values[name] = self._column(name)
+            self.values[name][number] = value
+
+    def _column(self, name: str) -> Array:
+        one = self.swept.outputs[name]
+        if isinstance(one, AtTimes):
+            return np.full((len(self), len(one.times)), np.nan)
+        return np.full(len(self), None, dtype=object)
+
+    # ------------------------------------------------------------------------------------------------------ what it has
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all outputs."""
+        return tuple(self.swept.outputs)
+
+    @property
+    def varied(self) -> tuple[str, ...]:
+        """Names of the values that vary."""
+        return tuple(one.name for one in self.swept.variants.varied)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values of each name of a grid, or number of variants."""
+        return (len(self),) if self.swept.variants.shape is None else self.swept.variants.shape
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every output; empty for what a function tells."""
+        channels = Channels(wiring(self.swept.system))
+        return {name: _unit(one, channels) for name, one in self.swept.outputs.items()}
+
+    @property
+    def status(self) -> Array:
+        """How each variant ended, in the shape of the grid."""
+        return np.array(NAMES)[self.codes].reshape(self.shape)
+
+    @property
+    def finished(self) -> NDArray[np.bool_]:
+        """Which variants reached the end time, in the shape of the grid."""
+        return np.array(self.codes == DONE).reshape(self.shape)
+
+    def __len__(self) -> int:
+        """Number of variants."""
+        return len(self.codes)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.swept.outputs
+
+    def __getitem__(self, name: str) -> Array:
+        """An output of all variants, in the shape of the grid; KeyError with near names when there is none."""
+        if name not in self.swept.outputs:
+            known = (*self.swept.outputs, *self.varied)
+            raise UnknownName(f"no output {shown(name)}{near(name, known, '`names` lists all outputs')}")
+        values = self.flat(name)
+        return values.reshape((*self.shape, *values.shape[1:]))
+
+    def flat(self, name: str) -> Array:
+        """An output with one line for each variant."""
+        if name in self.values:
+            found = self.values[name]
+            return _plain(found) if found.dtype == object else found
+        one = self.swept.outputs[name]
+        return np.full((len(self), len(one.times)) if isinstance(one, AtTimes) else len(self), np.nan)
+
+    def variant(self, number: int) -> dict[str, Any]:
+        """The values of one variant by name; variants are counted in the order of the flat arrays."""
+        return self.swept.variants[number]
+
+    def run(self, number: int) -> Trajectory:
+        """The run of one variant, as `simulate` gives it."""
+        swept = self.swept
+        return single(swept.system, swept.variants[number], swept.t_end, swept.options)
+
+    def message(self, number: int) -> str:
+        """Why a variant stopped early, with what to do; empty when it reached the end."""
+        code = int(self.codes[number])
+        if code == DONE:
+            return ""
+        component, time, value, column = self.detail[number].tolist()
+        if np.isnan(component):
+            return "was not run"
+        try:
+            system = self.swept.system.changed(self.variant(number))
+        except ModelError:
+            system = self.swept.system
+        return told(system, code, int(component), time, value, int(column))
+
+    def __repr__(self) -> str:
+        ends = Counter(np.array(NAMES)[self.codes].tolist())
+        told_of = ", ".join(f"{count} {name}" for name, count in ends.most_common())
+        return f"<Sweep of {counted(len(self), 'variants')}: {told_of}; {', '.join(self.names)}>"
+
+    # --------------------------------------------------------------------------------------------------------- tables
+
+    def columns(self) -> Iterator[tuple[str, Array]]:
+        """Columns of a table with one line for each variant: values that vary, outputs, the status."""
+        for one in self.swept.variants.varied:
+            yield one.name, one.column
+        for name, output in self.swept.outputs.items():
+            values = self.flat(name)
+            if isinstance(output, AtTimes):
+                for time, column in zip(output.times, values.T, strict=True):
+                    yield f"{name} {time:g} s", column
+            else:
+                yield name, values
+        yield "status", np.array(NAMES)[self.codes]
+
+    def to_pandas(self) -> Any:
+        """A pandas DataFrame with one line for each variant; `attrs["units"]` holds the units. Needs pandas."""
+        frame = _need("pandas").DataFrame(dict(self.columns()))
+        frame.attrs["units"] = self.units
+        return frame
+
+    def to_xarray(self) -> Any:
+        """An xarray Dataset over the axes of the grid, or over the variants, with units as attributes. Needs xarray."""
+        xarray, units, swept = _need("xarray"), self.units, self.swept
+        grid = swept.variants.shape is not None and len(swept.variants.varied) > 0
+        axes = self.varied if grid else ("variant",)
+        if grid:
+            coords: dict[str, Any] = {one.name: (one.name, np.array(one.labels)) for one in swept.variants.varied}
+        else:
+            coords = {one.name: ("variant", one.column) for one in swept.variants.varied}
+        shape, data = self.shape if grid else (len(self),), dict[str, Any]()
+        for name, output in swept.outputs.items():
+            values, dims = self.flat(name), axes
+            if isinstance(output, AtTimes):
+                dims = (*axes, f"{name} time")
+                coords[dims[-1]] = (dims[-1], np.array(output.times), {"units": "s"})
+            data[name] = (dims, values.reshape((*shape, *values.shape[1:])), {"units": units[name]})
+        data["status"] = (axes, np.array(NAMES)[self.codes].reshape(shape))
+        return xarray.Dataset(data, coords=coords)
+
+    def to_parquet(self, path: str | Path) -> None:
+        """Write the table of `to_pandas` as a Parquet file, with the units as metadata. Needs pyarrow."""
+        pyarrow = _need("pyarrow", "clutchwork[parquet]")
+        table = pyarrow.table({name: pyarrow.array(column.tolist()) for name, column in self.columns()})
+        units = {f"unit {name}": unit for name, unit in self.units.items()}
+        importlib.import_module("pyarrow.parquet").write_table(table.replace_schema_metadata(units), str(path))
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the table with all digits; heads are `name [unit]` where there is one."""
+        units, table = self.units, dict(self.columns())
+        heads = [f"{name} [{units[name]}]" if units.get(name) else name for name in table]
+        with Path(path).open("w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(heads)
+            writer.writerows(zip(*(column.tolist() for column in table.values()), strict=True))
+
+
+class SweepInterrupted(KeyboardInterrupt):
+    """Ctrl-C during a sweep; `sweep` holds the variants that were done before, the others have status interrupted."""
+
+    def __init__(self, message: str, sweep: Sweep) -> None:
+        super().__init__(message)
+        self.sweep = sweep
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.sweep)
+
+
+def empty_like(values: Array, count: int) -> Array:
+    """Lines of the same kind without values."""
+    shape = (count, *values.shape[1:])
+    return np.full(shape, np.nan) if values.dtype.kind == "f" else np.full(shape, "", dtype=values.dtype)
+
+
+def _unit(one: Output, channels: Channels) -> str:
+    if isinstance(one, When):
+        return "s"
+    if isinstance(one, Computed):
+        return ""
+    return channels[one.kept_as(channels) if isinstance(one, Integral) else one.signal].unit
+
+
+def _plain(values: Array) -> Array:
+    """What functions told, as numbers where all are."""
+    listed = [np.nan if value is None else value for value in values.tolist()]
+    try:
+        return np.array(listed, dtype=float)
+    except (TypeError, ValueError):
+        return values
+
+
+def _need(package: str, install: str = "") -> Any:
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise ImportError(f"this needs {package}: pip install {install or package!r}") from error

@@ -1,0 +1,140 @@
+"""Which values the variants of a sweep have: a grid, a list, or a table."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.errors import UseError
+from clutchwork.base.shown import shown
+
+Codes = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Varied:
+    """One name with its values: each once, what to call each, and which of them each variant has."""
+
+    name: str
+    values: tuple[Any, ...]
+    labels: tuple[Any, ...]
+    codes: Codes
+
+    @property
+    def column(self) -> NDArray[Any]:
+        """What each variant has, as a table shows it: numbers, or labels."""
+        kinds = {type(label) for label in self.labels}
+        plain = kinds <= {float, int} or kinds in ({bool}, {str})
+        labels = np.array(self.labels) if plain else np.array([str(label) for label in self.labels])
+        return labels[self.codes] if len(labels) else labels
+
+
+@dataclass(frozen=True, eq=False)
+class Variants:
+    """The variants of a sweep, in order; `shape` holds the length of each axis of a grid, nothing for a table."""
+
+    varied: tuple[Varied, ...]
+    count: int
+    shape: tuple[int, ...] | None = None
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __getitem__(self, number: int) -> dict[str, Any]:
+        """The values of one variant by name."""
+        place = range(self.count)[number]
+        return {one.name: one.values[one.codes[place]] for one in self.varied}
+
+
+def grid(vary: Mapping[str, Any]) -> Variants:
+    """All combinations of the values of each name; the last one changes fastest."""
+    named = {name: _listed(name, values) for name, values in vary.items()}
+    shape = tuple(len(values) for values, _ in named.values())
+    count = prod(shape)
+    places = np.unravel_index(np.arange(count), shape) if shape and count else [np.zeros(0, np.int64)] * len(shape)
+    varied = [
+        Varied(name, values, labels, np.asarray(codes, dtype=np.int64))
+        for (name, (values, labels)), codes in zip(named.items(), places, strict=True)
+    ]
+    return Variants(tuple(varied), count, shape)
+
+
+def variants(columns: Mapping[str, Any]) -> Variants:
+    """A table of variants for `sweep`: a column of values for each name, all of one length.
+
+    Parameters: columns, values by name: {"c1.gain": [...], "engine.inertia": [...]}.
+    """
+    if not isinstance(columns, Mapping) or not columns:
+        raise UseError("variants", [f"{shown(columns)} is not a table; give columns by name"])
+    listed = {name: _listed(name, values, labelled=False)[0] for name, values in columns.items()}
+    lengths = {name: len(values) for name, values in listed.items()}
+    if len(set(lengths.values())) > 1:
+        told = ", ".join(f"{name!r} has {length}" for name, length in lengths.items())
+        raise UseError("variants", [f"columns differ in length: {told}; give each variant a value of every name"])
+    return Variants(tuple(_column(name, values) for name, values in listed.items()), next(iter(lengths.values())))
+
+
+def given(vary: Any) -> Variants:
+    """The variants that a call means: a grid, a table, or a list with the values of each."""
+    if isinstance(vary, Variants):
+        return vary
+    if hasattr(vary, "columns") and hasattr(vary, "iloc"):
+        # a DataFrame of pandas, or what looks like one
+        return variants({str(name): vary[name].tolist() for name in vary.columns})
+    if isinstance(vary, Mapping):
+        return grid(vary)
+    if isinstance(vary, Sequence) and not isinstance(vary, str) and all(isinstance(one, Mapping) for one in vary):
+        return _of_list(vary)
+    remedy = "give values by name, a list of variants, cw.variants({...}) or a DataFrame"
+    raise UseError("sweep", [f"vary is {shown(vary)}: {remedy}"])
+
+
+def _of_list(rows: Sequence[Mapping[str, Any]]) -> Variants:
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    missing = [
+        f"variant {number} has no {name!r}; give every variant a value of each name"
+        for number, row in enumerate(rows)
+        for name in names
+        if name not in row
+    ]
+    if missing:
+        raise UseError("sweep", missing[:20])
+    return Variants(tuple(_column(name, [row[name] for row in rows]) for name in names), len(rows))
+
+
+def _listed(name: object, values: Any, *, labelled: bool = True) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """Values and what to call each: themselves, the keys of a mapping, or their places."""
+    if not isinstance(name, str):
+        raise UseError("sweep", [f"{shown(name)} is not a name; names are such as 'c1.gain'"])
+    if labelled and isinstance(values, Mapping):
+        return tuple(values.values()), tuple(map(str, values))
+    if isinstance(values, str) or not hasattr(values, "__len__") or not hasattr(values, "__iter__"):
+        raise UseError("sweep", [f"{name}: {shown(values)} is not a list of values; write [...] around it"])
+    plain = tuple(values.tolist() if hasattr(values, "tolist") else values)
+    return plain, _labels(plain)
+
+
+def _labels(values: Sequence[Any]) -> tuple[Any, ...]:
+    """What to call values: themselves where they are plain, else the class and the place of each."""
+    if all(isinstance(value, bool | int | float | str) for value in values):
+        return tuple(values)
+    return tuple(f"{type(value).__name__} {place}" for place, value in enumerate(values))
+
+
+def _column(name: str, values: Sequence[Any]) -> Varied:
+    """Values of all variants, equal ones once."""
+    places, codes = dict[Hashable, int](), list[int]()
+    distinct = list[Any]()
+    for value in values:
+        # 0.0 and -0.0, 1 and True, are equal and not the same
+        key = (type(value), repr(value)) if isinstance(value, bool | int | float | str) else (type(value), id(value))
+        if key not in places:
+            places[key] = len(distinct)
+            distinct.append(value)
+        codes.append(places[key])
+    return Varied(name, tuple(distinct), _labels(distinct), np.array(codes, dtype=np.int64))
