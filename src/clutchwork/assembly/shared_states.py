@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.ports import thermal_ports
 from clutchwork.declare.schema import Role, kinds
 

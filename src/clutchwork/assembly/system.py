@@ -6,7 +6,7 @@ import json
 import struct
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass, field, replace
+from dataclasses import field, fields, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -18,6 +18,7 @@ from clutchwork.assembly.assemble import assembled
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
 from clutchwork.base import archive
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelError, near
 from clutchwork.base.regular import reason
 from clutchwork.base.shown import shortened
@@ -71,13 +72,13 @@ class System:
             raise AttributeError(f"a System has no {name!r}{near(name, [n for n, *_ in FIELDS])}") from None
 
     def __getstate__(self) -> dict[str, Any]:
-        # a view of a dictionary cannot be pickled; what is cached comes again
-        fields = {name: value for name, value in vars(self).items() if name != "counts"}
-        return fields | {"arrays": dict(self.arrays), "settings": dict(self.settings)}
+        # a view of a dictionary cannot be pickled; what was found since comes again
+        own = {item.name: getattr(self, item.name) for item in fields(self)}
+        return own | {"arrays": dict(self.arrays), "settings": dict(self.settings)}
 
-    def __setstate__(self, fields: dict[str, Any]) -> None:
-        settings = MappingProxyType(fields["settings"])
-        vars(self).update(fields | {"arrays": frozen(fields["arrays"]), "settings": settings})
+    def __setstate__(self, own: dict[str, Any]) -> None:
+        settings = MappingProxyType(own["settings"])
+        vars(self).update(own | {"arrays": frozen(own["arrays"]), "settings": settings})
 
     @cached_property
     def counts(self) -> dict[str, int]:
@@ -111,7 +112,11 @@ class System:
         return cls(**made, settings=settings, source=source)
 
     def to_bytes(self) -> bytes:
-        """The System as the compiled core reads it: little endian, every array aligned to 8 bytes."""
+        """The System as the compiled core reads it: little endian, every array aligned to 8 bytes; made once."""
+        return self._bytes
+
+    @cached_property
+    def _bytes(self) -> bytes:
         head = MAGIC + struct.pack("<q", schema_hash(layout_text()))
         head += struct.pack(f"<{len(COUNTS)}q", *(self.counts[name] for name, _ in COUNTS))
         parts = [head]

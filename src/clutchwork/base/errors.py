@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from dataclasses import dataclass
 from difflib import get_close_matches
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.shown import LONGEST, printable, shortened
 from clutchwork.base.text import counted
 

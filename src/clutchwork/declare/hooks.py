@@ -6,8 +6,9 @@ no others of these.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from difflib import get_close_matches
+
+from clutchwork.base.classes import dataclass
 
 
 @dataclass(frozen=True)

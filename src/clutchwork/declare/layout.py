@@ -5,6 +5,8 @@ Standard library only: the build imports it and writes the C++ side from it.
 
 from __future__ import annotations
 
+from functools import cache
+
 # sizes of a system, in the order in which they stand in the header
 COUNTS = (
     ("nodes", "shafts and masses, the housing not counted"),
@@ -188,6 +190,7 @@ STATUS = (
 )
 
 
+@cache
 def layout_text() -> str:
     """Fingerprint text of the layout."""
     named = ([name for name, *_ in table] for table in (STATUS, STATISTICS))

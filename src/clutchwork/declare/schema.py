@@ -8,12 +8,12 @@ The C++ header of the same stem holds the equations; `tools/gen_registry.py` pai
 from __future__ import annotations
 
 import hashlib
-from dataclasses import MISSING, Field, dataclass, field, fields
+from dataclasses import MISSING, Field, field, fields
 from enum import Enum
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, dataclass_transform
 
-from clutchwork.declare.frozen import freeze
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.hooks import hook_problems
 
 if TYPE_CHECKING:
@@ -266,7 +266,7 @@ def _check_work(cls: Any) -> None:
 )
 def family(cls: C) -> C:
     """Freeze fields that several declarations share, as a base that is itself none."""
-    frozen: Any = freeze(cls)
+    frozen: Any = dataclass(frozen=True)(cls)
     return frozen  # type: ignore[no-any-return]
 
 
@@ -291,7 +291,7 @@ def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, .
     """Freeze a declaration, register it under its kind, the stem of its module; `hooks`: clutchwork.declare.hooks."""
 
     def register(cls: C) -> C:
-        frozen: Any = freeze(cls)
+        frozen: Any = dataclass(frozen=True)(cls)
         kind = cls.__module__.rpartition(".")[2]
         wrong = hook_problems(role.value, hooks)
         if wrong:
@@ -301,6 +301,7 @@ def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, .
         _check_work(cls)
         frozen.kind, frozen.role, frozen.states, frozen.hooks = kind, role, states, hooks
         REGISTRY[role][kind] = frozen
+        schema_hash.cache_clear()
         return cls
 
     return register
@@ -362,6 +363,7 @@ def _field_text(name: str, spec: Spec) -> str:
     return f"{name}:{spec.what}[{spec.unit}]{choices}"
 
 
+@cache
 def schema_hash(extra: str = "") -> int:
     """63-bit fingerprint of every declaration and of the System layout."""
     digest = hashlib.sha256((schema_text() + extra).encode()).digest()

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import core
 from clutchwork.declare.schema import Role, kinds, specs
 

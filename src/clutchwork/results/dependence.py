@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from clutchwork.assembly.dependence import dependent_sets
+from clutchwork.base.classes import dataclass
 from clutchwork.results.stretches import stretches
 
 if TYPE_CHECKING:

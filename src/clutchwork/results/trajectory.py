@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError
 from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, NAMES
-from clutchwork.results.channels import Channels, Units
+from clutchwork.results.channels import Channels, Units, channels
 from clutchwork.results.energy import EnergyBalance, balance
 from clutchwork.results.events import Events
 
@@ -73,15 +74,15 @@ class Trajectory:
             raise SimulationError(self.message, self)
         return self
 
-    @cached_property
+    @property
     def wiring(self) -> Wiring:
         """Who is joined to what."""
         return wiring(self.system)
 
-    @cached_property
+    @property
     def channels(self) -> Channels:
         """Unit and evaluation of every signal."""
-        return Channels(self.wiring, angles=self.options.angles, work=self.options.work)
+        return channels(self.system, self.options.angles, self.options.work)
 
     @property
     def names(self) -> tuple[str, ...]:

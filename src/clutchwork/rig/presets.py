@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.declare.node import Domain, Law
 from clutchwork.declare.schema import REGISTRY, Role, specs
