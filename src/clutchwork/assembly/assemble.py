@@ -13,10 +13,11 @@ from clutchwork.assembly.places import places
 from clutchwork.assembly.records import TYPES, Gearing, frozen
 from clutchwork.assembly.shared_states import Shared, flow_arrays, heat_arrays
 from clutchwork.base.errors import ModelError
+from clutchwork.declare.core import number
 from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.ports import ports
 from clutchwork.declare.rational import Row, plus
-from clutchwork.declare.schema import Role, kinds
+from clutchwork.declare.schema import Role
 from clutchwork.model.findings import Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
 from clutchwork.model.model import Model
@@ -120,11 +121,11 @@ class Columns:
 
 def _matrix(rows: Sequence[Row], places: Mapping[int, int]) -> Array:
     made = np.zeros((len(rows), len(places)))
-    for number, row in enumerate(rows):
+    for place, row in enumerate(rows):
         for column, value in row.items():
             if column in places:
                 # the quotient of two whole numbers is rounded once
-                made[number, places[column]] = value.numerator / value.denominator
+                made[place, places[column]] = value.numerator / value.denominator
     return made
 
 
@@ -153,7 +154,7 @@ def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role,
     return {
         f"{prefix}_rate": rates,
         f"{prefix}_rate_prescribed": prescribed,
-        f"{prefix}_kind": [kinds(role).index(component.kind) for component in model.role(role)],
+        f"{prefix}_kind": [number(type(component)) for component in model.role(role)],
     }
 
 
@@ -173,7 +174,7 @@ def _elements(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
 
 def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
     contacts = model.role(Role.CONTACT)
-    laws, offsets = kinds(Role.LAW), list[int]()
+    offsets = list[int]()
     for contact in contacts:
         # bristles start without deflection
         offsets.append(len(states))
@@ -181,7 +182,7 @@ def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
     return {
         "contact_param": [pools.add(contact, contact.name) for contact in contacts],
         "contact_input": [wires.connect(contact) for contact in contacts],
-        "contact_law": [laws.index(contact.friction.kind) for contact in contacts],
+        "contact_law": [number(type(contact.friction)) for contact in contacts],
         "contact_law_param": [pools.add(contact.friction, f"{contact.name}.friction") for contact in contacts],
         "contact_law_input": [wires.connect_law(contact) for contact in contacts],
         "contact_state": offsets,

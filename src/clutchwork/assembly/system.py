@@ -22,9 +22,9 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelError, near
 from clutchwork.base.regular import reason
 from clutchwork.base.shown import shortened
-from clutchwork.declare.layout import COUNTS, FIELDS, layout_text
+from clutchwork.declare.core import core
+from clutchwork.declare.layout import COUNTS, FIELDS
 from clutchwork.declare.node import Component, Node, ThermalNode
-from clutchwork.declare.schema import schema_hash
 from clutchwork.files.model_file import from_dict, to_dict
 from clutchwork.model.findings import may_change
 from clutchwork.model.model import Model
@@ -117,7 +117,7 @@ class System:
 
     @cached_property
     def _bytes(self) -> bytes:
-        head = MAGIC + struct.pack("<q", schema_hash(layout_text()))
+        head = MAGIC + struct.pack("<q", core().schema_hash())
         head += struct.pack(f"<{len(COUNTS)}q", *(self.counts[name] for name, _ in COUNTS))
         parts = [head]
         for name, kind, _, _ in FIELDS:
@@ -131,7 +131,7 @@ class System:
         head = len(MAGIC) + 8 + 8 * len(COUNTS)
         if len(data) < head or data[: len(MAGIC)] != MAGIC:
             raise SystemFormatError("these bytes are not a System; use those from System.to_bytes")
-        if struct.unpack_from("<q", data, len(MAGIC))[0] != schema_hash(layout_text()):
+        if struct.unpack_from("<q", data, len(MAGIC))[0] != core().schema_hash():
             raise SystemFormatError("this System was assembled by another version; assemble the driveline again")
         sizes = dict(zip((n for n, _ in COUNTS), struct.unpack_from(f"<{len(COUNTS)}q", data, 16), strict=True))
         arrays, start = {}, head

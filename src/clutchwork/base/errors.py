@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from difflib import get_close_matches
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -151,4 +150,7 @@ def nearest(name: object, known: Iterable[str]) -> str:
     likely = [other for other in islice(known, MOST_COMPARED) if isinstance(other, str) and len(other) <= LONGEST]
     if not 0 < len(word) <= LONGEST:
         return ""
+    # only mistakes need it
+    from difflib import get_close_matches
+
     return next(iter(get_close_matches(word, likely, n=1, cutoff=0.6 if len(word) > 3 else 0.5)), "")
