@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-import json
 import struct
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import field, fields, replace
 from functools import cached_property
-from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from clutchwork.assembly.assemble import assembled
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
-from clutchwork.base import archive
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelError, near
-from clutchwork.base.regular import reason
 from clutchwork.base.shown import shortened
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS
 from clutchwork.declare.node import Component, Node, ThermalNode
-from clutchwork.files.model_file import from_dict, to_dict
 from clutchwork.model.findings import may_change
 from clutchwork.model.model import Model
 from clutchwork.model.settings import plain_settings
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 MAGIC = b"CLUTCHWK"
 
@@ -93,6 +91,8 @@ class System:
     @cached_property
     def model(self) -> Mapping[str, Any]:
         """The driveline as in a model file; empty where there is none, or it holds Python functions."""
+        from clutchwork.files.model_file import to_dict
+
         try:
             return {} if self.source is None else to_dict(self.source, embed=True)
         except ModelError:
@@ -146,6 +146,10 @@ class System:
 
     def save(self, path: str | Path) -> None:
         """Write arrays and model to an archive; nothing in it is code."""
+        import json
+
+        from clutchwork.base import archive
+
         if not self.model:
             raise SystemFormatError(
                 "this System has a controller in Python or no names; save its driveline or to_bytes()"
@@ -157,6 +161,12 @@ class System:
     @classmethod
     def load(cls, path: str | Path) -> System:
         """Read a file that `save` wrote; SystemFormatError or ModelError for any other."""
+        import json
+
+        from clutchwork.base import archive
+        from clutchwork.base.regular import reason
+        from clutchwork.files.model_file import from_dict
+
         try:
             content, *texts = archive.read(path, ("content", "model", "independent"))
             model, independent = map(json.loads, texts)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from functools import cache
+from operator import attrgetter
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -49,33 +50,42 @@ class _Call(NamedTuple):
     places: tuple[str, ...]  # fields that may be positional
     names: frozenset[str]  # all that may be given
     defaults: dict[str, Any]
-    makers: dict[str, Callable[[], Any]]  # functions that make a default anew
+    makers: tuple[tuple[str, Callable[[], Any]], ...]  # functions that make a default anew
+    own: tuple[tuple[str, Callable[[], Any]], ...]  # the same of what cannot be given
     checked: bool  # has a __post_init__
 
 
 @cache
 def _call(cls: Any) -> _Call:
-    own = dataclasses.fields(cls)
-    places = tuple(item.name for item in own if item.init and not item.kw_only)
-    names = frozenset(item.name for item in own if item.init)
-    # a default that cannot be given stays with the class
-    defaults = {item.name: item.default for item in own if item.init and item.default is not dataclasses.MISSING}
-    makers: dict[str, Any] = {
-        item.name: item.default_factory for item in own if item.default_factory is not dataclasses.MISSING
-    }
-    return _Call(places, names, defaults, makers, hasattr(cls, "__post_init__"))
+    every = dataclasses.fields(cls)
+    given = [item for item in every if item.init]
+    made: list[Any] = [item for item in every if item.default_factory is not dataclasses.MISSING]
+    return _Call(
+        tuple(item.name for item in given if not item.kw_only),
+        frozenset(item.name for item in given),
+        # a default that cannot be given stays with the class
+        {item.name: item.default for item in given if item.default is not dataclasses.MISSING},
+        tuple((item.name, item.default_factory) for item in made if item.init),
+        tuple((item.name, item.default_factory) for item in made if not item.init),
+        hasattr(cls, "__post_init__"),
+    )
 
 
-def _init(thing: Any, *args: Any, **named: Any) -> None:
+def _init(thing: Any, /, *args: Any, **named: Any) -> None:
     cls: Any = type(thing)
-    places, names, defaults, makers, checked = _call(cls)
-    given = dict(zip(places, args, strict=False))
-    if len(args) > len(places) or not named.keys() <= names or (args and not given.keys().isdisjoint(named)):
+    places, names, defaults, makers, own, checked = _call(cls)
+    values = {**defaults, **named}
+    if args:
+        if len(args) > len(places) or (named and not named.keys().isdisjoint(places[: len(args)])):
+            _refuse(thing, args, named)
+        values.update(zip(places, args, strict=False))
+    for name, make in makers:
+        if name not in values:
+            values[name] = make()
+    if values.keys() != names:
         _refuse(thing, args, named)
-    given |= named
-    values = defaults | {name: make() for name, make in makers.items() if name not in given} | given
-    if len(values) < len(names) or not names <= values.keys():
-        _refuse(thing, args, named)
+    for name, make in own:
+        values[name] = make()
     vars(thing).update(values)
     if checked:
         thing.__post_init__()
@@ -122,13 +132,16 @@ def _repr(thing: Any) -> str:
 
 
 @cache
-def _compared(cls: Any) -> tuple[str, ...]:
-    return tuple(item.name for item in dataclasses.fields(cls) if item.compare)
+def _compared(cls: Any) -> Callable[[Any], Any]:
+    """What gives the values that make things equal."""
+    names = [item.name for item in dataclasses.fields(cls) if item.compare]
+    # one name alone would give its value, not a tuple
+    return attrgetter(*names) if len(names) > 1 else lambda thing: tuple(getattr(thing, name) for name in names)
 
 
-def _values(thing: Any) -> tuple[Any, ...]:
+def _values(thing: Any) -> Any:
     cls: Any = type(thing)
-    return tuple(getattr(thing, name) for name in _compared(cls))
+    return _compared(cls)(thing)
 
 
 def _eq(one: Any, other: Any) -> Any:

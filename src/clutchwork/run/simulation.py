@@ -165,7 +165,7 @@ def refined(steps: Array, spacing: float, jumps: Array) -> Array:
 
     An instant that appears twice stays so; where a signal jumps it is duplicated.
     """
-    gaps = np.diff(steps)
+    gaps = steps[1:] - steps[:-1]
     parts = np.maximum(1, np.ceil(gaps / spacing - 1e-9)).astype(int)
     left, width = np.repeat(steps[:-1], parts), np.repeat(gaps / parts, parts)
     number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
