@@ -1,7 +1,8 @@
 """Pair every declaration with its C++ header, and write what the core must know of the declarations.
 
 Usage: gen_registry.py PROJECT_ROOT FOLDER. Writes layout.gen.hpp (System, rows, codes, settings), declared.gen.hpp
-(names and numbers of each component, for its header) and registry.gen.hpp (asserts and the switches over all kinds).
+(names and numbers of each component, for its header), registry.gen.hpp (asserts and the switches over all kinds) and
+schema.gen.hpp (declarations and layout as texts, which Python compares with its own).
 Ends with an error that names file and field when a pair does not fit.
 """
 
@@ -40,7 +41,7 @@ def main() -> int:
         return 1
     # the modules beside this file know the declarations, which can be imported only now
     sys.path.insert(0, str(Path(__file__).resolve().parent))
-    from registry import declared, layout, pairs, switches
+    from registry import declared, layout, pairs, schema, switches
 
     problems = list(pairs.problems(root))
     for line in problems:
@@ -48,7 +49,7 @@ def main() -> int:
     if problems:
         return 1
     out.mkdir(parents=True, exist_ok=True)
-    for module in (layout, declared, switches):
+    for module in (layout, declared, switches, schema):
         (out / module.FILE).write_text("\n".join([HEADER, "#pragma once", *module.lines()]) + "\n")
     return 0
 

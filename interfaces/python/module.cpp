@@ -5,6 +5,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 #include <clutchwork/layout.gen.hpp>
+#include <clutchwork/schema.gen.hpp>
 
 #include <chrono>
 #include <memory>
@@ -184,6 +185,8 @@ std::tuple<double, double> law(int number, Vector params, Matrix points, double 
 
 NB_MODULE(_core, m) {
   m.doc() = "Compiled core of clutchwork.";
+  m.attr("schema") = clutchwork::schema_text;
+  m.attr("layout") = clutchwork::layout_text;
   m.def("schema_hash", &cw_schema_hash, "Fingerprint of the components and layouts this core was built from.");
   m.def("law", &law, nb::arg("number"), nb::arg("params"), nb::arg("points"), nb::arg("slip"),
         nb::arg("inputs") = std::vector<double>(),

@@ -9,8 +9,8 @@
     d.add(cw.Clutch("c1", base=engine, follower=load, friction=lining, gain=1.0, normal_force=100.0))
     run = d.simulate(2.0)
 
-Elements, friction laws and signals are published from their folders: a new file there is a new name here. Type checkers
-and editors read the same names in `__init__.pyi`, which the build writes.
+Elements, friction laws and signals are published from their folders: a new file there is a new name here, imported when
+it is first used. Type checkers and editors read the same names in `__init__.pyi`, which the build writes.
 """
 
 from __future__ import annotations
@@ -18,40 +18,41 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-# importing the folders fills the registry
-from clutchwork import elements, laws, signals  # noqa: F401
 from clutchwork.base.errors import near
 from clutchwork.declare import HeatFlow, Node, Rate, ThermalNode
 from clutchwork.declare.calls import explain
 from clutchwork.declare.core import core
 from clutchwork.declare.docs import document
-from clutchwork.declare.schema import REGISTRY
+from clutchwork.declare.registry import REGISTRY, declared, with_each
 from clutchwork.face.names import NAMES, PACKAGES
 
 __version__ = "0.1.0"
 
-_DECLARED = {cls.__name__: cls for kinds in REGISTRY.values() for cls in kinds.values()}
-for _made in _DECLARED.values():
-    document(_made)
-for _made in (*_DECLARED.values(), HeatFlow, Node, Rate, ThermalNode):
+with_each(document)
+with_each(explain)
+for _made in (HeatFlow, Node, Rate, ThermalNode):
     explain(_made)
-globals().update(_DECLARED)
-
-__all__ = sorted([*NAMES, *PACKAGES, *_DECLARED])
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__all__":
+        known = [cls.__name__ for kinds in REGISTRY.values() for cls in kinds.values()]
+        return globals().setdefault(name, sorted([*NAMES, *PACKAGES, *known]))
     if name in PACKAGES:
         return import_module(f"clutchwork.{name}")
     if name in NAMES:
         value = getattr(import_module(f"clutchwork.{NAMES[name]}"), name)
         globals()[name] = value
         return value
-    raise AttributeError(f"clutchwork has no {name!r}{near(name, __all__)}")
+    found = None if name.startswith("_") else declared(name)
+    if found is not None:
+        return globals().setdefault(name, found)
+    known = () if name.startswith("_") else __getattr__("__all__")
+    raise AttributeError(f"clutchwork has no {name!r}{near(name, known)}")
 
 
 def __dir__() -> list[str]:
-    return [*__all__, "__version__"]
+    return [*__getattr__("__all__"), "__version__"]
 
 
 # a package whose core is missing or stale refuses to be imported

@@ -119,19 +119,76 @@ print([name for name in heavy if name in sys.modules])
     assert done.stdout.strip() == "[]", done.stderr
 
 
-@pytest.mark.parametrize(
-    ("core", "words"),
-    [
-        ("types.SimpleNamespace(schema_hash=lambda: 1)", "was built from other declarations; build it"),
-        ("None", "cannot be loaded"),
-    ],
-)
-def test_stale_or_missing_core_is_refused_with_the_remedy(core, words):
-    done = _python(f"import sys, types; sys.modules['clutchwork._core'] = {core}; import clutchwork")
+def _refused(code, words):
+    done = _python(code)
     assert done.returncode == 1
     assert "ImportError" in done.stderr
     assert words in done.stderr
     assert "pip install -e ." in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("core", "words"),
+    [
+        ("types.SimpleNamespace(schema_hash=lambda: 1)", "was built from other declarations; build it"),
+        ("types.SimpleNamespace(layout='another')", "was built from other declarations; build it"),
+        ("None", "cannot be loaded"),
+    ],
+)
+def test_missing_core_or_one_of_another_layout_is_refused_at_import(core, words):
+    _refused(f"import sys, types; sys.modules['clutchwork._core'] = {core}; import clutchwork", words)
+
+
+SPRING = """
+import sys, types
+from clutchwork import _core
+stale = types.SimpleNamespace(layout=_core.layout, schema=_core.schema.replace(OLD, NEW), schema_hash=lambda: 1)
+sys.modules["clutchwork._core"] = stale
+for name in [name for name in sys.modules if name.startswith("clutchwork") and name != "clutchwork._core"]:
+    del sys.modules[name]
+import clutchwork as cw
+d = cw.Driveline()
+d.add(cw.Damper("x", base=d.housing, follower=d.shaft("a", inertia=1.0), damping=1.0))
+d.assemble()
+print("assembled")
+d.add(cw.Spring("y", base=d.housing, follower=d.nodes[0], stiffness=1.0))
+d.assemble()
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("torque spring stiffness:param[N m/rad]", "torque spring rate:param[N m/rad]"),
+        ("torque spring ", "torque springs "),
+        ("initial_twist:param[rad] 1\ntorque spring_damper", "initial_twist:param[rad] 2\ntorque spring_damper"),
+    ],
+)
+def test_a_core_built_from_another_declaration_is_refused_where_that_is_assembled(old, new):
+    code = SPRING.replace("OLD", repr(old)).replace("NEW", repr(new))
+    _refused(code, "was built from other declarations; build it in the project folder")
+    _refused(code, "it has no spring with these fields")
+    assert _python(code).stdout.strip() == "assembled"
+
+
+def test_an_import_reads_no_declaration_before_it_is_used():
+    code = """
+import sys
+import clutchwork as cw
+print([name for name in sys.modules if ".elements." in name or ".laws." in name])
+cw.Clutch, cw.LuGre
+print(sorted(name.rpartition(".")[2] for name in sys.modules if ".elements." in name or ".laws." in name))
+"""
+    first, second = _python(code).stdout.splitlines()
+    assert first == "[]"
+    assert "'clutch'" in second
+    assert "'disk_clutch'" not in second
+
+
+def test_a_star_brings_every_name():
+    names: dict[str, object] = {}
+    exec("from clutchwork import *", names)
+    assert set(cw.__all__) <= set(names)
 
 
 def test_housing_is_where_nothing_moves():

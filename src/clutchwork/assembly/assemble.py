@@ -14,10 +14,11 @@ from clutchwork.assembly.records import TYPES, Gearing, frozen
 from clutchwork.assembly.shared_states import Shared, flow_arrays, heat_arrays
 from clutchwork.assembly.sparse import sparse
 from clutchwork.base.errors import ModelError
+from clutchwork.declare.core import number
 from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.ports import ports
 from clutchwork.declare.rational import Row, plus
-from clutchwork.declare.schema import Role, kinds
+from clutchwork.declare.schema import Role
 from clutchwork.model.findings import Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
 from clutchwork.model.model import Model
@@ -121,11 +122,11 @@ class Columns:
 
 def _matrix(rows: Sequence[Row], places: Mapping[int, int]) -> Array:
     made = np.zeros((len(rows), len(places)))
-    for number, row in enumerate(rows):
+    for place, row in enumerate(rows):
         for column, value in row.items():
             if column in places:
                 # the quotient of two whole numbers is rounded once
-                made[number, places[column]] = value.numerator / value.denominator
+                made[place, places[column]] = value.numerator / value.denominator
     return made
 
 
@@ -146,7 +147,7 @@ def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, 
 def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role, prefix: str) -> dict[str, Any]:
     own = [row for row, (component, _) in zip(found, model.acting, strict=True) if component.role is role]
     return columns.split(f"{prefix}_rate", own) | {
-        f"{prefix}_kind": [kinds(role).index(component.kind) for component in model.role(role)],
+        f"{prefix}_kind": [number(type(component)) for component in model.role(role)],
     }
 
 
@@ -166,7 +167,7 @@ def _elements(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
 
 def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
     contacts = model.role(Role.CONTACT)
-    laws, offsets = kinds(Role.LAW), list[int]()
+    offsets = list[int]()
     for contact in contacts:
         # bristles start without deflection
         offsets.append(len(states))
@@ -174,7 +175,7 @@ def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
     return {
         "contact_param": [pools.add(contact, contact.name) for contact in contacts],
         "contact_input": [wires.connect(contact) for contact in contacts],
-        "contact_law": [laws.index(contact.friction.kind) for contact in contacts],
+        "contact_law": [number(type(contact.friction)) for contact in contacts],
         "contact_law_param": [pools.add(contact.friction, f"{contact.name}.friction") for contact in contacts],
         "contact_law_input": [wires.connect_law(contact) for contact in contacts],
         "contact_state": offsets,

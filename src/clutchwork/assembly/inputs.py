@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import accumulate, chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from clutchwork.assembly.records import Input, Link
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Segment, Signal, ThermalNode, is_reference
 from clutchwork.declare.ports import ports, thermal_ports
 from clutchwork.declare.schema import Role, inputs

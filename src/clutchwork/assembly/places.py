@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode
 from clutchwork.model.parts import sensor_name, state_name
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.base.classes import dataclass
+from clutchwork.declare.core import number
 from clutchwork.declare.ports import thermal_ports
-from clutchwork.declare.schema import Role, kinds
+from clutchwork.declare.schema import Role
 
 if TYPE_CHECKING:
     from clutchwork.assembly.inputs import Wires
@@ -42,7 +43,7 @@ class Shared:
             scale += own
             offset += [0.0] * len(own)
         return {
-            "process_kind": [kinds(Role.PROCESS).index(process.kind) for process in self.processes],
+            "process_kind": [number(type(process)) for process in self.processes],
             "process_param": [pools.add(process, process.name) for process in self.processes],
             "process_input": [wires.connect(process) for process in self.processes],
             "process_state": first,
@@ -62,7 +63,7 @@ def flow_arrays(model: Mechanism, pools: Pools, wires: Wires) -> dict[str, Any]:
     flows = model.role(Role.FLOW)
     ends = [[wires.places.shared[node.name] for node in thermal_ports(flow).values()] for flow in flows]
     return {
-        "flow_kind": [kinds(Role.FLOW).index(flow.kind) for flow in flows],
+        "flow_kind": [number(type(flow)) for flow in flows],
         "flow_param": [pools.add(flow, flow.name) for flow in flows],
         "flow_input": [wires.connect(flow) for flow in flows],
         "flow_from": [left for left, _ in ends],

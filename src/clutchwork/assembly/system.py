@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import struct
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from functools import cached_property
-from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,17 +19,19 @@ from clutchwork.assembly.patches import Numbered, numbered
 from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
 from clutchwork.assembly.rooms import rooms
 from clutchwork.assembly.sparse import dense, entries
-from clutchwork.base import archive
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelError, near, warn
-from clutchwork.base.regular import reason
 from clutchwork.base.shown import shortened
-from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE, layout_text
+from clutchwork.declare.core import core
+from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE
 from clutchwork.declare.node import Component, Node, ThermalNode
-from clutchwork.declare.schema import Role, schema_hash
-from clutchwork.files.model_file import from_dict, to_dict
+from clutchwork.declare.schema import Role
 from clutchwork.model.findings import may_change
 from clutchwork.model.model import Model
 from clutchwork.model.settings import plain_settings
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 MAGIC = b"CLUTCHWK"
 
@@ -78,13 +78,13 @@ class System:
             raise AttributeError(f"a System has no {name!r}{near(name, [*SPARSE, *(n for n, *_ in FIELDS)])}") from None
 
     def __getstate__(self) -> dict[str, Any]:
-        # a view of a dictionary cannot be pickled; what is cached comes again
-        made = {item.name: getattr(self, item.name) for item in fields(self)}
-        return made | {"arrays": dict(self.arrays), "settings": dict(self.settings)}
+        # a view of a dictionary cannot be pickled; what was found since comes again
+        own = {item.name: getattr(self, item.name) for item in fields(self)}
+        return own | {"arrays": dict(self.arrays), "settings": dict(self.settings)}
 
-    def __setstate__(self, content: dict[str, Any]) -> None:
-        settings = MappingProxyType(content["settings"])
-        vars(self).update(content | {"arrays": frozen(content["arrays"]), "settings": settings})
+    def __setstate__(self, own: dict[str, Any]) -> None:
+        settings = MappingProxyType(own["settings"])
+        vars(self).update(own | {"arrays": frozen(own["arrays"]), "settings": settings})
 
     @cached_property
     def counts(self) -> dict[str, int]:
@@ -99,6 +99,8 @@ class System:
     @cached_property
     def model(self) -> Mapping[str, Any]:
         """The driveline as in a model file; empty where there is none, or it holds Python functions."""
+        from clutchwork.files.model_file import to_dict
+
         try:
             return {} if self.source is None else to_dict(self.source, embed=True)
         except ModelError:
@@ -164,8 +166,12 @@ class System:
         return made
 
     def to_bytes(self) -> bytes:
-        """The System as the compiled core reads it: little endian, every array aligned to 8 bytes."""
-        head = MAGIC + struct.pack("<q", schema_hash(layout_text()))
+        """The System as the compiled core reads it: little endian, every array aligned to 8 bytes; made once."""
+        return self._bytes
+
+    @cached_property
+    def _bytes(self) -> bytes:
+        head = MAGIC + struct.pack("<q", core().schema_hash())
         head += struct.pack(f"<{len(COUNTS)}q", *(self.counts[name] for name, _ in COUNTS))
         parts = [head]
         for name, kind, _, _ in FIELDS:
@@ -179,7 +185,7 @@ class System:
         head = len(MAGIC) + 8 + 8 * len(COUNTS)
         if len(data) < head or data[: len(MAGIC)] != MAGIC:
             raise SystemFormatError("these bytes are not a System; use those from System.to_bytes")
-        if struct.unpack_from("<q", data, len(MAGIC))[0] != schema_hash(layout_text()):
+        if struct.unpack_from("<q", data, len(MAGIC))[0] != core().schema_hash():
             raise SystemFormatError("this System was assembled by another version; assemble the driveline again")
         sizes = dict(zip((n for n, _ in COUNTS), struct.unpack_from(f"<{len(COUNTS)}q", data, 16), strict=True))
         arrays, start = {}, head
@@ -194,6 +200,10 @@ class System:
 
     def save(self, path: str | Path) -> None:
         """Write arrays and model to an archive; nothing in it is code."""
+        import json
+
+        from clutchwork.base import archive
+
         if not self.model:
             raise SystemFormatError(
                 "this System has a controller in Python or no names; save its driveline or to_bytes()"
@@ -205,6 +215,12 @@ class System:
     @classmethod
     def load(cls, path: str | Path) -> System:
         """Read a file that `save` wrote; SystemFormatError or ModelError for any other."""
+        import json
+
+        from clutchwork.base import archive
+        from clutchwork.base.regular import reason
+        from clutchwork.files.model_file import from_dict
+
         try:
             content, *texts = archive.read(path, ("content", "model", "independent"))
             model, independent = map(json.loads, texts)

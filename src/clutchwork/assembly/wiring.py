@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.classes import dataclass
+from clutchwork.base.kept import kept
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.node import Component, Domain, Node
 from clutchwork.declare.ports import ends, ports
@@ -90,8 +92,9 @@ class Wiring:
         return matrix
 
 
+@kept
 def wiring(system: System) -> Wiring:
-    """The connections of a System."""
+    """The connections of a System, found once."""
     places = {id(node): index for index, node in enumerate(system.nodes)}
     gears = [GearRow(row.gear.name, dict(row.ports), _domains(row.gear)) for row in system.gears]
     branches = [_branch(component, places) for component in (*system.elements, *system.contacts)]

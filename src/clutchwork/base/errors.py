@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from dataclasses import dataclass
-from difflib import get_close_matches
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.shown import LONGEST, printable, shortened
 from clutchwork.base.text import counted
 
@@ -151,4 +150,7 @@ def nearest(name: object, known: Iterable[str]) -> str:
     likely = [other for other in islice(known, MOST_COMPARED) if isinstance(other, str) and len(other) <= LONGEST]
     if not 0 < len(word) <= LONGEST:
         return ""
+    # only mistakes need it
+    from difflib import get_close_matches
+
     return next(iter(get_close_matches(word, likely, n=1, cutoff=0.6 if len(word) > 3 else 0.5)), "")

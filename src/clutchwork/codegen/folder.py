@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.assembly.wiring import wiring
 from clutchwork.codegen.model import Exported, chosen, files
 from clutchwork.codegen.sources import sources
 from clutchwork.declare.options import Options
 from clutchwork.face.driveline import Driveline
-from clutchwork.results.channels import Channels
+from clutchwork.results.channels import channels
 from clutchwork.run.settings import merged
 
 if TYPE_CHECKING:
@@ -43,8 +42,8 @@ def export_c(
     end, made = merged(system.settings, changes if t_end is None else {**changes, "t_end": t_end}, options)
     if made.times is not None:
         raise ValueError("times cannot be exported: give dt, the spacing of the grid")
-    channels = Channels(wiring(system), angles=made.angles, work=made.work)
-    exported = Exported(system, end, made.dt or end / INTERVALS, made, chosen(signals, channels))
+    known = channels(system, made.angles, made.work)
+    exported = Exported(system, end, made.dt or end / INTERVALS, made, chosen(signals, known))
     _refuse_large(exported)
     return _write(exported, Path(folder))
 

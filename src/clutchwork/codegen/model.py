@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base.classes import dataclass
 from clutchwork.codegen.expression import expression
 from clutchwork.codegen.text import comment, enumeration, identifiers, literal, string
 from clutchwork.declare.layout import CAUSES, EVENT, MODES, STATUS
 from clutchwork.declare.options import OPTIONS, Options
-from clutchwork.results.channels import Channel, Channels
+from clutchwork.results.channels import Channel, Channels, channels
 from clutchwork.results.forms import Mode
 from clutchwork.results.rows import numbers
 from clutchwork.run.grid import output_grid
@@ -45,8 +45,8 @@ class Exported:
     @cached_property
     def signals(self) -> dict[str, Channel]:
         """All signals that are numbers, by name."""
-        channels = Channels(self.wiring, angles=self.options.angles, work=self.options.work)
-        return {name: item for name, item in channels.items() if not _is_text(item)}
+        known = channels(self.system, self.options.angles, self.options.work)
+        return {name: item for name, item in known.items() if not _is_text(item)}
 
     @cached_property
     def functions(self) -> dict[str, str]:

@@ -1,24 +1,50 @@
-"""The compiled core, loaded when it is first needed."""
+"""The compiled core, loaded when it is first needed, and the numbers of declarations in it."""
 
 from __future__ import annotations
 
+from collections import Counter
 from functools import cache
 from importlib import import_module
 from typing import Any
 
 from clutchwork.declare.layout import layout_text
-from clutchwork.declare.schema import schema_hash
+from clutchwork.declare.schema import REGISTRY, Role, compiled_text
 
 REMEDY = "build it in the project folder: make setup, or pip install -e ."
+STALE = f"the compiled core of clutchwork was built from other declarations; {REMEDY}"
 
 
 @cache
 def core() -> Any:
-    """The module of the core; ImportError with the remedy when it is missing or was built from other declarations."""
+    """The module of the core; ImportError with the remedy when it is missing or was built for another layout."""
     try:
         found = import_module("clutchwork._core")
     except ImportError as error:
         raise ImportError(f"the compiled core of clutchwork cannot be loaded ({error}); {REMEDY}") from error
-    if found.schema_hash() != schema_hash(layout_text()):
-        raise ImportError(f"the compiled core of clutchwork was built from other declarations; {REMEDY}")
+    if getattr(found, "layout", "") != layout_text():
+        raise ImportError(STALE)
     return found
+
+
+def number(cls: Any) -> int:
+    """The number of a declaration in the core, among those of its role; ImportError when the core knows another one."""
+    return _number(cls.role, cls.kind)
+
+
+@cache
+def _number(role: Role, kind: str) -> int:
+    place = _places().get(compiled_text(REGISTRY[role][kind]))
+    if place is None:
+        raise ImportError(f"{STALE} (it has no {kind} with these fields)")
+    return place
+
+
+@cache
+def _places() -> dict[str, int]:
+    """Place of each declaration among those of its role, by its text, as the core was built."""
+    counted, places = Counter[str](), dict[str, int]()
+    for line in core().schema.splitlines():
+        role = line.partition(" ")[0]
+        places[line] = counted[role]
+        counted[role] += 1
+    return places

@@ -6,8 +6,7 @@ no others of these.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from difflib import get_close_matches
+from clutchwork.base.classes import dataclass
 
 
 @dataclass(frozen=True)
@@ -54,6 +53,8 @@ def hook_problems(role: str, names: tuple[str, ...]) -> list[str]:
 
 
 def _near(name: str, known: list[str]) -> str:
+    from difflib import get_close_matches
+
     close = get_close_matches(name, known, n=1)
     return f", did you mean {close[0]!r}?" if close else ""
 

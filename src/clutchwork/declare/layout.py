@@ -5,6 +5,8 @@ Standard library only: the build imports it and writes the C++ side from it.
 
 from __future__ import annotations
 
+from functools import cache
+
 # up to so many speeds nothing is left out of a matrix
 FEW_SPEEDS = 12
 
@@ -216,6 +218,7 @@ STATUS = (
 )
 
 
+@cache
 def layout_text() -> str:
     """Fingerprint text of the layout."""
     named = ([name for name, *_ in table] for table in (STATUS, STATISTICS))

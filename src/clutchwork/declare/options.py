@@ -7,10 +7,11 @@ The fields of `Options` are the table of all options. What checks them, the comm
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, advised, near
 from clutchwork.declare.calls import explain
 from clutchwork.declare.docs import document
@@ -110,7 +111,11 @@ class Options:
 
     def __post_init__(self) -> None:
         """Refuse values that make no sense, with what to write instead, all of them at once."""
-        found = [fault for name, row in OPTIONS.items() if (fault := _told(name, row, getattr(self, name)))]
+        found = [
+            fault
+            for name, row in OPTIONS.items()
+            if (value := getattr(self, name)) is not row.default and (fault := _told(name, row, value))
+        ]
         if self.dt is not None and self.times is not None:
             found.append(f"dt and times are both given: {ONE_GRID}")
         if found:
@@ -119,7 +124,7 @@ class Options:
     def changed(self, changes: Mapping[str, Any]) -> Options:
         """These options with some replaced; an unknown name is a UseError, a TypeError, with a near match."""
         known(changes)
-        return replace(self, **changes)
+        return replace(self, **changes) if changes else self
 
     def core_options(self) -> dict[str, float]:
         """The options that the compiled core knows, as its numbers."""
@@ -133,6 +138,9 @@ SIMULATION = {"t_end": T_END, **OPTIONS}
 
 document(Options)
 explain(Options)
+
+# what a run is done with where nothing is said
+DEFAULTS = Options()
 
 
 def known(names: Iterable[str]) -> None:

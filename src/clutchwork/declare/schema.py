@@ -7,31 +7,17 @@ The C++ header of the same stem holds the equations; `tools/gen_registry.py` pai
 
 from __future__ import annotations
 
-import hashlib
-from dataclasses import MISSING, Field, dataclass, field, fields
-from enum import Enum
+from dataclasses import MISSING, Field, field, fields
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, dataclass_transform
 
-from clutchwork.declare.frozen import freeze
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.hooks import hook_problems
+from clutchwork.declare.registry import REGISTRY as REGISTRY
+from clutchwork.declare.registry import Role as Role
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-
-class Role(Enum):
-    """What a component is to the engine."""
-
-    TORQUE = "torque"  # torque as a function of rate, states and inputs along one direction
-    CONTACT = "contact"  # set-valued friction along one direction
-    GEAR = "gear"  # rigid kinematic row between speeds, assembled in Python
-    MOTION = "motion"  # prescribed speed
-    FLOW = "flow"  # heat flow between two thermal nodes
-    PROCESS = "process"  # states of its own that signals, rates and heats drive: an actuator, wear
-    COMPOSITE = "composite"  # made of other elements, nothing of its own
-    LAW = "law"  # friction coefficient over slip
-    SIGNAL = "signal"  # value over time that drives an input
 
 
 @dataclass(frozen=True)
@@ -245,8 +231,6 @@ def function(doc: str, *, kw_only: bool = True) -> Any:
     return _field(Spec("function", "", doc), MISSING, kw_only)
 
 
-REGISTRY: dict[Role, dict[str, type]] = {role: {} for role in Role}
-
 C = TypeVar("C", bound=type)
 
 
@@ -266,7 +250,7 @@ def _check_work(cls: Any) -> None:
 )
 def family(cls: C) -> C:
     """Freeze fields that several declarations share, as a base that is itself none."""
-    frozen: Any = freeze(cls)
+    frozen: Any = dataclass(frozen=True)(cls)
     return frozen  # type: ignore[no-any-return]
 
 
@@ -291,7 +275,7 @@ def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, .
     """Freeze a declaration, register it under its kind, the stem of its module; `hooks`: clutchwork.declare.hooks."""
 
     def register(cls: C) -> C:
-        frozen: Any = freeze(cls)
+        frozen: Any = dataclass(frozen=True)(cls)
         kind = cls.__module__.rpartition(".")[2]
         wrong = hook_problems(role.value, hooks)
         if wrong:
@@ -300,7 +284,8 @@ def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, .
             _check_ports(cls)
         _check_work(cls)
         frozen.kind, frozen.role, frozen.states, frozen.hooks = kind, role, states, hooks
-        REGISTRY[role][kind] = frozen
+        REGISTRY[role].add(kind, frozen)
+        schema_hash.cache_clear()
         return cls
 
     return register
@@ -339,7 +324,7 @@ def _inputs(cls: Any) -> Inputs:
 
 def kinds(role: Role) -> list[str]:
     """The kinds of a role in the order of their number in the compiled core."""
-    return sorted(REGISTRY[role])
+    return list(REGISTRY[role])
 
 
 COMPILED_ROLES = (Role.TORQUE, Role.CONTACT, Role.LAW, Role.FLOW, Role.PROCESS)
@@ -347,14 +332,14 @@ COMPILED_ROLES = (Role.TORQUE, Role.CONTACT, Role.LAW, Role.FLOW, Role.PROCESS)
 
 def schema_text() -> str:
     """All that the compiled core must agree on, as a string."""
-    lines = []
-    for role in COMPILED_ROLES:
-        for kind in kinds(role):
-            cls: Any = REGISTRY[role][kind]
-            names = ",".join(_field_text(f.name, s) for f, s in specs(cls, "param", "curve", "numbers", "signal"))
-            sort = "" if role is not Role.LAW else " sticks" if cls.sticks else " compliant"
-            lines.append(f"{role.value} {kind} {names} {len(cls.states)}{sort}")
-    return "\n".join(lines)
+    return "\n".join(compiled_text(cls) for role in COMPILED_ROLES for cls in REGISTRY[role].values())
+
+
+def compiled_text(cls: Any) -> str:
+    """What the compiled core must agree on of one declaration."""
+    names = ",".join(_field_text(f.name, s) for f, s in specs(cls, "param", "curve", "numbers", "signal"))
+    sort = "" if cls.role is not Role.LAW else " sticks" if cls.sticks else " compliant"
+    return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}"
 
 
 def _field_text(name: str, spec: Spec) -> str:
@@ -362,7 +347,11 @@ def _field_text(name: str, spec: Spec) -> str:
     return f"{name}:{spec.what}[{spec.unit}]{choices}"
 
 
+@cache
 def schema_hash(extra: str = "") -> int:
     """63-bit fingerprint of every declaration and of the System layout."""
+    # loading it takes as long as a third of the declarations
+    import hashlib
+
     digest = hashlib.sha256((schema_text() + extra).encode()).digest()
     return int.from_bytes(digest[:8], "little") >> 1

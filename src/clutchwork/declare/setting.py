@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from numbers import Real
 from typing import Any, NamedTuple
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.shown import shown
 from clutchwork.declare.schema import Spec
@@ -69,12 +70,13 @@ class Setting:
         if spec.what == "numbers" or (value is None and spec.optional):
             return None
         if spec.choices:
-            known = isinstance(value, str) and value in spec.choices
-            message = f"must be one of {', '.join(spec.choices)}{near(value, spec.choices)}"
-            return None if known else Fault(shown(value), message, "")
+            if isinstance(value, str) and value in spec.choices:
+                return None
+            return Fault(shown(value), f"must be one of {', '.join(spec.choices)}{near(value, spec.choices)}", "")
         if spec.flag:
-            message = say("must be true or false", "must be True or False")
-            return None if isinstance(value, bool) else Fault(shown(value), message, f"it says {spec.doc}")
+            if isinstance(value, bool):
+                return None
+            return Fault(shown(value), say("must be true or false", "must be True or False"), f"it says {spec.doc}")
         message = self._wrong(_as_number(value))
         return Fault(self._shown(value), message, f"it is the {spec.doc}") if message else None
 

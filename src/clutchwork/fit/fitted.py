@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Law
 from clutchwork.fit.measurement import Measurement
 

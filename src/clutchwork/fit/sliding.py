@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.declare.schema import Role, kinds
+from clutchwork.declare.core import core, number
 from clutchwork.fit.failure import FitError
 from clutchwork.model.pools import Pools
 
@@ -29,14 +28,13 @@ def coefficients(law: Law, slips: Array, temperatures: Array | None = None) -> t
 
     Slips of a law that sticks are >= 0. A law that depends on the temperature needs one [K] for each slip.
     """
-    core: Any = import_module("clutchwork._core")
     pools = Pools()
     pools.add(law, "law")
-    number = kinds(Role.LAW).index(type(law).kind)
+    place, compiled = number(type(law)), core().law
     params, points = np.array(pools.params, dtype=float), np.array(pools.points, dtype=float).reshape(-1, 3)
     rows = [[]] * len(slips) if temperatures is None else temperatures.reshape(-1, 1).tolist()
     places = zip(slips.tolist(), rows, strict=True)
-    found = np.array([core.law(number, params, points, slip, inputs=row) for slip, row in places]).reshape(-1, 2)
+    found = np.array([compiled(place, params, points, slip, inputs=row) for slip, row in places]).reshape(-1, 2)
     return found[:, 0], found[:, 1]
 
 

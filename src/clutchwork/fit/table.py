@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.regular import open_regular
 from clutchwork.base.shown import listed

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import exp, inf, log, nextafter
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from clutchwork.base.classes import dataclass
 from clutchwork.fit.adjustable import kinetic
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.ordinates import ABOVE, STATIC, ordinates, rival

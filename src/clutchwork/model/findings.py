@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.speech import of_files
 from clutchwork.model.kinematics import kinematics
 from clutchwork.model.parts import Parts, Sensor

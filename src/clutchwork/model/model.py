@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Component, Node, ThermalNode
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import HOUSING, Component, Node, Rate, ThermalNode
 from clutchwork.declare.schema import Role, inputs
 from clutchwork.elements.damper import Damper

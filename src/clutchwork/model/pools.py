@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.declare.core import core
-from clutchwork.declare.schema import Role, kinds, specs
+from clutchwork.base.classes import dataclass
+from clutchwork.declare.core import core, number
+from clutchwork.declare.schema import specs
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Law
@@ -61,7 +62,6 @@ def coefficients(law: Law, slip: float) -> tuple[float, float]:
     """Kinetic and static coefficient of a friction law that sticks at a slip [rad/s], by the compiled core."""
     pools = Pools()
     pools.add(law, "law")
-    number = kinds(Role.LAW).index(type(law).kind)
     points = np.array(pools.points, dtype=float).reshape(-1, 3)
-    kinetic, static = core().law(number, np.array(pools.params, dtype=float), points, slip)
+    kinetic, static = core().law(number(type(law)), np.array(pools.params, dtype=float), points, slip)
     return kinetic, static

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from math import inf, isfinite
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Component, Domain, Node
 from clutchwork.declare.ports import ends, ports
 from clutchwork.declare.rational import MINUS, ONE, Row, exact, plus

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import listed, shown
 from clutchwork.declare import units

@@ -9,20 +9,24 @@ element counts as the element, such as the drag of a clutch, its torque, power, 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.wiring import HOUSING, Branch, Wiring
+from clutchwork.assembly.wiring import HOUSING, Branch, Wiring, wiring
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
+from clutchwork.base.kept import kept
 from clutchwork.base.shown import shown
 from clutchwork.declare.node import Domain
 from clutchwork.results import heat_channels, reactions
 from clutchwork.results.forms import LOCKED as LOCKED
 from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Slip, Total
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
 
 Array = NDArray[Any]
 
@@ -176,6 +180,12 @@ class Channels(Mapping[str, Channel]):
             if node != HOUSING:
                 vector[self._start("speed") + node] += coefficient
         return Linear.of(vector)
+
+
+@kept
+def channels(system: System, angles: bool = True, work: bool = True) -> Channels:
+    """All signals of a System by name, found once; those that are not integrated are left out."""
+    return Channels(wiring(system), angles=angles, work=work)
 
 
 def _left_out(angles: bool, work: bool) -> dict[str, str]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.sparse import entries
+from clutchwork.base.classes import dataclass
 from clutchwork.results.stretches import stretches
 
 if TYPE_CHECKING:

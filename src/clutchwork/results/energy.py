@@ -12,13 +12,14 @@ counts as heat too: it is small, at most coefficient times deflection times load
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import Branch, Wiring
+from clutchwork.base.classes import dataclass
 from clutchwork.base.text import columns
 from clutchwork.declare.node import Component, Work
 from clutchwork.results.events import Events

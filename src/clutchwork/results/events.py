@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator, Sequence
-from dataclasses import astuple, dataclass, fields
-from pathlib import Path
-from typing import overload
+from dataclasses import astuple, fields
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import columns
 from clutchwork.declare.layout import CAUSES, EVENT, MODES
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -100,6 +102,9 @@ class Events(Sequence[Event]):
 
     def to_csv(self, path: str | Path) -> None:
         """Write every field of every event; the head of each column has its unit."""
+        import csv
+        from pathlib import Path
+
         units = {"time": "s", "slip_acceleration": "rad/s2", "torque_before": "N m", "torque_after": "N m"}
         units |= {"energy_before": "J", "energy_after": "J"}
         names = [item.name for item in fields(Event)]

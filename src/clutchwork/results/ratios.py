@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
 from itertools import combinations
 from math import comb
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.assembly.wiring import HOUSING, Wiring, wiring
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Work
 from clutchwork.results.stretches import stretches
 

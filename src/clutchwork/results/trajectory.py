@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError
 from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, NAMES
-from clutchwork.results.channels import Channels, Units
-from clutchwork.results.energy import EnergyBalance, balance
+from clutchwork.results.channels import Channels, Units, channels
 from clutchwork.results.events import Events
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from matplotlib.figure import Figure
 
     from clutchwork.assembly.system import System
     from clutchwork.results.dependence import DependentPhase
+    from clutchwork.results.energy import EnergyBalance
     from clutchwork.results.events import Event
 
 Array = NDArray[np.float64]
@@ -73,15 +75,15 @@ class Trajectory:
             raise SimulationError(self.message, self)
         return self
 
-    @cached_property
+    @property
     def wiring(self) -> Wiring:
         """Who is joined to what."""
         return wiring(self.system)
 
-    @cached_property
+    @property
     def channels(self) -> Channels:
         """Unit and evaluation of every signal."""
-        return Channels(self.wiring, angles=self.options.angles, work=self.options.work)
+        return channels(self.system, self.options.angles, self.options.work)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -118,6 +120,8 @@ class Trajectory:
             raise ValueError("the energy balance needs the work integrals: run with work=True")
         if not len(self):
             raise ValueError(f"no instant was computed, so there is no energy balance: {self.message}")
+        from clutchwork.results.energy import balance
+
         window = [e for e in self.events if self.time[0] <= e.time <= self.time[-1]]
         return balance(self.wiring, self.rows, Events(window))
 
@@ -133,6 +137,8 @@ class Trajectory:
 
     def to_csv(self, path: str | Path, names: Any = None) -> None:
         """Write signals (all by default) as columns `name [unit]` with 17 digits, the time first."""
+        from pathlib import Path
+
         from clutchwork.results.export import to_csv
 
         to_csv(self, Path(path), self._chosen(names))

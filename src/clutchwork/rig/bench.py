@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
 from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelWarning
 from clutchwork.declare.node import Domain, Law, Node, SignalLike
 from clutchwork.declare.options import Options

@@ -6,10 +6,11 @@ import argparse
 import json
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 
 if TYPE_CHECKING:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.declare.node import Law
 from clutchwork.declare.options import Options

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.declare.node import Domain, Law
 from clutchwork.declare.schema import REGISTRY, Role, specs
@@ -107,7 +107,7 @@ class Preset:
     @property
     def laws(self) -> tuple[str, ...]:
         """Kinds of all laws over the slip alone: those with numbers here, then those at their own examples."""
-        known: dict[str, Any] = REGISTRY[Role.LAW]
+        known = REGISTRY[Role.LAW]
         others = sorted(kind for kind in known if kind not in self.fields and not any(specs(known[kind], "signal")))
         return (*(kind for kind in self.fields if kind in known), *others)
 

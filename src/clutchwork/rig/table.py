@@ -5,10 +5,10 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.text import columns
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TypeVar
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.results.trajectory import Trajectory
 from clutchwork.rig.bench import Bench

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.wiring import wiring
+from clutchwork.base.classes import dataclass
 from clutchwork.results.channels import Channels
 from clutchwork.results.trajectory import SimulationError
 
 if TYPE_CHECKING:
     from clutchwork.assembly.records import Input
-    from clutchwork.assembly.system import System
 
 
 class Readings(Mapping[str, Any]):
@@ -65,23 +64,6 @@ def controllers(inputs: Sequence[Input]) -> tuple[Controller, ...]:
         for index, item in enumerate(inputs)
         if (sampling := item.signal.sampling()) is not None
     )
-
-
-class Signals:
-    """The signals of a System, found when they are first asked for; a copy finds them again."""
-
-    def __init__(self, system: System) -> None:
-        self._system = system
-        self._found: Channels | None = None
-
-    def __call__(self) -> Channels:
-        """All of them."""
-        if self._found is None:
-            self._found = Channels(wiring(self._system))
-        return self._found
-
-    def __reduce__(self) -> tuple[type[Signals], tuple[System]]:
-        return Signals, (self._system,)
 
 
 Settings = list[tuple[int, float]]

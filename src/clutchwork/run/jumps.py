@@ -2,38 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.kept import kept
 from clutchwork.signals.bases.waveform import piece_value
 
 if TYPE_CHECKING:
-    from clutchwork.assembly.records import Input
+    from clutchwork.assembly.system import System
     from clutchwork.declare.node import Segment, Signal
 
 # a train of pulses with more jumps than this is drawn well enough without both limits
 MOST_JUMPS = 10_000
 
 
-def jump_times(inputs: Sequence[Input], t_end: float) -> NDArray[np.float64]:
-    """Instants inside (0, t_end) at which at least one signal jumps [s], each once."""
-    found = [_jumps(item.signal, t_end) for item in inputs]
-    return np.unique(np.concatenate([np.empty(0), *found]))
+def jump_times(system: System, t_end: float) -> NDArray[np.float64]:
+    """Instants inside (0, t_end) at which at least one signal of a System jumps [s], each once."""
+    found = {time for at, period in _jumping(system) for time in _repeated(at, period, t_end)}
+    return np.array(sorted(found))
 
 
-def _jumps(signal: Signal, t_end: float) -> NDArray[np.float64]:
+@kept
+def _jumping(system: System) -> tuple[tuple[list[float], float], ...]:
+    """Of each signal that jumps the instants at which it first does, and the period of those that repeat, 0: never."""
+    found = ((_jumps(item.signal), item.signal.repeats()) for item in system.inputs)
+    return tuple((at, period) for at, period in found if at)
+
+
+def _jumps(signal: Signal) -> list[float]:
     pieces, period = list(signal.segments()), signal.repeats()
     if period > 0.0:
         # the first piece follows the last one in every repetition
         pieces.append(pieces[0]._replace(start=pieces[0].start + period))
-    at = [after.start for before, after in pairwise(pieces) if _differ(before, after)]
+    return [after.start for before, after in pairwise(pieces) if _differ(before, after)]
+
+
+def _repeated(at: list[float], period: float, t_end: float) -> list[float]:
     repeats = np.arange(0.0, min(t_end / period, MOST_JUMPS) + 1.0) * period if period > 0.0 else np.zeros(1)
     times: NDArray[np.float64] = np.add.outer(np.array(at, dtype=float), repeats).ravel()
-    return times[(times > 0.0) & (times < t_end)][:MOST_JUMPS]
+    inside: list[float] = times[(times > 0.0) & (times < t_end)][:MOST_JUMPS].tolist()
+    return inside
 
 
 def _differ(before: Segment, after: Segment) -> bool:

@@ -54,17 +54,22 @@ class Recording:
     @property
     def times(self) -> Array:
         """Instants of the rows [s]."""
-        return np.concatenate([times for times, _ in self._parts]) if self._parts else np.empty(0)
+        return _joined([times for times, _ in self._parts], np.empty(0))
 
     @property
     def rows(self) -> Array:
         """Output rows, shape (instants, row size)."""
-        return np.concatenate([rows for _, rows in self._parts]) if self._parts else np.empty((0, self.row_size))
+        return _joined([rows for _, rows in self._parts], np.empty((0, self.row_size)))
 
     @property
     def events(self) -> Array:
         """Events, shape (events, columns of layout.EVENT)."""
-        return np.concatenate(self._events) if self._events else np.empty((0, len(EVENT)))
+        return _joined(self._events, np.empty((0, len(EVENT))))
+
+
+def _joined(parts: list[Array], nothing: Array) -> Array:
+    """Parts one after another; one alone as it is, not copied."""
+    return parts[0] if len(parts) == 1 else np.concatenate([nothing, *parts])
 
 
 def record(recording: Recording, t_end: float, grid: Array | None, control: Control, progress: Progress | None) -> None:

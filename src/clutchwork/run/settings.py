@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from clutchwork.base.errors import OptionError
-from clutchwork.declare.options import Options, end_time, known
+from clutchwork.declare.options import DEFAULTS, Options, end_time, known
 from clutchwork.declare.speech import say
 
 ON_COMMAND_LINE = "give --t-end, or t_end in the [simulation] table of the model file"
@@ -36,7 +36,7 @@ def merged(
     if "t_end" in given and "times" not in given and wanted.get("times") is not None:
         # a run that is made shorter ends before the last instants of the settings
         wanted["times"] = _up_to(end, wanted["times"])
-    return end, (options or Options()).changed(wanted)
+    return end, (options or DEFAULTS).changed(wanted)
 
 
 def _up_to(end: float, times: Any) -> list[float]:

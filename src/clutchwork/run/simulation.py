@@ -5,23 +5,26 @@ from __future__ import annotations
 import os
 import time
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
-from clutchwork.assembly.wiring import row_columns, wiring
+from clutchwork.assembly.wiring import wiring
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, caller
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.core import core
 from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES, NOT_FINITE
+from clutchwork.results.channels import channels
 from clutchwork.results.events import from_rows
 from clutchwork.results.trajectory import SimulationError, Trajectory
-from clutchwork.run.control import Control, Signals, controllers
+from clutchwork.run.control import Control, controllers
 from clutchwork.run.effort import refuse_endless
 from clutchwork.run.failure import Interrupted, StoppedEarly, explain, report_faults
 from clutchwork.run.grid import output_grid
@@ -87,7 +90,7 @@ def simulate(
     given = {**changes} if t_end is None else {**changes, "t_end": t_end}
     end, chosen = merged(system.settings, given, options)
     refuse_endless(system.inputs, end, chosen.max_steps)
-    control = Control(controllers(system.inputs), Signals(system))
+    control = Control(controllers(system.inputs), partial(channels, system))
     run = _trajectory(Job(system, end, chosen, control), progress)
     report_faults(run)
     return run
@@ -123,7 +126,7 @@ def _collect(job: Job, progress: Progress | None) -> tuple[Recording, Simulation
     if grid is not None or job.options.output != "smooth" or failure is not None or first.status == INTERRUPTED:
         return first, failure
     spacing = job.t_end / job.options.points
-    finer = refined(first.times, spacing, jump_times(job.system.inputs, job.t_end))
+    finer = refined(first.times, spacing, jump_times(job.system, job.t_end))
     if finer.size == first.times.size:
         return first, None
     second, failure = _once(job, data, finer, None)
@@ -141,8 +144,7 @@ def _once(
     run = new_run(data)
     for name, value in job.options.core_options().items():
         run.set_option(name, value)
-    row_size = max(part.stop for part in row_columns(job.system.counts).values())
-    recording = Recording(run, row_size)
+    recording = Recording(run, run.row_size)
     try:
         record(recording, job.t_end, grid, job.control, progress)
     except SimulationError as error:
@@ -163,7 +165,7 @@ def refined(steps: Array, spacing: float, jumps: Array) -> Array:
 
     An instant that appears twice stays so; where a signal jumps it is duplicated.
     """
-    gaps = np.diff(steps)
+    gaps = steps[1:] - steps[:-1]
     parts = np.maximum(1, np.ceil(gaps / spacing - 1e-9)).astype(int)
     left, width = np.repeat(steps[:-1], parts), np.repeat(gaps / parts, parts)
     number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)

@@ -28,7 +28,7 @@ class Column(Signal):
     scale: float = param(
         "1", "factor on the values in SI; 1e5 for values in bar below a head without a unit", default=1.0
     )
-    folder: str = field(default="", kw_only=True, repr=False, compare=False)
+    folder: str = field(default="", kw_only=True, repr=False)
 
     @cached_property
     def _read(self) -> Any:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from string import ascii_lowercase
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clutchwork.base.classes import dataclass
 from clutchwork.rig.bench import Bench, friction, position
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small, title

@@ -11,7 +11,6 @@ import csv
 import io
 from array import array
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import chain
 from math import inf, isclose, isfinite
 from operator import itemgetter
@@ -21,6 +20,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import FileError, near
 from clutchwork.base.regular import open_regular, reason
 from clutchwork.base.shown import listed, shown

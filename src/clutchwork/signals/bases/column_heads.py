@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
+from clutchwork.base.classes import dataclass
 from clutchwork.declare.quantity import QuantityError, factor_to_si
 from clutchwork.declare.units import parse
 

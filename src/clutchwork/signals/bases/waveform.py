@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import cmath
-from dataclasses import dataclass
 from itertools import chain
 from math import comb, exp, pi, sin
 
+from clutchwork.base.classes import dataclass
 from clutchwork.declare import Segment, Signal
 
 # amplitude, omega, phase, decay
