@@ -19,8 +19,8 @@ unexport PYTHONPATH PYTHONHOME VIRTUAL_ENV
 VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
-# a worker for each core; the tests of one file stay together, for they share what is costly
-PYTEST = $(BIN)/python -m pytest --numprocesses $(JOBS) --dist loadfile
+# a worker for each core; the tests of one file stay together, for they share what is costly; long files come first
+PYTEST = $(BIN)/python -m pytest --numprocesses $(JOBS) --dist loadfile --no-loadscope-reorder
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 JOBS ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 

@@ -5,9 +5,7 @@
 namespace clutchwork {
 CLUTCHWORK_SMALL(, 1, 0)
 CLUTCHWORK_SMALL(, 1, 1)
-CLUTCHWORK_SMALL(, 1, 2)
 CLUTCHWORK_SMALL(, 2, 0)
 CLUTCHWORK_SMALL(, 2, 1)
 CLUTCHWORK_SMALL(, 2, 2)
-CLUTCHWORK_SMALL(, 3, 1)
 }  // namespace clutchwork
