@@ -50,7 +50,7 @@ def markdown(rows: Sequence[Row]) -> str:
 def plain(row: Row) -> str:
     """One line on the terminal."""
     what, measured, target, met = row.cells()
-    return f"{what:<58} {measured:>22}   {target:<22} {met}"
+    return f"{what:<58} {measured:>42}   {target:<14} {met}"
 
 
 def write(path: Path, rows: Sequence[Row], command: str) -> None:
