@@ -17,9 +17,16 @@ ROOT = Path(__file__).resolve().parents[1]
 # builders of models are shared with the tests; run as a file, the package itself has to be found too
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from benchmarks import chain, coupled, laws, report, shift, startup  # noqa: E402
+from benchmarks import chain, coupled, laws, report, shift, startup, sweeps  # noqa: E402
 
-PARTS = {"shift": shift.rows, "coupled": coupled.rows, "laws": laws.rows, "chain": chain.rows, "startup": startup.rows}
+PARTS = {
+    "shift": shift.rows,
+    "sweeps": sweeps.rows,
+    "coupled": coupled.rows,
+    "laws": laws.rows,
+    "chain": chain.rows,
+    "startup": startup.rows,
+}
 
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:

@@ -16,11 +16,13 @@ import clutchwork  # noqa: E402
 import gen_docs  # noqa: E402
 import gen_lists  # noqa: E402
 import parity  # noqa: E402
+import sweeps  # noqa: E402
 
 gen_docs.write(HERE / "reference")
 gen_lists.write(HERE / "reference")
 kept.write(experiments.write, HERE / "reference" / "rig")
 kept.write(launches.write, HERE / "reference" / "car")
+kept.write(sweeps.write, HERE / "reference" / "sweeps")
 parity.write(HERE / "reference")
 
 # what is public is documented by its public name, wherever it is defined

@@ -13,9 +13,11 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
+from clutchwork.assembly.wiring import wiring
 from clutchwork.declare.node import Law, Signal
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.model.changes import FIXED, PLACES, all_names, named, target
+from clutchwork.results.channels import Channels
 from support import random_drivelines, samples, six_speed
 from support.amount import amount
 from support.sweep import sweep
@@ -66,7 +68,17 @@ def differences(one: cw.System, other: cw.System) -> str:
         group for group in groups if [*map(plainly, getattr(one, group))] != [*map(plainly, getattr(other, group))]
     ]
     gears = [[(row.gear.name, row.ports) for row in made.gears] for made in (one, other)]
-    return ", ".join(found + (["gears"] if gears[0] != gears[1] else []))
+    found += ["gears"] if gears[0] != gears[1] else []
+    return ", ".join([*found, *signals_apart(one, other)])
+
+
+def signals_apart(one: cw.System, other: cw.System) -> list[str]:
+    """Signals that two Systems read from one and the same rows differently."""
+    made, expected = Channels(wiring(one)), Channels(wiring(other))
+    if list(made) != list(expected):
+        return ["names of signals"]
+    rows = np.random.default_rng(5).integers(0, 2, (7, wiring(one).row_size)) * 1.5
+    return [n for n in made if made[n].evaluate(rows).tobytes() != expected[n].evaluate(rows).tobytes()]
 
 
 def said(item: Any) -> tuple[Any, ...]:

@@ -104,7 +104,7 @@ def test_random_drivelines_random_names():
                 found = cw.sweep(system, t_end, vary=vary, outputs=asked, threads=2, **OPTIONS)
             except cw.ModelError as error:
                 # static coefficients below kinetic ones
-                return "" if "kinetic" in str(error) or "inside of" in str(error) else str(error)
+                return "" if any(word in str(error) for word in ("kinetic", "inside of", "heat_share")) else str(error)
         return compared(system, found, t_end, OPTIONS, {0, len(found) - 1, int(rng.integers(len(found)))})
 
     over_seeds(check, amount(40))
@@ -145,7 +145,7 @@ def test_values_that_act_together():
     d = cw.Driveline("x")
     a, b = d.shaft("a", inertia=1.0, speed=50.0), d.shaft("b", inertia=2.0)
     plates = d.thermal("plates", capacity=500.0)
-    karnopp = cw.Karnopp(static=0.2, kinetic=0.1, speed=5.0, band=0.0)
+    karnopp = cw.Karnopp(static=0.2, kinetic=0.1, speed=5.0, band=0.05)
     force = cw.Ramp(height=100.0, duration=0.5)
     d.add(
         cw.Clutch("c", base=a, follower=b, friction=karnopp, gain=1.0, normal_force=force, heat=plates, heat_share=0.5)
@@ -154,7 +154,7 @@ def test_values_that_act_together():
     system = d.assemble()
     vary = {
         "c.tolerance": [0.0, 0.05],
-        "c.friction.band": [0.0, 0.2],
+        "c.friction.band": [0.05, 0.2],
         "k.stiffness": [100.0, 200.0],
         "k.initial_twist": [0.0, 0.1],
         "c.normal_force.height": [100.0, 150.0],

@@ -8,7 +8,6 @@ import pickle
 import signal
 import sys
 import threading
-import time
 
 import numpy as np
 import pytest
@@ -277,28 +276,33 @@ def test_a_progress_that_raises_ends_the_sweep():
         cw.sweep(six_speed.gearbox(six_speed.SHIFT), 4.0, vary=vary, outputs="w8.speed", progress=refuse)
 
 
-def test_ctrl_c_keeps_what_is_done():
+@pytest.mark.parametrize("between", [False, True], ids=["in the core", "in Python"])
+def test_ctrl_c_keeps_what_is_done(between):
     system = six_speed.gearbox(six_speed.SHIFT).assemble()
     main = threading.main_thread().ident
     assert main is not None
-    asked = threading.Timer(0.4, lambda: signal.pthread_kill(main, signal.SIGINT))
+    asked = threading.Timer(0.02, lambda: signal.pthread_kill(main, signal.SIGINT))
+    said = []
+
+    def stop(done, total):
+        if done >= 100 and not said:
+            said.append(done)
+            signal.raise_signal(signal.SIGINT) if between else asked.start()
+
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    asked.start()
+    grid = {"F1.gain": np.linspace(0.2, 0.3, 1000), "F2.gain": np.linspace(0.06, 0.07, 1000)}
     try:
-        started = time.perf_counter()
         with pytest.raises(cw.SweepInterrupted) as caught:
-            cw.sweep(system, 4.0, vary={"F1.gain": np.linspace(0.2, 0.3, 10**6)}, outputs=["w8.speed", cw.lock("F1")])
+            cw.sweep(system, 4.0, vary=grid, outputs=["w8.speed", cw.lock("F1")], progress=stop)
     finally:
         asked.cancel()
         signal.signal(signal.SIGINT, before)
-    # a crowded machine is forgiven
-    assert time.perf_counter() - started < 30.0
     found = caught.value.sweep
     done = found.finished
-    assert 0 < done.sum() < 10**6
+    assert 100 <= done.sum() < 10**6
     assert not np.isnan(found["w8.speed"][done]).any()
     assert np.isnan(found["w8.speed"][~done]).all()
-    assert set(found.status.tolist()) == {"done", "interrupted"}
+    assert set(found.status.reshape(-1).tolist()) == {"done", "interrupted"}
     assert isinstance(caught.value, KeyboardInterrupt)
     assert "variants are done; what they gave is kept in .sweep" in str(caught.value)
 

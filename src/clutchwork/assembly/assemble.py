@@ -19,7 +19,7 @@ from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.ports import ports
 from clutchwork.declare.rational import Row, plus
 from clutchwork.declare.schema import Role
-from clutchwork.model.findings import Structure, findings
+from clutchwork.model.findings import Findings, Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
 from clutchwork.model.model import Model
 from clutchwork.model.pools import Pools
@@ -34,9 +34,12 @@ if TYPE_CHECKING:
 Array = NDArray[Any]
 
 
-def assembled(whole: Model, independent: Sequence[str] = ()) -> dict[str, Any]:
-    """The fields of the System of a model without mistakes; ModelError reports those of its structure."""
-    found = findings(whole)
+def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | None = None) -> dict[str, Any]:
+    """The fields of the System of a model without mistakes; ModelError reports those of its structure.
+
+    Parameters: found, what the checks of the model have found, where they were made already.
+    """
+    found = found or findings(whole)
     if found.structure is None:
         raise ModelError(found.problems)
     parts, model = found.structure.parts, found.structure.mechanism

@@ -40,12 +40,12 @@ def changed(
     many there are; changes, values by name.
     """
     with words_of_files(source.from_file):
-        model = changed_model(source, changes)
+        model = changed_model(source, {name: _kept(value) for name, value in changes.items()})
         found = findings(model)
         if found.problems:
             raise ModelError(found.problems, model.name)
         try:
-            made = assembled(model, independent)
+            made = assembled(model, independent, found)
         except ArithmeticError:
             raise ModelError([TOO_FAR_APART], model.name) from None
     count = len(made["independent"])
@@ -56,19 +56,24 @@ def changed(
     return model, made, found.advice
 
 
+# values by the fields that lead to them
+Values = list[tuple[tuple[str, ...], Any]]
+
+
 class Quick(NamedTuple):
-    """Other numbers of elements that nothing else depends on: the model, its arrays, and the new elements by name."""
+    """Other numbers of elements that nothing else depends on: the model, its arrays, and what is new by element."""
 
     source: Model
     arrays: dict[str, Array]
-    new: dict[str, Component]
+    values: dict[str, Values]
     signals: dict[int, Signal]  # by the number of their input
 
 
 def quick(source: Model, where: Numbered, changes: Mapping[str, Any]) -> Quick | None:
     """The changes where they are such; None: everything must be looked at, and assembled, anew."""
-    new = _quickly(source, where, changes)
-    if new is None:
+    given = _given(source, where, changes)
+    new = None if given is None else _right(given)
+    if given is None or new is None:
         return None
     try:
         found = [patch for old, made in new.values() for patch in patches(where, old, made)]
@@ -80,19 +85,23 @@ def quick(source: Model, where: Numbered, changes: Mapping[str, Any]) -> Quick |
     model = source.copy()
     by_name = {name: made for name, (_, made) in new.items()}
     model.elements = [by_name.get(element.name, element) for element in source.elements]
-    return Quick(model, patched(where.arrays, found), by_name, signals)
+    values = {name: own for name, (_, own) in given.items()}
+    return Quick(model, patched(where.arrays, found), values, signals)
 
 
-def _quickly(
-    source: Model, where: Numbered, changes: Mapping[str, Any]
-) -> dict[str, tuple[Component, Component]] | None:
-    """Elements without mistakes in the place of others; None where more must be looked at."""
-    owners, given = named(source), dict[str, tuple[Component, list[tuple[tuple[str, ...], Any]]]]()
+def _given(source: Model, where: Numbered, changes: Mapping[str, Any]) -> dict[str, tuple[Component, Values]] | None:
+    """The elements that change, each with its values; None where more than elements does."""
+    owners, given = named(source), dict[str, tuple[Component, Values]]()
     for name, value in changes.items():
         aim = target(owners, name)
         if aim is None or not isinstance(aim.owner, Component) or aim.owner.name in where.referred:
             return None
         given.setdefault(aim.owner.name, (aim.owner, []))[1].append((aim.path, _kept(value)))
+    return given
+
+
+def _right(given: Mapping[str, tuple[Component, Values]]) -> dict[str, tuple[Component, Component]] | None:
+    """Elements without mistakes in the place of others; None where there are mistakes."""
     made = dict[str, tuple[Component, Component]]()
     for name, (old, values) in given.items():
         if _overlap([path for path, _ in values]):

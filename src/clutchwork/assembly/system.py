@@ -26,6 +26,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE
 from clutchwork.declare.node import Component, Node, ThermalNode
 from clutchwork.declare.schema import Role
+from clutchwork.model.changes import renewed
 from clutchwork.model.findings import may_change
 from clutchwork.model.model import Model
 from clutchwork.model.settings import plain_settings
@@ -137,8 +138,7 @@ class System:
         for one in advice:
             if str(one) not in self.warnings:
                 warn(one)
-        kept = deepcopy(source) if may_change(source) else source
-        return System(**made, settings=self.settings, source=kept, wanted=self.wanted)
+        return System(**made, settings=self.settings, source=source, wanted=self.wanted)
 
     @cached_property
     def numbered(self) -> Numbered:
@@ -153,9 +153,12 @@ class System:
 
     def _with(self, found: Quick) -> System:
         """The same structure with other elements."""
-        content, new = self.__getstate__(), found.new
+        content, values = self.__getstate__(), found.values
+        # on the shafts of this System, which are not those of its source
         for group in ("elements", "contacts", "flows", "processes"):
-            content[group] = tuple(new.get(part.name, part) for part in content[group])
+            parts = content[group]
+            if any(part.name in values for part in parts):
+                content[group] = tuple(renewed(p, values[p.name]) if p.name in values else p for p in parts)
         inputs = list(self.inputs)
         for number, signal in found.signals.items():
             inputs[number] = replace(inputs[number], signal=signal)

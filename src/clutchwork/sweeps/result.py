@@ -108,6 +108,14 @@ class Sweep:
         return (len(self),) if self.swept.variants.shape is None else self.swept.variants.shape
 
     @property
+    def coords(self) -> dict[str, Array]:
+        """The axes of a grid, or the columns of a table: what varies, as numbers or labels."""
+        varied = self.swept.variants.varied
+        if self.swept.variants.shape is None:
+            return {one.name: one.column for one in varied}
+        return {one.name: np.array(one.labels) for one in varied}
+
+    @property
     def units(self) -> dict[str, str]:
         """Unit of every output; empty for what a function tells."""
         channels = Channels(wiring(self.swept.system))
@@ -200,10 +208,7 @@ class Sweep:
         xarray, units, swept = _need("xarray"), self.units, self.swept
         grid = swept.variants.shape is not None and len(swept.variants.varied) > 0
         axes = self.varied if grid else ("variant",)
-        if grid:
-            coords: dict[str, Any] = {one.name: (one.name, np.array(one.labels)) for one in swept.variants.varied}
-        else:
-            coords = {one.name: ("variant", one.column) for one in swept.variants.varied}
+        coords: dict[str, Any] = {name: (name if grid else "variant", axis) for name, axis in self.coords.items()}
         shape, data = self.shape if grid else (len(self),), dict[str, Any]()
         for name, output in swept.outputs.items():
             values, dims = self.flat(name), axes

@@ -117,12 +117,16 @@ def _in_core(made: Sweep, batch: Batch, told: Shown, alone: bool) -> BaseExcepti
     """Block by block; what a signal handler or `told` raised."""
     for first in range(0, len(made), batch.length):
         last = min(first + batch.length, len(made))
-        block = batch.run(first, last, partial(_later, told, first) if alone else None)
-        made.take(block)
-        if block.raised is not None:
-            return block.raised
-        if alone:
-            told(last)
+        try:
+            block = batch.run(first, last, partial(_later, told, first) if alone else None)
+            made.take(block)
+            if block.raised is not None:
+                return block.raised
+            if alone:
+                told(last)
+        except KeyboardInterrupt as stop:
+            # between two calls of the core
+            return stop
     return None
 
 

@@ -1,0 +1,133 @@
+"""Many variants of the six-speed shift in one call, against the same loop in C++; and numbers changed one at a time."""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import clutchwork as cw
+from benchmarks.report import Row
+from benchmarks.timing import ratio, rounds, wall
+from support import six_speed
+
+ROOT = Path(__file__).resolve().parents[1]
+T_END = 4.0
+FIRST, LAST = 0.2, 0.3
+NAME = "F1.gain"
+PLAIN: dict[str, Any] = {"angles": False, "work": False}
+
+
+class Taken(NamedTuple):
+    """Time on the wall and of the processors [s]."""
+
+    wall: float
+    processor: float
+
+
+def sweep(system: cw.System, variants: int, threads: int, outputs: Any = "w8.speed", **options: Any) -> Taken:
+    """One call from Python."""
+    vary = {NAME: np.linspace(FIRST, LAST, variants)}
+    started, used = time.perf_counter(), time.process_time()
+    found = cw.sweep(system, T_END, vary=vary, outputs=outputs, threads=threads, **options)
+    taken = Taken(time.perf_counter() - started, time.process_time() - used)
+    assert found.finished.all()
+    return taken
+
+
+def loop(folder: Path, system: cw.System, variants: int) -> Callable[[int], Taken] | None:
+    """The loop in C++ with the core of this build; None where there is none."""
+    builds = sorted((ROOT / "build").glob("*/libclutchwork_core.a"), key=lambda path: path.stat().st_mtime)
+    builds = [path for path in builds if path.parent.name != "cpp"]
+    if not builds:
+        return None
+    program, data = folder / "sweep_loop", folder / "system"
+    command = [
+        "c++",
+        "-O3",
+        "-std=c++20",
+        "-pthread",
+        f"-I{ROOT / 'cpp/include'}",
+        str(ROOT / "benchmarks/sweep_loop.cpp"),
+    ]
+    subprocess.run([*command, str(builds[-1]), "-o", str(program)], check=True)
+    data.write_bytes(system.to_bytes())
+
+    def run(threads: int) -> Taken:
+        place = str(system.parameters[NAME])
+        arguments = [str(data), place, str(FIRST), str(LAST), str(variants), str(threads), str(T_END), "0"]
+        text = subprocess.run([str(program), *arguments], capture_output=True, text=True, check=True).stdout
+        return Taken(*map(float, text.split()[:2]))
+
+    return run
+
+
+def rows(quick: bool = False) -> Iterator[Row]:
+    """The lines of the table."""
+    system = six_speed.gearbox(six_speed.SHIFT).assemble()
+    variants, again = (1000, 3) if quick else (10_000, 5)
+    with tempfile.TemporaryDirectory() as folder:
+        compiled = loop(Path(folder), system, variants)
+        yield from measured(system, compiled, variants, again)
+    yield from changing(system)
+
+
+def measured(system: cw.System, compiled: Callable[[int], Taken] | None, variants: int, again: int) -> Iterator[Row]:
+    """Shifts a second, and ratios within rounds."""
+    kept = dict[str, list[Taken]]()
+
+    def contestant(name: str, run: Callable[[], Taken], processor: bool) -> Callable[[], float]:
+        def seconds() -> float:
+            taken = run()
+            kept.setdefault(name, []).append(taken)
+            return taken.processor if processor else taken.wall
+
+        return seconds
+
+    all_of = [cw.lock("F1"), "F1.heat", cw.peak("shaft.torque"), "w8.speed"]
+    contestants = {
+        "two": contestant("two", lambda: sweep(system, variants, 2, **PLAIN), True),
+        "one": contestant("one", lambda: sweep(system, variants, 1, **PLAIN), False),
+        "full": contestant("full", lambda: sweep(system, variants, 2, all_of), True),
+    }
+    if compiled is not None:
+        contestants["loop"] = contestant("loop", lambda: compiled(2), True)
+    taken = rounds(contestants, again)
+    each = min(one.wall for one in kept["two"]) / variants
+    yield Row(
+        "sweep: shifts from one Python call, two threads",
+        f"{1 / each:.0f} a second",
+        ">= 10 000 a second",
+        each <= 1e-4,
+    )
+    full = min(one.wall for one in kept["full"]) / variants
+    yield Row("sweep: the same with work, lock-up, heat and peak torque", f"{1 / full:.0f} a second")
+    if compiled is None:
+        yield Row("sweep / the same loop in C++, processor time", "no build at hand", "<= 1.15")
+    else:
+        found = ratio(taken["two"], taken["loop"])
+        yield Row("sweep / the same loop in C++, processor time", f"{found:.2f}", "<= 1.15", found <= 1.15)
+    one, two = (min(one.wall for one in kept[name]) for name in ("one", "two"))
+    share = one / (2 * two)
+    yield Row("sweep: efficiency of two threads", f"{100 * share:.0f} %", ">= 95 %", share >= 0.95)
+
+
+def changing(system: cw.System) -> Iterator[Row]:
+    """System.changed with one number."""
+    ramp = cw.Table([(t, 0.9 * p) for t, p in six_speed.SHIFT["F1"]])
+    changes: dict[str, tuple[dict[str, Any], float]] = {
+        "a parameter": ({"F1.gain": 0.3}, 50e-6),
+        "a signal": ({"F1.pressure": ramp}, 50e-6),
+        "an initial speed": ({"w1.speed": 3.0}, 0.0),
+        "an inertia": ({"w1.inertia": 20.0}, 0.0),
+        "a ratio": ({"row1.ratio": 1.9}, 0.0),
+    }
+    for what, (change, most) in changes.items():
+        each = wall(lambda change=change: system.changed(change), 200)  # type: ignore[misc]
+        target = f"<= {1e6 * most:.0f} us" if most else ""
+        yield Row(f"System.changed: {what}", f"{1e6 * each:.0f} us", target, each <= most if most else None)

@@ -1,0 +1,94 @@
+"""`clutchwork sweep`."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import pytest
+
+import clutchwork as cw
+from clutchwork.command.main import main
+
+MODEL = """
+name = "two discs"
+[[shaft]]
+name = "engine"
+inertia = 0.2
+speed = 100.0
+[[shaft]]
+name = "load"
+inertia = 0.8
+[[element]]
+name = "c1"
+type = "clutch"
+base = "engine"
+follower = "load"
+gain = 1.0
+normal_force = 100.0
+friction = {type = "coulomb", static = 0.1, kinetic = 0.1}
+[simulation]
+t_end = 3.0
+"""
+
+
+@pytest.fixture
+def model(tmp_path):
+    path = tmp_path / "model.toml"
+    path.write_text(MODEL)
+    return str(path)
+
+
+def test_a_table_of_all_combinations(model, tmp_path, capsys):
+    out = tmp_path / "out" / "sweep.csv"
+    line = ["sweep", model, "--vary", "c1.gain=0.5:2:4", "--vary", "load.inertia=0.8,1.6", "--out", str(out)]
+    assert main([*line, "--outputs", "load.speed, lock(c1, -1), at(c1.slip, 0.5, 1), peak(c1.torque)"]) == 0
+    with out.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 8
+    assert [row["c1.gain"] for row in rows[::2]] == ["0.5", "1.0", "1.5", "2.0"]
+    expected = cw.simulate(cw.Driveline.load(model).assemble().changed({"c1.gain": 1.0}))
+    assert float(rows[2]["lock(c1, -1) [s]"]) == expected.events[-1].time
+    assert "c1.slip at 0.5 s" in rows[0]
+    told = capsys.readouterr().out
+    assert "8 variants: 8 done" in told
+    assert f"wrote {out}" in told
+
+
+def test_parquet_and_json(model, tmp_path, capsys):
+    pytest.importorskip("pyarrow")
+    out = tmp_path / "sweep.parquet"
+    assert main(["sweep", model, "--vary", "c1.gain=0.5,1", "--out", str(out), "--json", "--t-end", "2"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["variants"] == 2
+    assert data["status"] == {"done": 2}
+    assert data["files"] == [str(out)]
+    # by default the speeds at the end and when contacts lock
+    assert set(data["outputs"]) == {"engine.speed", "load.speed", "lock(c1, -1)"}
+    assert out.stat().st_size > 0
+
+
+def test_a_variant_that_stops_early(model, capsys):
+    assert main(["sweep", model, "--vary", "c1.gain=0.5,1", "--max-steps", "1"]) == 1
+    told = capsys.readouterr()
+    assert "2 variants: 2 too_many_steps" in told.out
+    assert "variant 0 stopped at" in told.err
+    assert "raise max_steps" in told.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["--vary", "c1.gain=0.5:2"], 2, "write NAME=FIRST:LAST:COUNT"),
+        (["--vary", "c1.gain"], 2, "write NAME=FIRST:LAST:COUNT"),
+        (["--vary", "c1.gian=1,2"], 3, "did you mean 'c1.gain'"),
+        (["--vary", "c1.gain=-1,2"], 3, "gain = -1.0 m3: must be > 0 m3"),
+        (["--outputs", "lokc(c1)"], 2, "no output 'lokc'; did you mean 'lock'"),
+        (["--outputs", "lock(c1, x)"], 2, "x must be numbers"),
+        (["--outputs", "laod.speed"], 2, "did you mean 'load.speed'"),
+        (["--out", "sweep.xlsx"], 2, "must end in .parquet or .csv"),
+    ],
+)
+def test_mistakes(model, capsys, arguments, code, words):
+    assert main(["sweep", model, *arguments]) == code
+    assert words in capsys.readouterr().err
