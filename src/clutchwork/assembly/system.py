@@ -41,7 +41,7 @@ class SystemFormatError(ClutchworkError, ValueError):
     """Bytes or a file that hold no System of this version."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class System:
     """A driveline ready to run; never changes, so any number of runs and threads may share it.
 
@@ -70,6 +70,10 @@ class System:
     settings: Mapping[str, Any] = field(default_factory=dict)  # of its runs, as in [simulation] of a model file
     source: Model | None = field(default=None, repr=False)  # the driveline, as it was when it was assembled
     wanted: tuple[str, ...] = ()  # names of the independent speeds where they were asked for
+
+    def __repr__(self) -> str:
+        sizes = {name: self.counts[name] for name in ("nodes", "speeds", "elements", "contacts", "inputs")}
+        return f"<System {self.name!r}: {', '.join(f'{size} {name}' for name, size in sizes.items())}>"
 
     def __getattr__(self, name: str) -> Array:
         try:
