@@ -364,7 +364,7 @@ def test_csv(tmp_path):
     found.to_csv(tmp_path / "x.csv")
     with (tmp_path / "x.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
-    assert [float(row["lock(c1) [s]"]) for row in rows] == found.flat("lock(c1)").tolist()
+    np.testing.assert_array_equal([float(row["lock(c1) [s]"]) for row in rows], found.flat("lock(c1)"))
     assert rows[0]["c1.state"] == "locked"
 
 
