@@ -48,7 +48,8 @@ int cw_set_poll(cw_run* run, int (*poll)(void* context), void* context);
    Every row is finite: a run in which a number overflows ends with status not_finite before that row; without rows
    only the state is checked.
    Returns a status code; -1: refused because t_end is not finite or before the present time, n or steps is negative,
-   or times or rows are NULL although n is not 0. After rows_full, events_full and interrupted it may be called again. */
+   or times or rows are NULL although n is not 0. After rows_full, events_full and interrupted it may be called again.
+ */
 int cw_advance(cw_run* run, double t_end, double* times, double* rows, int64_t n, int steps, int64_t* filled);
 
 /* Present time [s]; NaN for a null pointer. */

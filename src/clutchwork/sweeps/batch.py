@@ -29,7 +29,7 @@ Progress = Callable[[int], None]
 
 # numbers that one block may keep, some 64 MB
 MOST_KEPT = 8_000_000
-# variants of one block: enough that threads seldom wait for the last one, few enough to tell of progress
+# variants of one block: enough that threads seldom wait for the last one, few enough to report progress
 MOST_VARIANTS = 2048
 # rows that a variant is expected to have in steps
 ROWS_EXPECTED = 2000
@@ -303,7 +303,7 @@ def _place(block: Block, name: str, like: Array, more: tuple[int, ...] = ()) -> 
 
 
 def _from_grid(block: Block, call: Call, forms: Forms, found: Native) -> None:
-    """Signals at instants and at the end, and what the change from the start to the end tells."""
+    """Signals at instants and at the end, and changes from the start to the end."""
     wanted, rows = forms.wanted, found.rows
     assert rows is not None  # noqa: S101, the call was for a grid
     flat = rows.reshape(rows.shape[0] * rows.shape[1], rows.shape[2])

@@ -1,4 +1,4 @@
-"""What a sweep tells of each variant: signals at the end or at instants, extremes, integrals, times of events.
+"""What a sweep keeps of each variant: signals at the end or at instants, extremes, integrals, times of events.
 
 Each output is asked for by name before the runs, and is also a function of a run: `cw.maximum("shaft.torque").of(run)`.
 """
@@ -137,7 +137,7 @@ class When:
 
 @dataclass(frozen=True)
 class Computed:
-    """What a Python function tells of a run."""
+    """What a Python function makes of a run."""
 
     function: Callable[[Trajectory], Any]
     name: str

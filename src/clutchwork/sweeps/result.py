@@ -117,7 +117,7 @@ class Sweep:
 
     @property
     def units(self) -> dict[str, str]:
-        """Unit of every output; empty for what a function tells."""
+        """Unit of every output; empty for that of a function."""
         channels = Channels(wiring(self.swept.system))
         return {name: _unit(one, channels) for name, one in self.swept.outputs.items()}
 
@@ -262,7 +262,7 @@ def _unit(one: Output, channels: Channels) -> str:
 
 
 def _plain(values: Array) -> Array:
-    """What functions told, as numbers where all are."""
+    """What functions gave, as numbers where all are."""
     listed = [np.nan if value is None else value for value in values.tolist()]
     try:
         return np.array(listed, dtype=float)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def single(system: System, values: Mapping[str, Any], t_end: float, options: Options) -> Trajectory:
-    """The run of one variant; its status tells how it ended."""
+    """The run of one variant; its status says how it ended."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StoppedEarly)
         warnings.simplefilter("ignore", FaultWarning)

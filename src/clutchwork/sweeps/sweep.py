@@ -76,7 +76,7 @@ def sweep(
     count = _threads(threads)
     swept = Swept(system, variants, wanted, end, plain)
     with shown_by(progress, len(variants)) as told, warnings.catch_warnings():
-        # a value may be rarely wanted; that of a single run is told there
+        # a value may be rarely wanted; that of a single run is given there
         warnings.simplefilter("ignore", ModelWarning)
         return _swept(swept, count, told)
 
@@ -114,7 +114,7 @@ def _swept(swept: Swept, threads: int, told: Shown) -> Sweep:
 
 
 def _in_core(made: Sweep, batch: Batch, told: Shown, alone: bool) -> BaseException | None:
-    """Block by block; what a signal handler or `told` raised."""
+    """Block by block; what a signal handler or the progress raised."""
     for first in range(0, len(made), batch.length):
         last = min(first + batch.length, len(made))
         try:
