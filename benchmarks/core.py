@@ -11,7 +11,7 @@ from benchmarks.timing import cpu
 from clutchwork import _core
 from clutchwork.declare.layout import STATUS
 
-METHODS = {"rodas5p": 1.0, "dopri5": 2.0}
+METHODS = {"auto": 0.0, "rodas5p": 1.0, "dopri5": 2.0}
 EMPTY = np.zeros(0)
 EVENTS_FULL = [name for name, *_ in STATUS].index("events_full")
 

@@ -34,7 +34,7 @@ LAWS: dict[str, cw.Law] = {
     "LuGre": cw.LuGre(**CURVE, **STIFF),
     "ElastoPlastic": cw.ElastoPlastic(**CURVE, **STIFF, elastic=7e-5),
     "Leuven": cw.Leuven(**CURVE, elements=STACK, damping=0.1),
-    "GMS": cw.GMS(**CURVE, elements=STACK),
+    "GMS": cw.GMS(**CURVE, elements=STACK, damping=0.1),
     "Mykhalevych": cw.Mykhalevych(static=0.12, kinetic=0.1, elastic=1e-4, speed=1.0, viscous=0.5),
 }
 LIMIT = {"LuGre": 10.0}

@@ -19,6 +19,7 @@ void describe(W& ws, A& a) {
 
   a.time(ws.time), a.number(ws.last_step, 0, 1e300);
   a.whole(ws.started, 0, 1), a.whole(ws.fresh_phase, 0, 1), a.whole(ws.params_changed, 0, 1);
+  a.whole(ws.stiffened, 0, 1), a.whole(ws.guard.strained, 0, 1 << 30);
   a.whole(ws.reduced.method, 1, last_method), a.number(ws.events.crowd_time), a.number(ws.contact.forced_time),
       a.number(ws.in.next_knot);
   a.whole(ws.guard.n_faulty, 0, nc), a.whole(ws.contact.failed, -1, nc - 1), a.whole(ws.guard.n_loads, 0, nc);

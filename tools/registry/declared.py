@@ -43,4 +43,7 @@ def base(component: Component) -> Iterator[str]:
     yield f"  enum class Input : int {enumerators(component.inputs)};"
     yield f"  enum State : int {enumerators(component.states)};"
     yield f"  static constexpr int inputs = {len(component.inputs)}, states = {len(component.states)};"
+    if component.states:
+        span = ", ".join(repr(float(state.span)) for state in component.cls.states)
+        yield f"  static constexpr double span[states] = {{{span}}};  ///< [s] of each state"
     yield "};"

@@ -19,6 +19,7 @@ struct Workspace {
   double time = 0;
   double last_step = 0;  ///< [s] last step that was not cut short
   bool started = false, fresh_phase = true;
+  bool stiffened = false;  ///< the phase goes on with another method
   T *v = nullptr, *state = nullptr, *angle = nullptr, *work = nullptr, *prescribed_work = nullptr;
   int *piece = nullptr, *heading = nullptr;  ///< of each direction: smooth piece; sign of its rate
 

@@ -41,8 +41,9 @@ class Options:
     either, `output` decides: "smooth" gives the solver's steps refined to `points` intervals, with the left
     and the right limit at every event; "steps" gives the bare steps of the solver.
 
-    Use "rodas5p" unless the model has no stiff part; "dopri5" saves time on soft models; "auto" chooses per
-    smooth phase.
+    "auto" chooses the method for each smooth phase: explicit steps of "dopri5" where nothing is stiff, else "rodas5p".
+    Absolute tolerances of bristles and springs, and of slow speeds beside fast ones, follow from the motion; `atol` is
+    what is left of them at rest.
     """
 
     rtol: float = setting(
@@ -54,15 +55,15 @@ class Options:
     )
     atol: float = setting(
         "1",
-        "absolute tolerance of speeds and states, in the unit of each",
+        "absolute tolerance of speeds, and of states in the unit of each; those that are bent by a rate follow from it",
         default=1e-8,
         above=0.0,
         core=True,
     )
     method: Method = setting(
         "",
-        "integrator: rodas5p for any model, dopri5 where nothing is stiff; auto chooses for each smooth phase",
-        default="rodas5p",
+        "integrator: auto chooses for each smooth phase; rodas5p for any model, dopri5 where nothing is stiff",
+        default="auto",
         choices=tuple(METHODS),
         core=True,
     )

@@ -22,11 +22,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class State:
-    """A continuous state that a component owns: name, unit, meaning."""
+    """A continuous state that a component owns: name, unit, meaning.
+
+    Where it follows the rate of its component, as a deflection does, an error of it counts no more than that of the
+    rate would over `span` [s]. docs/theory/integrators.md
+    """
 
     name: str
     unit: str
     doc: str
+    span: float = 0.0
 
 
 @dataclass(frozen=True)

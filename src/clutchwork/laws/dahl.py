@@ -6,8 +6,11 @@ from typing import ClassVar
 
 from clutchwork.declare import Law, Role, State, component, param
 
+# nothing damps the ring of its bristles, which would hold the steps at a fraction of its period for long
+RING = 1e-3
 
-@component(Role.LAW, states=(State("elastic", "1", "elastic coefficient"),))
+
+@component(Role.LAW, states=(State("elastic", "1", "elastic coefficient", span=RING),))
 class Dahl(Law):
     """Elastic deflection that turns into sliding: `d elastic/dt = stiffness slip abs(1 - x)^exponent sign(1 - x)`.
 

@@ -8,7 +8,7 @@ from clutchwork.declare import Role, State, component, param
 from clutchwork.laws.bases.stribeck import ROUND_OFF, Found, StribeckCurve, kinetic_problems, passivity_advice
 
 
-@component(Role.LAW, states=(State("elastic", "1", "elastic coefficient, stiffness times deflection"),))
+@component(Role.LAW, states=(State("elastic", "1", "elastic coefficient, stiffness times deflection", span=1e-5),))
 class ElastoPlastic(StribeckCurve):
     """LuGre bristles that stay purely elastic up to a deflection, so that it does not drift.
 

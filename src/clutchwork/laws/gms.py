@@ -12,16 +12,16 @@ FEWEST, LARGEST = 4, 10
 
 @component(
     Role.LAW,
-    states=tuple(State(f"element_{i}", "1", f"coefficient of element {i}") for i in range(1, LARGEST + 1)),
+    states=tuple(State(f"element_{i}", "1", f"coefficient of element {i}", span=1e-5) for i in range(1, LARGEST + 1)),
     hooks=("margin", "cross", "turns", "runs_on", "count"),
 )
 class GMS(StribeckCurve):
     """Elastic elements in parallel, each of which sticks or slides on its own share of the Stribeck curve.
 
-    An element that sticks has the stiffness `share static/deflection` and breaks away at `share s(slip)`; while it
-    slides its coefficient is drawn to there at the rate `attraction`. The coefficient is the sum, plus
-    `viscous slip`. Use it where both count: hysteresis with non-local memory before sliding, and frictional lag in
-    sliding. It does not drift.
+    An element that sticks has the stiffness `share static/deflection` and the damping `share damping`, and breaks away
+    at `share s(slip)`; while it slides its coefficient is drawn to there at the rate `attraction`. The coefficient is
+    the sum, plus `viscous slip`. Use it where both count: hysteresis with non-local memory before sliding, and
+    frictional lag in sliding. It does not drift.
 
     Source: F. Al-Bender, V. Lampaert, J. Swevers 2005, doi:10.1109/TAC.2005.858676.
     """
@@ -36,6 +36,13 @@ class GMS(StribeckCurve):
         example=((2e-5, 0.1), (5e-5, 0.2), (1e-4, 0.3), (2e-4, 0.4)),
     )
     attraction: float = param("1/s", "rate at which a sliding element nears the curve", default=100.0, above=0.0)
+    damping: float = param(
+        "s/rad",
+        "coefficient per rate of the deflection while all elements stick; without any a held contact rings for long",
+        default=0.0,
+        at_least=0.0,
+        units=("s/m",),
+    )
 
     def own_states(self) -> tuple[State, ...]:
         """One state for each element."""

@@ -12,7 +12,7 @@ LARGEST = 10
 
 @component(
     Role.LAW,
-    states=tuple(State(f"element_{i}", "1", f"coefficient of element {i}") for i in range(1, LARGEST + 1)),
+    states=tuple(State(f"element_{i}", "1", f"coefficient of element {i}", span=1e-5) for i in range(1, LARGEST + 1)),
     hooks=("margin", "cross", "turns", "runs_on", "count"),
 )
 class Leuven(StribeckCurve):

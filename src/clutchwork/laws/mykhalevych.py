@@ -13,7 +13,9 @@ AT_REST, AT_THE_ANGLE = 0.638, 1.52
 
 
 @component(
-    Role.LAW, states=(State("wind_up", "1", "wind-up over the elastic angle"),), hooks=("margin", "cross", "turns")
+    Role.LAW,
+    states=(State("wind_up", "1", "wind-up over the elastic angle", span=1e-5),),
+    hooks=("margin", "cross", "turns"),
 )
 class Mykhalevych(Law):
     """Elastic wind-up under a hyperbolic tangent, and a Stribeck fall beside it.

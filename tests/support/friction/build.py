@@ -30,7 +30,7 @@ COUNTERPARTS: dict[str, Callable[[Any], Law]] = {
     "lugre": lambda law: LuGre(_curve(law), law.stiffness, law.damping),
     "elastoplastic": lambda law: ElastoPlastic(_curve(law), law.stiffness, law.damping, law.elastic, law.plastic),
     "leuven": lambda law: Leuven(_curve(law), _elements(law), law.order, law.damping),
-    "gms": lambda law: GMS(_curve(law), _elements(law), law.attraction),
+    "gms": lambda law: GMS(_curve(law), _elements(law), law.attraction, law.damping),
     "mykhalevych": lambda law: Mykhalevych(
         law.static, law.kinetic, law.elastic, law.speed, law.viscous, law.reset, law.range, bool(law.passive)
     ),

@@ -84,9 +84,11 @@ class GMS(Elements):
     """Elements that stick, dF/dt = k v, until F = share s(v), and slide, dF/dt = C (share - F/s) towards the slip."""
 
     attraction: float = 100.0
+    damping: float = 0.0
 
     def coefficient(self, v: float, s: Array, branch: Branch) -> float:
-        return float(np.sum(s)) + self.curve.viscous * v
+        sticking = sum(share for (_, share), slides in zip(self.elements, branch.marks, strict=True) if not slides)
+        return float(np.sum(s)) + (self.curve.viscous + self.damping * sticking) * v
 
     def rates(self, v: float, s: Array, branch: Branch) -> list[float]:
         level = self.curve.level(v)

@@ -50,6 +50,7 @@ OTHERS: dict[str, cw.Law] = {
     "leuven linear": cw.Leuven(**CURVE, elements=FEW, order=1.0),
     "leuven square": cw.Leuven(**CURVE, elements=(*FEW[:2], (2e-4, 0.8)), order=2.0, damping=30.0),
     "gms quick": cw.GMS(**CURVE, elements=FEW, attraction=2000.0),
+    "gms damped": cw.GMS(**CURVE, elements=FEW, damping=30.0),
     "mykhalevych narrow": cw.Mykhalevych(**WOUND, range=1.5),
 }
 
@@ -70,6 +71,7 @@ PASSIVE: dict[str, cw.Law] = {
     "leuven": cw.Leuven(**CURVE, elements=FEW, order=20.0),
     "leuven linear": cw.Leuven(**CURVE, elements=FEW, order=1.0, damping=0.9),
     "gms even": cw.GMS(**EVEN, elements=FEW),
+    "gms damped": cw.GMS(**EVEN, elements=FEW, damping=30.0),
 }
 # laws that hold this only for swings there and back at like speeds, see (26) and (31)
 SWINGS: dict[str, cw.Law] = {

@@ -14,6 +14,7 @@ CLUTCHWORK_INLINE double wave_value(const double* w, double s) {
 }
 CLUTCHWORK_INLINE double wave_slope(const double* w, double s) {
   const double phase = w[1] * s + w[2];
+  if (w[3] == 0) return w[0] * w[1] * cos(phase);
   return w[0] * exp(-w[3] * s) * (w[1] * cos(phase) - w[3] * sin(phase));
 }
 inline double wave_integral(const double* w, double s) {
@@ -60,6 +61,17 @@ inline double segment_integral(const double* c, double s) {
 inline double segment_rate(const double* c, double s) {
   auto rate = [&](const double* w) { return w[0] == 0 || w[3] * s > 25 ? 0.0 : larger(abs(w[1]), abs(w[3])); };
   return c[4] == 0 ? 0.0 : larger(rate(c + 4), rate(c + 8));
+}
+
+/// Largest size of the second time derivative of a segment over h seconds from s on.
+inline double segment_bend(const double* c, double s, double h) {
+  auto wave = [&](const double* w) {
+    if (w[0] == 0) return 0.0;
+    const double start = w[3] == 0 ? 1.0 : exp(-w[3] * (w[3] > 0 ? s : s + h));
+    return abs(w[0]) * (w[1] * w[1] + w[3] * w[3]) * start;
+  };
+  const double waves = c[4] == 0 ? 0.0 : wave(c + 4) + wave(c + 8);
+  return 2 * abs(c[2]) + 6 * abs(c[3]) * larger(abs(s), abs(s + h)) + waves;
 }
 
 /// Start of segment k of signal i, the repeated ones included (k counts on through the cycles).
@@ -138,6 +150,22 @@ void signal_range(const Workspace<T>& ws, int i, double t, double& low, double& 
   } else {
     low = -infinity, high = infinity;
   }
+}
+
+/// Bounds of reference `ref` over the h seconds that end where the inputs and their slopes were taken last; false where
+/// it is no signal.
+template <class T>
+bool reference_range(const Workspace<T>& ws, int ref, double h, double& low, double& high) {
+  const int i = ws.in.ref_signal[ref];
+  if (i >= ws.sys.inputs) return false;
+  const Signal& signal = ws.in.signal[i];
+  low = high = value(ws.in.u[ref]);
+  if (!signal.varying) return true;
+  // back along the tangent, and what bends away from it
+  const double start = low - h * value(ws.in.du[ref]);
+  const double bend = signal.linear ? 0 : 0.5 * h * h * segment_bend(signal.coef, ws.in.time - h - signal.start, h);
+  low = smaller(low, start) - bend, high = larger(high, start) + bend;
+  return true;
 }
 
 /// Whether values of signals may come from outside at time t: what the signals do there waits for them.

@@ -20,6 +20,16 @@ inline int most_law_states(int law) {
   return visit_law(law, [](auto tag) { return int(decltype(tag)::type::states); });
 }
 
+/// Span of own state i of a torque element (law < 0) or of a law [s].
+inline double state_span(int kind, int law, int i) {
+  auto of = [&](auto tag) {
+    using C = typename decltype(tag)::type;
+    if constexpr (C::states > 0) return C::span[i];
+    return 0.0;
+  };
+  return law < 0 ? visit_torque(kind, of) : visit_law(law, of);
+}
+
 /// Inputs of a torque element, a contact or a law.
 inline int element_inputs(int kind) {
   return visit_torque(kind, [](auto tag) { return int(decltype(tag)::type::inputs); });

@@ -10,6 +10,7 @@ struct GMS : declared::GMS {
   struct Params : StribeckCurve<T> {
     Curve<T> elements;  ///< rad -> 1
     T attraction;       ///< [1/s]
+    T damping;          ///< [s/rad]
   };
   static_assert(states == most_elements);
   // an element on its way back is below its limit when it is so far inside
@@ -24,7 +25,16 @@ struct GMS : declared::GMS {
   }
   template <class T, class S>
   static S coefficient(const Params<T>& p, const At<S>& at) {
-    return element_sum(at.state, count(p)) + p.viscous * at.rate;
+    return element_sum(at.state, count(p)) + (p.viscous + p.damping * sticking_share(p, at)) * at.rate;
+  }
+  /// Sum of the shares of the elements that stick, whose deflection follows the slip.
+  template <class T, class S>
+  static T sticking_share(const Params<T>& p, const At<S>& at) {
+    T sum = T(0);
+    for (int i = 0; i < count(p); ++i) {
+      if (!element_slides(at.piece, i)) sum += T(element_share(p.elements, at.points, i));
+    }
+    return sum;
   }
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {

@@ -12,6 +12,7 @@ void pack(Workspace<T>& ws, int d, int sign, int& block) {
   ws.branch_of[d] = ws.n_rates;
   ws.jacobian.block[ws.n_rates] = block;
   block += b.states * b.states;
+  for (int i = 0; i < b.states; ++i) ws.reduced.span[b.state + i] = state_span(b.kind, b.law, i);
   ws.branch[ws.n_rates++] = b;
 }
 

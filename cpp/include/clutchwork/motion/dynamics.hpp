@@ -182,37 +182,58 @@ void expand(Form& form, const T* z, T* v, bool offset = true) {
   }
 }
 
-/// Weighted RMS norm of an error in (v, states), relative to the larger of two points.
+/// Absolute tolerance of each own state: what counts as an error of the rate that bends it, over its span.
+/// docs/theory/integrators.md
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void floor_states(Form& form, const T* y) {
+  Workspace<T>& ws = form.ws;
+  const double rtol = ws.options.rtol, atol = ws.options.atol;
+  for (int i = 0; i < form.ns(); ++i) ws.reduced.floor[i] = atol;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const Branch<T>& b = ws.branch[k];
+    if (b.states == 0) continue;
+    const double rate = atol + rtol * form.rate_size(k, y);
+    for (int i = b.state; i < b.state + b.states; ++i)
+      ws.reduced.floor[i] += ws.reduced.span[i] * abs(value(ws.jacobian.g_rate[i])) * rate;
+  }
+}
+
+/// Weighted RMS norm of an error in (v, states), relative to the larger of two points; a speed counts as no slower than
+/// a share of the fastest. docs/theory/integrators.md
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE double error_norm(Form& form, const T* error, const T* a, const T* b) {
+  // of the fastest speed
+  constexpr double slow = 0.01;
   const Workspace<T>& ws = form.ws;
   const double rtol = ws.options.rtol, atol = ws.options.atol;
-  const int nv = int(ws.sys.speeds), nz = form.nz(), ns = form.ns();
-  double sum = 0;
-  int count = ns;
-  if constexpr (Form::small) {
-    for (int i = 0; i < nv; ++i) {
-      T e = T(0), va = T(0), vb = T(0);
+  const int nv = Form::small ? int(ws.sys.speeds) : form.nz(), nz = form.nz(), ns = form.ns();
+  double *size = ws.reduced.size, *missed = ws.reduced.missed, fastest = 0, sum = 0;
+  for (int p = 0; p < ws.sys.prescribed; ++p) fastest = larger(fastest, abs(value(ws.in.prescribed[p])));
+  for (int i = 0; i < nv; ++i) {
+    T e = T(0), va = T(0), vb = T(0);
+    if constexpr (Form::small) {
       for (int j = 0; j < nz; ++j) {
         const T z = ws.reduced.z_basis[i * nz + j];
         e += z * error[j], va += z * a[j], vb += z * b[j];
       }
-      const double x = value(e) / (atol + rtol * larger(abs(value(va)), abs(value(vb))));
-      sum += x * x;
+    } else {
+      e = error[i], va = a[i], vb = b[i];
     }
-    count += nv;
-  } else {
-    for (int i = 0; i < nz; ++i) {
-      const double x = value(error[i]) / (atol + rtol * larger(abs(value(a[i])), abs(value(b[i]))));
-      sum += x * x;
-    }
-    count += nz;
+    missed[i] = value(e);
+    size[i] = larger(abs(value(va)), abs(value(vb)));
+    fastest = larger(fastest, size[i]);
   }
-  for (int i = nz; i < nz + ns; ++i) {
-    const double x = value(error[i]) / (atol + rtol * larger(abs(value(a[i])), abs(value(b[i]))));
+  for (int i = 0; i < nv; ++i) {
+    const double x = missed[i] / (atol + rtol * larger(size[i], slow * fastest));
     sum += x * x;
   }
-  return count > 0 ? sqrt(sum / count) : 0.0;
+  if (ns > 0) floor_states(form, a);
+  for (int i = 0; i < ns; ++i) {
+    const double s = larger(abs(value(a[nz + i])), abs(value(b[nz + i])));
+    const double x = value(error[nz + i]) / (ws.reduced.floor[i] + rtol * s);
+    sum += x * x;
+  }
+  return nv + ns > 0 ? sqrt(sum / (nv + ns)) : 0.0;
 }
 
 }  // namespace clutchwork

@@ -9,7 +9,7 @@ template <class T, int NZ, int NS>
 struct SmallForm {
   using Scalar = T;
   static constexpr bool small = true;
-  static constexpr int fixed_size = NZ + NS;
+  static constexpr int fixed_size = NZ + NS, own_states = NS;
   Workspace<T>& ws;
   T w[NZ > 0 ? NZ * NZ : 1];
 
@@ -22,6 +22,13 @@ struct SmallForm {
     const T* r = ws.reduced.row_z + k * NZ;
     T s = T(0);
     for (int i = 0; i < NZ; ++i) s += r[i] * z[i];
+    return s;
+  }
+  /// Size of what makes the rate of branch k.
+  CLUTCHWORK_INLINE double rate_size(int k, const T* z) const {
+    const T* r = ws.reduced.row_z + k * NZ;
+    double s = 0;
+    for (int i = 0; i < NZ; ++i) s += abs(value(r[i] * z[i]));
     return s;
   }
   CLUTCHWORK_INLINE void push(int k, T torque, T* q) const {
@@ -83,7 +90,7 @@ template <class T>
 struct SparseForm {
   using Scalar = T;
   static constexpr bool small = false;
-  static constexpr int fixed_size = 0;
+  static constexpr int fixed_size = 0, own_states = -1;
   Workspace<T>& ws;
   T* w;
   bool mass_factored = false;
@@ -94,6 +101,7 @@ struct SparseForm {
   int n() const { return ws.reduced.nz + int(ws.sys.states); }
 
   CLUTCHWORK_INLINE T rate(int k, const T* z) const { return ws.rows.rate.times(k, z); }
+  double rate_size(int k, const T* z) const { return ws.rows.rate.size(k, z); }
   CLUTCHWORK_INLINE void push(int k, T torque, T* q) const { ws.rows.rate.add(k, torque, q); }
   void add_mass_times(T factor, const T* x, T* y) const {
     const Compressed<T>& mass = ws.rows.mass;

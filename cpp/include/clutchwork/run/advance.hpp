@@ -25,7 +25,8 @@ Status run_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink)
   Status status = Status::no_mode;
   visit_method(ws.reduced.method, [&](auto tag) {
     using Integrator = typename decltype(tag)::type;
-    if constexpr (Integrator::small || !Form::small) status = Phase<Form, Integrator>(ws, t_end, sink).run();
+    if constexpr (Form::own_states <= Integrator::most_small_states)
+      status = Phase<Form, Integrator>(ws, t_end, sink).run();
   });
   return status;
 }
@@ -140,6 +141,7 @@ Status advance(Workspace<T>& ws, double t_end, Sink& sink) {
     if (ws.fresh_phase && !enter_mode(ws)) return Status::no_mode;
     Status status = dispatch(ws, t_end, sink);
     if (status != Status::running) return status;
+    if (ws.stiffened) continue;
     status = switch_modes(ws);
     if (status != Status::running) return status;
   }

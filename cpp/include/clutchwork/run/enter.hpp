@@ -10,6 +10,7 @@
 #include <clutchwork/motion/reduce.hpp>
 #include <clutchwork/motion/sparse.hpp>
 #include <clutchwork/run/methods.hpp>
+#include <clutchwork/run/stiffness.hpp>
 #include <clutchwork/run/watch.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -28,20 +29,12 @@ bool has_massless(const Workspace<T>& ws) {
 /// Whether an explicit step is limited by accuracy and not by stability in the present phase.
 template <class T>
 bool is_soft(Workspace<T>& ws) {
-  double damping = 0, stiffness = 0;
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
-    const StatePartials<T> out = state_partials(ws, k);
-    const Partial<T> p = branch_partial(ws, b, rate_of(ws, b.direction), T(0), ws.state, ws.seen.state_rates, out);
-    const double mobility = value(ws.geometry.own[b.direction]);
-    damping += mobility * abs(value(p.by_rate));
-    for (int s = 0; s < b.states; ++s) {
-      stiffness += mobility * abs(value(out.f_state[s] * out.g_rate[s]));
-      damping += abs(value(out.g_state[s * b.states + s]));
-    }
+    ws.jacobian.partial[k] =
+        branch_partial(ws, b, rate_of(ws, b.direction), T(0), ws.state, ws.seen.state_rates, state_partials(ws, k));
   }
-  const double fastest = damping + sqrt(stiffness), h = ws.last_step > 0 ? ws.last_step : 1e-3;
-  return fastest * h < 1.0;
+  return fastest_rate(ws) * (ws.last_step > 0 ? ws.last_step : 1e-3) < 1.0;
 }
 
 /// The method of the present phase: the one that is wanted, else the first of those that are made for such a motion.
@@ -117,8 +110,8 @@ bool enter_mode(Workspace<T>& ws) {
   turn_jumped(ws);
   if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);
-  ws.reduced.is_sparse =
-      !is_small(ws.reduced.method) || sys.shared > 0 || !is_small_size(ws.reduced.nz, sys.states) || has_massless(ws);
+  ws.reduced.is_sparse = sys.states > most_small_states(ws.reduced.method) || sys.shared > 0 ||
+                         !is_small_size(ws.reduced.nz, sys.states) || has_massless(ws);
   if (!factor_mobility(ws) || !reduce_motion(ws)) return false;
   list_lines(ws);
   ++ws.statistics.phases;

@@ -9,31 +9,52 @@
 /// Loads and faults of the contacts: docs/theory/events.md.
 namespace clutchwork {
 
-/// Whether the load of a contact can pass zero before the next knot. A load is monotonic in each of its inputs while
-/// the others are held, so its extremes are at the corners of their ranges.
-template <class T>
-bool load_may_turn(Workspace<T>& ws, int c) {
+/// Calls f for the load of a contact at every corner of the ranges of its inputs; range(i, low, high) gives them, and
+/// false where there is none. The load is monotonic in each of its inputs while the others are held, so its extremes
+/// are at the corners. False: a range is missing or infinite.
+template <class T, class Range, class F>
+bool visit_corners(const Workspace<T>& ws, int c, Range&& range, F&& f) {
   const System& sys = ws.sys;
-  ws.guard.load_size[c] = 0;
   return visit_contact(sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     double low[E::inputs > 0 ? E::inputs : 1], high[E::inputs > 0 ? E::inputs : 1];
     for (int i = 0; i < E::inputs; ++i) {
-      signal_range(ws, sys.input_refs[sys.contact_input[c] + i], ws.time, low[i], high[i]);
-      if (high[i] - low[i] == infinity || high[i] - low[i] != high[i] - low[i]) return true;
+      if (!range(int(sys.contact_input[c]) + i, low[i], high[i]) || !(high[i] - low[i] < infinity)) return false;
     }
-    bool below = false, above = false;
-    double size = 0;
     for (unsigned corner = 0; corner < 1u << E::inputs; ++corner) {
       T at[E::inputs > 0 ? E::inputs : 1];
       for (int i = 0; i < E::inputs; ++i) at[i] = T(corner >> i & 1 ? high[i] : low[i]);
-      const T load = contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &at[0], sys.points);
-      (load < T(0) ? below : above) = true;
-      size = larger(size, abs(value(load)));
+      f(contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &at[0], sys.points));
     }
-    ws.guard.load_size[c] = size;
-    return below && above;
+    return true;
   });
+}
+
+/// Whether the load of a contact can pass zero before the next knot.
+template <class T>
+bool load_may_turn(Workspace<T>& ws, int c) {
+  bool below = false, above = false;
+  double size = 0;
+  auto range = [&](int ref, double& low, double& high) {
+    signal_range(ws, ws.sys.input_refs[ref], ws.time, low, high);
+    return true;
+  };
+  const bool bounded = visit_corners(ws, c, range, [&](const T& load) {
+    (load < T(0) ? below : above) = true;
+    size = larger(size, abs(value(load)));
+  });
+  ws.guard.load_size[c] = bounded ? size : 0;
+  return !bounded || (below && above);
+}
+
+/// Whether the load of a contact stays on its side of zero, and clear of it, over the step of length h at whose end the
+/// inputs were taken.
+template <class T>
+bool load_stays(const Workspace<T>& ws, int c, double h) {
+  const double side = ws.contact.pressed[c] ? 1.0 : -1.0;
+  bool clear = true;
+  auto range = [&](int ref, double& low, double& high) { return reference_range(ws, ref, h, low, high); };
+  return visit_corners(ws, c, range, [&](const T& load) { clear = clear && side * value(load) > 0; }) && clear;
 }
 
 /// A contact fails: for good, and told as an event without a change of mode.

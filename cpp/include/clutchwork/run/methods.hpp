@@ -4,8 +4,9 @@
 #include <clutchwork/run/integrator/rodas5p.hpp>
 #include <clutchwork/workspace/settings.hpp>
 
-/// The integrators. Each tells whether it is made for stiff motion, algebraic speeds included, and whether it is
-/// compiled for the small dense forms too. docs/theory/integrators.md
+/// The integrators. Each tells whether it is made for stiff motion, algebraic speeds included, with what share of the
+/// step before an event it starts after it, and up to how many own states it is compiled for the small dense forms too.
+/// docs/theory/integrators.md
 namespace clutchwork {
 
 template <class... Integrators>
@@ -31,10 +32,11 @@ inline bool is_for_stiff(Method method) {
   visit_method(method, [&](auto tag) { stiff = decltype(tag)::type::stiff; });
   return stiff;
 }
-inline bool is_small(Method method) {
-  bool small = false;
-  visit_method(method, [&](auto tag) { small = decltype(tag)::type::small; });
-  return small;
+/// Most own states of the small forms that it is compiled for, -1: for none.
+inline int most_small_states(Method method) {
+  int most = -1;
+  visit_method(method, [&](auto tag) { most = decltype(tag)::type::most_small_states; });
+  return most;
 }
 
 /// The first method that is made for stiff motion, or for soft motion.

@@ -14,6 +14,7 @@
 #include <clutchwork/run/power.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/run/step.hpp>
+#include <clutchwork/run/stiffness.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// One smooth phase: from an event to the next one.
@@ -27,6 +28,9 @@ class Phase {
   static constexpr int most_landings = 4;
   // of the tolerance: cuts come on top of steps, and there may be one every few steps
   static constexpr double most_cut_error = 0.3;
+  // steps at the limit of stability, of the length over the fastest rate, before an implicit method goes on
+  static constexpr int most_strained = 8;
+  static constexpr double strain = 2.5;
 
   Workspace<T>& ws_;
   Form form_;
@@ -62,19 +66,19 @@ class Phase {
 
  private:
   void begin() {
-    const bool fresh = ws_.fresh_phase;
+    const bool fresh = ws_.fresh_phase, event = fresh && !ws_.stiffened;
     if constexpr (!Form::small) {
       if (fresh) form_.solve_mass(ws_.reduced.y);
     }
     for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = ws_.reduced.y[i];
     if constexpr (!Form::small) balance_massless(form_, step_);
-    ws_.fresh_phase = false;
+    ws_.fresh_phase = ws_.stiffened = false;
     // at a knot the row is the right limit, which comes after it
-    const Status shown = ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, fresh) : Status::running;
+    const Status shown = ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, event) : Status::running;
     if (shown != Status::running) return leave(shown);
     look_here();
     // kept, so that a run takes the same steps whether or not it is asked for a row here
-    if (fresh) ws_.last_step *= 0.25;
+    if (event) ws_.last_step *= Integrator::restart;
     h_ = ws_.last_step > 0 ? ws_.last_step : first_step(form_, step_, t_end_ - ws_.time);
   }
 
@@ -209,6 +213,18 @@ class Phase {
     ws_.last_step = h_;
     if (ws_.guard.n_undirected > 0) direct_open(form_, ws_.here);
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) leave(Status::chatter);
+    if constexpr (!Integrator::stiff) {
+      if (!over_ && ws_.options.method == Method::auto_) watch_strain();
+    }
+  }
+
+  /// A motion that has become stiff is left to an implicit method.
+  void watch_strain() {
+    ws_.guard.strained = reach_ * fastest_rate(ws_) > strain ? ws_.guard.strained + 1 : 0;
+    if (ws_.guard.strained < most_strained) return;
+    ws_.guard.strained = 0;
+    export_state(form_, step_.y0());
+    ws_.fresh_phase = ws_.stiffened = over_ = true;
   }
 
   // ------------------------------------------------------------------------------------------------------------ event

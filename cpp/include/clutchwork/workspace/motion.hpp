@@ -17,6 +17,12 @@ struct Compressed {
     for (int e = first[i]; e < first[i + 1]; ++e) s += val[e] * x[col[e]];
     return s;
   }
+  /// Size of what the product of row i and x is made of.
+  double size(int i, const T* x) const {
+    double s = 0;
+    for (int e = first[i]; e < first[i + 1]; ++e) s += abs(value(val[e] * x[col[e]]));
+    return s;
+  }
   /// x += factor times row i.
   CLUTCHWORK_INLINE void add(int i, T factor, T* x) const {
     for (int e = first[i]; e < first[i + 1]; ++e) x[col[e]] += val[e] * factor;
@@ -70,13 +76,18 @@ struct Reduced {
   T *z_basis = nullptr, *y_basis = nullptr;
   T *row_z = nullptr, *offset = nullptr;                     ///< of each branch
   T *momentum = nullptr, *column = nullptr, *row = nullptr;  ///< scratch, of each speed
+  double* span = nullptr;                                    ///< of each state [s]
+  double *size = nullptr, *missed = nullptr;                 ///< scratch, of each speed: its size in a step, its error
+  double* floor = nullptr;                                   ///< scratch, of each state: its absolute tolerance
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.y, n.speeds + n.states), a.take(p.z_basis, n.speeds * small_speeds),
         a.take(p.y_basis, n.speeds * n.prescribed);
     a.take(p.row_z, n.directions * small_speeds), a.take(p.offset, n.directions * n.prescribed);
-    a.scratch(p.momentum, n.speeds), a.scratch(p.column, n.speeds), a.scratch(p.row, n.speeds);
+    a.scratch(p.momentum, n.speeds), a.scratch(p.column, n.speeds);
+    a.scratch(p.row, n.speeds), a.scratch(p.size, n.speeds), a.scratch(p.missed, n.speeds);
+    a.take(p.span, n.states), a.scratch(p.floor, n.states);
   }
 };
 

@@ -38,19 +38,21 @@ struct Guards {
   LineGuard* line = nullptr;
   int *switching = nullptr, *chattering = nullptr;  ///< branches with laws that switch, or that jump with the slip
   int *bounded = nullptr, *faulty = nullptr;        ///< contacts whose laws can be left; contacts that can fail
-  int *load = nullptr, *limit = nullptr;  ///< contacts whose loads may pass zero; carriers that may break away: scratch
-  double* load_size = nullptr;            ///< largest size that the load of a contact may have, 0: not known
-  double* turned_at = nullptr;            ///< [s] when the load of a contact passed zero last
-  int n_lines = 0, n_switching = 0, n_chattering = 0, n_bounded = 0, n_faulty = 0, n_loads = 0;
+  int *load = nullptr, *near = nullptr;  ///< contacts whose loads may pass zero; those that may in the present step
+  int* limit = nullptr;                  ///< carriers that may break away: scratch
+  double* load_size = nullptr;           ///< largest size that the load of a contact may have, 0: not known
+  double* turned_at = nullptr;           ///< [s] when the load of a contact passed zero last
+  int n_lines = 0, n_switching = 0, n_chattering = 0, n_bounded = 0, n_faulty = 0, n_loads = 0, n_near = 0;
   int n_undirected = 0;  ///< open contacts at rest
   int reversals = 0;     ///< of slips that chatter
+  int strained = 0;      ///< explicit steps in a row at the limit of their stability
   std::int64_t reversals_since = 0;
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.line, 3 * n.directions + n.contacts), a.take(p.switching, n.directions), a.take(p.chattering, n.contacts);
     a.take(p.bounded, n.contacts), a.keep(p.faulty, n.contacts, 0, n.contacts - 1);
-    a.keep(p.load, n.contacts, 0, n.contacts - 1), a.take(p.limit, n.contacts);
+    a.keep(p.load, n.contacts, 0, n.contacts - 1), a.take(p.near, n.contacts), a.take(p.limit, n.contacts);
     a.take(p.load_size, n.contacts), a.take(p.turned_at, n.contacts);
   }
 };

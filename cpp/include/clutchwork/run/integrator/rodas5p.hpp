@@ -12,7 +12,9 @@ namespace clutchwork {
 
 struct Rodas5P {
   static constexpr Method method = Method::rodas5p;
-  static constexpr bool stiff = true, small = true;
+  static constexpr bool stiff = true;
+  static constexpr double restart = 0.25;
+  static constexpr int most_small_states = small_states;
   static constexpr double gamma = 0.21193756319429014;
   static constexpr double a[6][5] = {
       {0},

@@ -1,0 +1,24 @@
+#pragma once
+#include <clutchwork/workspace.hpp>
+
+/// How stiff the motion is, for the choice of the method: docs/theory/integrators.md.
+namespace clutchwork {
+
+/// Bound of the rates [1/s] at which the motion changes by itself where its partial derivatives were taken last.
+template <class T>
+double fastest_rate(const Workspace<T>& ws) {
+  const Jacobian<T>& j = ws.jacobian;
+  double damping = 0, stiffness = 0;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const Branch<T>& b = ws.branch[k];
+    const double mobility = value(ws.geometry.own[b.direction]);
+    damping += mobility * abs(value(j.partial[k].by_rate));
+    for (int s = 0; s < b.states; ++s) {
+      stiffness += mobility * abs(value(j.f_state[b.state + s] * j.g_rate[b.state + s]));
+      damping += abs(value(j.g_state[j.block[k] + s * b.states + s]));
+    }
+  }
+  return damping + sqrt(stiffness);
+}
+
+}  // namespace clutchwork
