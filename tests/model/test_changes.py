@@ -222,6 +222,15 @@ def test_six_speed_gearbox():
     sweep(check, amount(40))
 
 
+def test_new_elements_are_on_the_shafts_of_their_system():
+    """Where a model holds lists, its source is a copy with shafts of its own."""
+    system = six_speed.gearbox(six_speed.SHIFT).assemble()
+    for changes in ({"F1.gain": 0.3}, {"F1.friction.fast": 0.06}, {"F1.gain": 0.3, "w1.speed": 1.0}):
+        made = system.changed(changes)
+        assert signals_apart(made, system) == []
+        assert all(any(contact.follower is node for node in made.nodes) for contact in made.contacts)
+
+
 def test_what_refers_to_what_is_changed():
     d = cw.Driveline("clutch with its heat and wear")
     engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)

@@ -10,6 +10,7 @@ from clutchwork.assembly.assemble import assembled
 from clutchwork.assembly.patches import Numbered, Unpatched, changed_signals, patched, patches
 from clutchwork.base.errors import ModelError, Problem
 from clutchwork.declare.node import Component, Signal
+from clutchwork.declare.schema import specs
 from clutchwork.declare.speech import words_of_files
 from clutchwork.model.changes import changed_model, named, renewed, target
 from clutchwork.model.components import component_advice, component_problems
@@ -141,4 +142,16 @@ def is_right(old: Component, new: Component) -> bool:
             return False
     finally:
         del values[SOUND]
+    plain = PLAIN_NUMBERS.get(type(new)) or PLAIN_NUMBERS.setdefault(type(new), _plain_numbers(type(new)))
+    if plain.issuperset(name for name, value in unlike.items() if value is not before.get(name)):
+        return True
     return not any(component_advice(new)) and not any(temperature_advice([new], []))
+
+
+# names of the fields of an element that there is no advice about, found once
+PLAIN_NUMBERS: dict[type, frozenset[str]] = {}
+
+
+def _plain_numbers(cls: type) -> frozenset[str]:
+    """Fields that are numbers other than temperatures."""
+    return frozenset(item.name for item, spec in specs(cls, "param", "option") if spec.unit != "K")

@@ -157,7 +157,7 @@ class System:
 
     def _with(self, found: Quick) -> System:
         """The same structure with other elements."""
-        content, values = self.__getstate__(), found.values
+        content, values = {item.name: vars(self)[item.name] for item in fields(self)}, found.values
         # on the shafts of this System, which are not those of its source
         for group in ("elements", "contacts", "flows", "processes"):
             parts = content[group]
@@ -167,8 +167,11 @@ class System:
         for number, signal in found.signals.items():
             inputs[number] = replace(inputs[number], signal=signal)
         content["inputs"] = tuple(inputs)
+        for name, array in found.arrays.items():
+            if array is not self.arrays[name]:
+                array.flags.writeable = False
         made = object.__new__(System)
-        made.__setstate__(content | {"arrays": found.arrays, "source": found.source})
+        vars(made).update(content | {"arrays": MappingProxyType(found.arrays), "source": found.source})
         vars(made)["numbered"] = self.numbered._replace(arrays=made.arrays)
         return made
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.wiring import row_columns, wiring
+from clutchwork.assembly.wiring import row_columns
 from clutchwork.base.errors import UseError, near
 from clutchwork.declare.core import core
 from clutchwork.declare.status import DONE, INTERRUPTED
-from clutchwork.results.channels import Channels
+from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import LOCKED
 from clutchwork.sweeps.axes import Axis, Plan, systems_of
 from clutchwork.sweeps.columns import all_needed, fixed, moved
@@ -56,9 +56,9 @@ class Wanted:
     @classmethod
     def of(cls, system: System, options: Options, outputs: Mapping[str, Output], t_end: float) -> Wanted:
         """Of a System, without those that need a Trajectory."""
-        channels = Channels(wiring(system), angles=options.angles, work=options.work)
+        known = channels(system, options.angles, options.work)
         native = {name: one for name, one in outputs.items() if not isinstance(one, Computed)}
-        return cls(native, channels, tuple(contact.name for contact in system.contacts), t_end)
+        return cls(native, known, tuple(contact.name for contact in system.contacts), t_end)
 
     def __post_init__(self) -> None:
         """Refuse names that are not there, all at once."""
@@ -267,9 +267,9 @@ class Forms:
             names = tuple(one.name for one in relevant)
             if names not in made:
                 own, which = (systems, base) if names == bound else systems_of(plan.base, relevant, first, last)
-                made[names] = [Channels(wiring(system)) for system in own], which
+                made[names] = [channels(system, True, True) for system in own], which
             found, which = made[names]
-            whole[name] = [channels[name].evaluate for channels in found], which
+            whole[name] = [signals[name].evaluate for signals in found], which
         self.columns = all_needed(form for forms, _ in whole.values() for form in forms)
         places = {column: place for place, column in enumerate(self.columns)}
         self.forms = {name: ([moved(form, places) for form in forms], which) for name, (forms, which) in whole.items()}

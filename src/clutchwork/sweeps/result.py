@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.wiring import wiring
 from clutchwork.base.errors import ModelError, UnknownName, near
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES
-from clutchwork.results.channels import Channels
+from clutchwork.results.channels import Channels, channels
 from clutchwork.run.simulation import told
 from clutchwork.sweeps.outputs import AtTimes, Computed, Integral, Output, When
 from clutchwork.sweeps.single import single
@@ -118,8 +117,8 @@ class Sweep:
     @property
     def units(self) -> dict[str, str]:
         """Unit of every output; empty for that of a function."""
-        channels = Channels(wiring(self.swept.system))
-        return {name: _unit(one, channels) for name, one in self.swept.outputs.items()}
+        known = channels(self.swept.system, True, True)
+        return {name: _unit(one, known) for name, one in self.swept.outputs.items()}
 
     @property
     def status(self) -> Array:
