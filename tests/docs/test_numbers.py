@@ -44,7 +44,8 @@ EVENTS = {
     "at most half a radian": "0.5 / sqrt(square)",
     "more than 40 within 800 steps": "window = 800, most = 40",
     "More than 50 events of one contact, or 50 knots of one signal, within a microsecond": "int most = 50; if (",
-    "starts with a quarter of the last full step": "*= 0.25",
+    "starts with a quarter of the last full step": "restart = 0.25",
+    "half of it where steps are explicit": "restart = 0.5",
 }
 CLAIMS = [("theory/contacts.md", *claim) for claim in CONTACTS.items()]
 CLAIMS += [("theory/events.md", *claim) for claim in EVENTS.items()]

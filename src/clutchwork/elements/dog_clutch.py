@@ -13,7 +13,7 @@ from clutchwork.elements.bases.heating import Heating
 @component(
     Role.TORQUE,
     states=(
-        State("angle", "rad", "angle of follower - base", span=1e-6),
+        State("angle", "rad", "angle of follower - base", span=1e-7),
         State("sleeve", "1", "position of the sleeve, 0 out, 1 in"),
     ),
     hooks=("margin", "cross", "turns", "heat"),

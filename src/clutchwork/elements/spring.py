@@ -7,7 +7,7 @@ from typing import ClassVar
 from clutchwork.declare import Component, Node, Passive, Role, State, Work, component, param, port
 
 
-@component(Role.TORQUE, states=(State("spring_torque", "N m", "stiffness times twist", span=1e-6),))
+@component(Role.TORQUE, states=(State("spring_torque", "N m", "stiffness times twist", span=1e-7),))
 class Spring(Component):
     """Elastic shaft without damping.
 

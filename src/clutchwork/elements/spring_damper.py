@@ -8,7 +8,7 @@ from clutchwork.declare import Node, Passive, Role, State, Work, component, para
 from clutchwork.elements.bases.heating import Heating
 
 
-@component(Role.TORQUE, states=(State("spring_torque", "N m", "stiffness times twist", span=1e-6),), hooks=("heat",))
+@component(Role.TORQUE, states=(State("spring_torque", "N m", "stiffness times twist", span=1e-7),), hooks=("heat",))
 class SpringDamper(Heating):
     """Elastic shaft with internal damping.
 

@@ -30,7 +30,7 @@ class Phase {
   static constexpr double most_cut_error = 0.3;
   // steps at the limit of stability, of the length over the fastest rate, before an implicit method goes on
   static constexpr int most_strained = 8;
-  static constexpr double strain = 2.5;
+  static constexpr double strain = 1.5;
 
   Workspace<T>& ws_;
   Form form_;
