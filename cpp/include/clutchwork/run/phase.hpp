@@ -234,7 +234,8 @@ class Phase {
     // after an event a quarter of the step before it; events at one instant do not shrink it further
     const double planned = larger(larger(h_, reach_), before_);
     ws_.last_step = hit.s * reach_ > 1e-9 * larger(1e-3, planned) ? planned : larger(4 * h_, planned);
-    before_ = 0, landings_ = 0;
+    // the run keeps its last step alone, and may be left here to make room for rows
+    before_ = 0, landings_ = 0, rejected_ = false;
     note_before(form_, step_, hit.s);
     interpolate(form_, step_, hit.s, step_.u());
     ws_.time = smaller(ws_.time + hit.s * reach_, stop_);
@@ -265,8 +266,8 @@ class Phase {
     }
     if (!law) pass_line(form_, *guard);
     look_here();
+    if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(ws_, hit.index));
     h_ = ws_.last_step;
-    if (hit.what == Hit::law) h_ = smaller(h_, collision_step(ws_, hit.index));
     return true;
   }
 
