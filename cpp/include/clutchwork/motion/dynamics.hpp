@@ -203,12 +203,11 @@ CLUTCHWORK_INLINE void floor_states(Form& form, const T* y) {
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE double error_norm(Form& form, const T* error, const T* a, const T* b) {
   // of the fastest speed
-  constexpr double slow = 0.01;
+  constexpr double slow = 1e-3;
   const Workspace<T>& ws = form.ws;
   const double rtol = ws.options.rtol, atol = ws.options.atol;
   const int nv = Form::small ? int(ws.sys.speeds) : form.nz(), nz = form.nz(), ns = form.ns();
   double *size = ws.reduced.size, *missed = ws.reduced.missed, fastest = 0, sum = 0;
-  for (int p = 0; p < ws.sys.prescribed; ++p) fastest = larger(fastest, abs(value(ws.in.prescribed[p])));
   for (int i = 0; i < nv; ++i) {
     T e = T(0), va = T(0), vb = T(0);
     if constexpr (Form::small) {
