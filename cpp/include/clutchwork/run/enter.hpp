@@ -26,8 +26,9 @@ bool has_massless(const Workspace<T>& ws) {
   return false;
 }
 
-/// Whether the present phase changes by itself so slowly that steps follow what acts on it. Where it swings within them,
-/// the implicit method takes less than half of the explicit steps and is ahead of them. docs/theory/integrators.md
+/// Whether the present phase changes by itself so slowly that steps follow what acts on it. Where it swings within
+/// them, the implicit method takes less than half of the explicit steps and is ahead of them.
+/// docs/theory/integrators.md
 template <class T>
 bool is_soft(Workspace<T>& ws) {
   constexpr double slow = 0.1;

@@ -16,8 +16,8 @@ namespace clutchwork {
 struct Sink {
   double* times = nullptr;
   double* rows = nullptr;
-  std::int64_t count = 0;  ///< rows that fit
-  std::int64_t at = 0;     ///< rows filled
+  std::int64_t count = 0;        ///< rows that fit
+  std::int64_t at = 0;           ///< rows filled
   std::int64_t steps = 0;        ///< rows in every step, the last at its end; 0: a grid
   double restarted = -infinity;  ///< [s] where a phase has started last
   std::int64_t restart_row = 0;  ///< rows before those of that start
