@@ -15,6 +15,7 @@ import shift_sweep  # noqa: E402
 
 def write(folder: Path) -> list[Path]:
     """Perform the shifts, on a coarser grid than the example, and write the picture."""
+    folder.mkdir(parents=True, exist_ok=True)
     path = folder / "shift_sweep.png"
     shift_sweep.picture(shift_sweep.shifts(13, 10, 2), path)
     return [path]
