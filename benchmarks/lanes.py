@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+import clutchwork as cw
 from benchmarks.core import Prepared
 from benchmarks.report import Row
 from benchmarks.timing import cpu, ratio, rounds
@@ -24,9 +25,9 @@ def variants() -> list[Any]:
     found = []
     for lining in np.linspace(0.9, 1.1, SIDE):
         for rise in np.linspace(0.85, 1.15, SIDE):
-            changes: dict[str, Any] = {"F1.pressure": [(t, rise * p) for t, p in pressure]}
+            changes: dict[str, Any] = {"F1.pressure": cw.Table([(t, float(rise * p)) for t, p in pressure])}
             for name in six_speed.CLUTCHES:
-                changes |= {f"{name}.friction.{k}": lining * six_speed.LAW[k] for k in ("slow", "fast")}
+                changes |= {f"{name}.friction.{k}": float(lining) * six_speed.LAW[k] for k in ("slow", "fast")}
             found.append(system.changed(changes))
     return found
 
