@@ -17,11 +17,12 @@ ROOT = Path(__file__).resolve().parents[1]
 # builders of models are shared with the tests; run as a file, the package itself has to be found too
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from benchmarks import chain, coupled, laws, report, shift, startup, sweeps  # noqa: E402
+from benchmarks import chain, coupled, lanes, laws, report, shift, startup, sweeps  # noqa: E402
 
 PARTS = {
     "shift": shift.rows,
     "sweeps": sweeps.rows,
+    "lanes": lanes.rows,
     "coupled": coupled.rows,
     "laws": laws.rows,
     "chain": chain.rows,

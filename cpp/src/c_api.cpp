@@ -1,6 +1,7 @@
 #include <clutchwork/c_api.h>
 
 #include <new>
+#include "lanes.hpp"
 #include "saved.hpp"
 
 using namespace clutchwork;
@@ -39,6 +40,17 @@ void reset(cw_run* run) {
 }
 
 bool is_finite(double x) { return x - x == 0; }
+
+/// Where rows go, for a call that advances a run; other than 0: what the call returns at once.
+int take_sink(Sink& sink, cw_run* run, double t_end, double* times, double* rows, std::int64_t n, int steps) {
+  if (run == nullptr || !is_finite(t_end) || t_end < run->ws.time || n < 0 || steps < 0) return -1;
+  if (n > 0 && (times == nullptr || rows == nullptr)) return -1;
+  // a step fills its rows and up to two more, at an event
+  if (steps > 0 && n < std::int64_t(steps) + 2) return int(Status::rows_full);
+  sink.times = times, sink.rows = rows, sink.count = n, sink.steps = steps;
+  run->ws.detail.row = -1;
+  return 0;
+}
 
 saved::Measure measured(const cw_run* run) {
   saved::Measure m;
@@ -128,16 +140,40 @@ int cw_set_poll(cw_run* run, int (*poll)(void*), void* context) {
 int cw_advance(cw_run* run, double t_end, double* times, double* rows, std::int64_t n, int steps,
                std::int64_t* filled) {
   if (filled != nullptr) *filled = 0;
-  if (run == nullptr || !is_finite(t_end) || t_end < run->ws.time || n < 0 || steps < 0) return -1;
-  if (n > 0 && (times == nullptr || rows == nullptr)) return -1;
-  // a step fills its rows and up to two more, at an event
-  if (steps > 0 && n < std::int64_t(steps) + 2) return int(Status::rows_full);
   Sink sink;
-  sink.times = times, sink.rows = rows, sink.count = n, sink.steps = steps;
-  run->ws.detail.row = -1;
+  const int refused = take_sink(sink, run, t_end, times, rows, n, steps);
+  if (refused != 0) return refused;
   const Status status = advance(run->ws, t_end, sink);
   if (filled != nullptr) *filled = sink.at;
   return int(status);
+}
+
+std::int64_t cw_group_size(const cw_run* run) { return run == nullptr ? -1 : group_size(run->ws.sys); }
+
+int cw_advance_group(cw_member* members, std::int64_t count, double t_end, void* memory, std::int64_t memory_bytes) {
+  if (count < 0 || (count > 0 && members == nullptr) || memory_bytes < 0) return -1;
+  for (std::int64_t i = 0; i < count; ++i) {
+    if (members[i].run == nullptr) return -1;
+    const std::int64_t size = cw_group_size(members[i].run);
+    if (size > 0 && (memory == nullptr || memory_bytes < size)) return -1;
+  }
+  for (std::int64_t first = 0; first < count; first += most_together) {
+    Sink sinks[most_together];
+    Workspace<double>* runs[most_together];
+    Status statuses[most_together];
+    cw_member* taken[most_together];
+    int n = 0;
+    for (std::int64_t i = first; i < count && i < first + most_together; ++i) {
+      cw_member& m = members[i];
+      sinks[n] = Sink{};
+      m.filled = 0;
+      m.status = take_sink(sinks[n], m.run, t_end, m.times, m.rows, m.n, m.steps);
+      if (m.status == 0) runs[n] = &m.run->ws, taken[n++] = &m;
+    }
+    if (n > 0) advance_group(runs, sinks, statuses, n, t_end, memory);
+    for (int i = 0; i < n; ++i) taken[i]->status = int(statuses[i]), taken[i]->filled = sinks[i].at;
+  }
+  return 0;
 }
 
 double cw_time(const cw_run* run) { return run == nullptr ? __builtin_nan("") : run->ws.time; }

@@ -2,7 +2,8 @@
 #include <clutchwork/run/advance.hpp>
 
 /// What is compiled apart, to build on several cores. Scalar: double.
-#define CLUTCHWORK_SMALL(KEYWORD, NZ, NS) \
+#define CLUTCHWORK_SMALL(KEYWORD, NZ, NS)                           \
+  KEYWORD template class Phase<SmallForm<double, NZ, NS>, Rodas5P>; \
   KEYWORD template Status run_phase<SmallForm<double, NZ, NS>>(Workspace<double>&, double, Sink&);
 #define CLUTCHWORK_SMALL_ROW(KEYWORD, NZ) \
   CLUTCHWORK_SMALL(KEYWORD, NZ, 0)        \

@@ -7,6 +7,7 @@
 #include <clutchwork/layout.gen.hpp>
 #include <clutchwork/schema.gen.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <string>
@@ -66,6 +67,8 @@ class Run {
     run_ = cw_load(system_.c_str(), std::int64_t(system_.size()), memory_.get(), size);
     if (run_ == nullptr) throw nb::value_error("the run could not be started from these system bytes");
   }
+
+  cw_run* handle() const { return run_; }
 
   void set_option(const std::string& name, double value) {
     if (!cw_set_option(run_, name.c_str(), value)) {
@@ -181,6 +184,24 @@ std::tuple<double, double> law(int number, Vector params, Matrix points, double 
   return {kinetic, hold};
 }
 
+/// Statuses of runs advanced together, without rows. Each has the bits that it has alone.
+std::vector<int> advance_group(const std::vector<Run*>& runs, double t_end) {
+  std::vector<cw_member> members;
+  std::int64_t size = 0;
+  for (Run* run : runs) {
+    members.push_back({run->handle(), nullptr, nullptr, 0, 0, 0, 0});
+    size = std::max(size, cw_group_size(run->handle()));
+  }
+  const std::unique_ptr<unsigned char[]> memory(new unsigned char[std::size_t(size)]);
+  {
+    nb::gil_scoped_release release;
+    cw_advance_group(members.data(), std::int64_t(members.size()), t_end, memory.get(), size);
+  }
+  std::vector<int> statuses;
+  for (const cw_member& member : members) statuses.push_back(member.status);
+  return statuses;
+}
+
 }  // namespace
 
 NB_MODULE(_core, m) {
@@ -192,6 +213,8 @@ NB_MODULE(_core, m) {
         nb::arg("inputs") = std::vector<double>(),
         "Kinetic coefficient at a slip [rad/s] and static coefficient of a friction law at its inputs.");
   bind_sweep(m);
+  m.def("advance_group", &advance_group, nb::arg("runs"), nb::arg("t_end"),
+        "Advance runs to t_end [s] together, without output: a status for each.");
   nb::class_<Run>(m, "Run", "One run of a frozen system: its memory, options, signals and results.")
       .def(nb::init<nb::bytes>(), nb::arg("system"))
       .def("set_option", &Run::set_option, nb::arg("name"), nb::arg("value"))

@@ -2,6 +2,7 @@
 #include <clutchwork/c_api.h>
 #include <clutchwork/layout.gen.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -125,101 +126,130 @@ class Worker {
   const Task& task_;
   const Results& results_;
   Course& course_;
-  std::int64_t base_ = -1, size_ = 0, row_size_ = 0;
-  std::vector<std::uint64_t> system_;  ///< bytes of the variant
-  std::vector<std::int64_t> value_;    ///< of each axis that these bytes have
-  std::unique_ptr<Block[]> memory_;
-  std::int64_t blocks_ = 0;
-  std::vector<double> times_, rows_, event_;
+  /// Memory that grows to the largest size that is asked for.
+  struct Memory {
+    std::unique_ptr<Block[]> block;
+    std::int64_t bytes = 0;
 
-  /// Consecutive variants, one after another.
+    void* of(std::int64_t size) {
+      if (size > bytes) block = std::make_unique<Block[]>(std::size_t(size + 63) / 64), bytes = (size + 63) / 64 * 64;
+      return block.get();
+    }
+  };
+
+  /// One variant of a group: its system, its run, its rows.
+  struct Place {
+    std::int64_t base = -1, size = 0, row_size = 0;
+    std::vector<std::uint64_t> system;  ///< bytes of the variant
+    std::vector<std::int64_t> value;    ///< of each axis that these bytes have
+    Memory memory;
+    std::vector<double> times, rows;
+    cw_run* run = nullptr;
+  };
+  Place place_[group];
+  Memory together_;
+  std::vector<double> event_;
+
+  /// Consecutive variants: on a grid their steps are taken together.
   void run_group(std::int64_t first, std::int64_t last) {
-    for (std::int64_t v = first; v < last && !course_.stop; ++v) run_one(v);
+    cw_member members[group];
+    std::int64_t of[group], n = 0, size = 0;
+    for (std::int64_t v = first; v < last; ++v) {
+      Place& p = place_[v - first];
+      if (!prepare(p, v)) continue;
+      const std::int64_t rows = std::int64_t(p.times.size());
+      members[n] = {p.run, p.times.data(), p.rows.data(), rows, task_.parts, int(Status::rows_full), 0};
+      size = std::max(size, cw_group_size(p.run));
+      of[n++] = v;
+    }
+    if (task_.parts == 0) cw_advance_group(members, n, task_.t_end, together_.of(size), size);
+    for (std::int64_t i = 0; i < n && !course_.stop; ++i) {
+      Place& p = place_[of[i] - first];
+      const int status = task_.parts > 0 ? record_steps(p, of[i]) : record_grid(p, of[i], members[i]);
+      if (status != int(Status::done)) tell(p, of[i], status);
+      results_.status[of[i]] = status;
+    }
   }
 
-  void run_one(std::int64_t v) {
-    cw_run* run = load(v);
-    int status = int(Status::bad_system);
-    if (run != nullptr) {
-      for (const auto& [name, value] : task_.options) cw_set_option(run, name.c_str(), value);
-      cw_set_poll(run, &Course::stopped, &course_);
-      status = task_.parts > 0 ? record_steps(run, v) : record_grid(run, v);
-      if (status != int(Status::done)) tell(run, v, status);
+  /// A variant ready to run; false: the core does not take it.
+  bool prepare(Place& p, std::int64_t v) {
+    load(p, v);
+    if (p.run == nullptr) {
+      results_.status[v] = int(Status::bad_system);
+      return false;
     }
-    results_.status[v] = status;
+    for (const auto& [name, value] : task_.options) cw_set_option(p.run, name.c_str(), value);
+    cw_set_poll(p.run, &Course::stopped, &course_);
+    for (std::int64_t i = 0; i < task_.instants && task_.parts == 0; ++i) p.times[std::size_t(i)] = task_.times[i];
+    return true;
   }
 
   // ------------------------------------------------------------------------------------------------------------- load
 
-  cw_run* load(std::int64_t v) {
+  void load(Place& p, std::int64_t v) {
     const std::int64_t* choice = task_.choice + v * (1 + std::int64_t(task_.axes.size()));
-    if (choice[0] != base_) take_base(choice[0]);
+    if (choice[0] != p.base) take_base(p, choice[0]);
     for (std::size_t a = 0; a < task_.axes.size(); ++a) {
       const std::int64_t value = choice[1 + a];
-      if (value == value_[a]) continue;
+      if (value == p.value[a]) continue;
       const Axis& axis = task_.axes[a];
       for (std::int64_t k = 0; k < axis.count; ++k)
-        system_[std::size_t(axis.place[k])] = axis.words[value * axis.count + k];
-      value_[a] = value;
+        p.system[std::size_t(axis.place[k])] = axis.words[value * axis.count + k];
+      p.value[a] = value;
     }
-    const std::int64_t size = cw_size(system_.data(), size_);
-    if (size < 0) return nullptr;
-    if (size > 64 * blocks_) {
-      blocks_ = (size + 63) / 64;
-      memory_ = std::make_unique<Block[]>(std::size_t(blocks_));
-    }
-    cw_run* run = cw_load(system_.data(), size_, memory_.get(), 64 * blocks_);
-    if (run != nullptr && cw_row_size(run) != row_size_) make_room(cw_row_size(run));
-    return run;
+    const std::int64_t size = cw_size(p.system.data(), p.size);
+    p.run = size < 0 ? nullptr : cw_load(p.system.data(), p.size, p.memory.of(size), size);
+    if (p.run != nullptr && cw_row_size(p.run) != p.row_size) make_room(p, cw_row_size(p.run));
   }
 
-  void take_base(std::int64_t base) {
+  void take_base(Place& p, std::int64_t base) {
     const Bytes& bytes = task_.systems[std::size_t(base)];
-    system_.resize(std::size_t(bytes.size + 7) / 8);
-    std::memcpy(system_.data(), bytes.data, std::size_t(bytes.size));
-    base_ = base, size_ = bytes.size;
-    value_.assign(task_.axes.size(), -1);
+    p.system.resize(std::size_t(bytes.size + 7) / 8);
+    std::memcpy(p.system.data(), bytes.data, std::size_t(bytes.size));
+    p.base = base, p.size = bytes.size;
+    p.value.assign(task_.axes.size(), -1);
   }
 
-  void make_room(std::int64_t row_size) {
-    row_size_ = row_size;
+  void make_room(Place& p, std::int64_t row_size) {
+    p.row_size = row_size;
     const std::int64_t rows = task_.parts > 0 ? step_room + task_.parts : task_.instants;
-    times_.resize(std::size_t(rows));
-    rows_.resize(std::size_t(rows * row_size));
+    p.times.resize(std::size_t(rows));
+    p.rows.resize(std::size_t(rows * row_size));
   }
 
   // ---------------------------------------------------------------------------------------------------------- collect
 
   static bool goes_on(int status) { return status == int(Status::rows_full) || status == int(Status::events_full); }
 
-  int record_grid(cw_run* run, std::int64_t v) {
-    std::int64_t filled = 0, more = 0;
-    int status;
-    for (std::int64_t i = 0; i < task_.instants; ++i) times_[std::size_t(i)] = task_.times[i];
-    do {
-      status = cw_advance(run, task_.t_end, times_.data() + filled, rows_.data() + filled * row_size_,
+  /// What a group has found of a variant; what had no room there goes on alone.
+  int record_grid(Place& p, std::int64_t v, const cw_member& member) {
+    std::int64_t filled = member.filled, more = 0;
+    int status = member.status;
+    take_events(p.run, v);
+    while (goes_on(status)) {
+      status = cw_advance(p.run, task_.t_end, p.times.data() + filled, p.rows.data() + filled * p.row_size,
                           task_.instants - filled, 0, &more);
       filled += more;
-      take_events(run, v);
-    } while (goes_on(status));
+      take_events(p.run, v);
+    }
     double* out = results_.grid + v * task_.instants * task_.width;
-    for (std::int64_t i = 0; i < filled; ++i) keep(rows_.data() + i * row_size_, out + i * task_.width);
+    for (std::int64_t i = 0; i < filled; ++i) keep(p.rows.data() + i * p.row_size, out + i * task_.width);
     return status;
   }
 
-  int record_steps(cw_run* run, std::int64_t v) {
+  int record_steps(Place& p, std::int64_t v) {
     std::int64_t total = 0, filled = 0;
     int status;
     do {
-      status =
-          cw_advance(run, task_.t_end, times_.data(), rows_.data(), std::int64_t(times_.size()), task_.parts, &filled);
+      status = cw_advance(p.run, task_.t_end, p.times.data(), p.rows.data(), std::int64_t(p.times.size()), task_.parts,
+                          &filled);
       const std::size_t at = found.values.size();
       found.values.resize(at + std::size_t(filled * task_.width));
       for (std::int64_t i = 0; i < filled; ++i)
-        keep(rows_.data() + i * row_size_, found.values.data() + at + std::size_t(i * task_.width));
-      found.times.insert(found.times.end(), times_.begin(), times_.begin() + filled);
+        keep(p.rows.data() + i * p.row_size, found.values.data() + at + std::size_t(i * task_.width));
+      found.times.insert(found.times.end(), p.times.begin(), p.times.begin() + filled);
       total += filled;
-      take_events(run, v);
+      take_events(p.run, v);
     } while (goes_on(status));
     found.variant.push_back(v);
     found.rows.push_back(total);
@@ -243,20 +273,20 @@ class Worker {
   }
 
   /// Why a run stopped: a component, or what of a row is not finite, else its largest number.
-  void tell(cw_run* run, std::int64_t v, int status) {
+  void tell(const Place& p, std::int64_t v, int status) {
     double* detail = results_.detail + v * detail_size;
     double value = 0;
-    const std::int64_t component = cw_detail(run, &value);
-    std::int64_t column = cw_detail_row(run);
+    const std::int64_t component = cw_detail(p.run, &value);
+    std::int64_t column = cw_detail_row(p.run);
     if (status == int(Status::not_finite) && component < 0 && column < 0) {
-      std::vector<double> row(std::size_t(row_size_), 0.0);
-      cw_row(run, row.data());
+      std::vector<double> row(std::size_t(p.row_size), 0.0);
+      cw_row(p.run, row.data());
       column = 0;
-      for (std::int64_t i = 0; i < row_size_ && !std::isnan(row[std::size_t(column)]); ++i)
+      for (std::int64_t i = 0; i < p.row_size && !std::isnan(row[std::size_t(column)]); ++i)
         if (!(std::abs(row[std::size_t(i)]) <= std::abs(row[std::size_t(column)]))) column = i;
-      value = row_size_ > 0 ? row[std::size_t(column)] : 0;
+      value = p.row_size > 0 ? row[std::size_t(column)] : 0;
     }
-    detail[0] = double(component), detail[1] = cw_time(run), detail[2] = value, detail[3] = double(column);
+    detail[0] = double(component), detail[1] = cw_time(p.run), detail[2] = value, detail[3] = double(column);
   }
 };
 

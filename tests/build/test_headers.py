@@ -16,7 +16,7 @@ from support import project
 HEADERS, SOURCES = project.ROOT / "cpp/include/clutchwork", project.ROOT / "cpp/src"
 # a room may include itself and those before it; files at the root, elements, laws and the parts of the workspace belong
 # to the first one
-ROOMS = ("components", "contacts", "motion", "run")
+ROOMS = ("components", "contacts", "motion", "run", "lanes")
 REGISTRY = "registry.gen.hpp"
 Includes = Mapping[str, Sequence[str]]
 

@@ -29,7 +29,7 @@ CLUTCHWORK_INLINE S sliding_torque(const Workspace<T>& ws, const Branch<T>& b, c
   const S load = b.pressed ? contact_load<T, S>(b.kind, b.params, input, ws.sys.points) : S(0);
   S coefficient = visit_law(b.law, [&](auto tag) {
     using L = typename decltype(tag)::type;
-    if constexpr (StickingLaw<L>) {
+    if constexpr (StickingLaw<L> && computes_with<L, T>) {
       const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(b.law_params);
       return L::slide(p, At<S>{T(b.sign) * rate, nullptr, law_input, b.piece, ws.sys.points});
     }
@@ -71,8 +71,10 @@ template <class T>
 /// Torque of a contact on its follower; the rates of its states go to `rates`.
 template <class T>
 CLUTCHWORK_INLINE T contact_torque(const Workspace<T>& ws, const Branch<T>& b, T rate, const T* state, T* rates) {
-  if (b.compliant) [[unlikely]]
-    return compliant_torque(ws, b, rate, state, rates);
+  if constexpr (!has_lanes<T>) {
+    if (b.compliant) [[unlikely]]
+      return compliant_torque(ws, b, rate, state, rates);
+  }
   return sliding_torque<T, T>(ws, b, rate, b.input, b.law_input);
 }
 
@@ -82,10 +84,13 @@ CLUTCHWORK_INLINE T branch_torque(const Workspace<T>& ws, const Branch<T>& b, T 
   if (b.law >= 0) return contact_torque(ws, b, rate, state, rates);
   return visit_torque(b.kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
-    const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-    const At<T> at{rate, state + b.state, b.input, b.piece, ws.sys.points};
-    if constexpr (E::states > 0) E::state_rates(p, at, rates + b.state);
-    return E::torque(p, at);
+    if constexpr (computes_with<E, T>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+      const At<T> at{rate, state + b.state, b.input, b.piece, ws.sys.points};
+      if constexpr (E::states > 0) E::state_rates(p, at, rates + b.state);
+      return E::torque(p, at);
+    }
+    return T(0);
   });
 }
 
@@ -147,10 +152,12 @@ template <class T>
 
 /// Torque and partial derivatives by (rate, own states, time), from dual numbers.
 template <class T>
-[[gnu::noinline]] Partial<T> branch_partial(const Workspace<T>& ws, const Branch<T>& b, T rate, T rate_slope,
-                                            const T* state, T* rates, const StatePartials<T>& out) {
-  if (b.compliant) [[unlikely]]
-    return compliant_partial(ws, b, rate, rate_slope, state, rates, out);
+CLUTCHWORK_INLINE Partial<T> branch_partial_inline(const Workspace<T>& ws, const Branch<T>& b, T rate, T rate_slope,
+                                                   const T* state, T* rates, const StatePartials<T>& out) {
+  if constexpr (!has_lanes<T>) {
+    if (b.compliant) [[unlikely]]
+      return compliant_partial(ws, b, rate, rate_slope, state, rates, out);
+  }
   if (b.law >= 0) {
     using S = Dual<T, 2>;
     Slots<S, most_inputs> input, law_input;
@@ -163,20 +170,29 @@ template <class T>
   }
   return visit_torque(b.kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
-    constexpr int n = E::states, N = n + 2;
-    using S = Dual<T, N>;
-    const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-    S input[E::inputs > 0 ? E::inputs : 1];
-    dual_inputs<N>(E::inputs, b.input, b.input_slope, input);
-    S own[n > 0 ? n : 1], own_rates[n > 0 ? n : 1];
-    for (int i = 0; i < n; ++i) own[i] = S::variable(state[b.state + i], 1 + i);
-    S x = S::variable(rate, 0);
-    x.d[N - 1] = rate_slope;
-    const At<S> at{x, own, input, b.piece, ws.sys.points};
-    const S f = E::torque(p, at);
-    if constexpr (n > 0) E::state_rates(p, at, own_rates);
-    return take_partials(b, f, own_rates, n, rates, out);
+    if constexpr (computes_with<E, T>) {
+      constexpr int n = E::states, N = n + 2;
+      using S = Dual<T, N>;
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+      S input[E::inputs > 0 ? E::inputs : 1];
+      dual_inputs<N>(E::inputs, b.input, b.input_slope, input);
+      S own[n > 0 ? n : 1], own_rates[n > 0 ? n : 1];
+      for (int i = 0; i < n; ++i) own[i] = S::variable(state[b.state + i], 1 + i);
+      S x = S::variable(rate, 0);
+      x.d[N - 1] = rate_slope;
+      const At<S> at{x, own, input, b.piece, ws.sys.points};
+      const S f = E::torque(p, at);
+      if constexpr (n > 0) E::state_rates(p, at, own_rates);
+      return take_partials(b, f, own_rates, n, rates, out);
+    }
+    return Partial<T>{};
   });
+}
+
+template <class T>
+[[gnu::noinline]] Partial<T> branch_partial(const Workspace<T>& ws, const Branch<T>& b, T rate, T rate_slope,
+                                            const T* state, T* rates, const StatePartials<T>& out) {
+  return branch_partial_inline(ws, b, rate, rate_slope, state, rates, out);
 }
 
 /// Derivatives of the torque by the inputs of a branch, then by those of its law.

@@ -10,6 +10,10 @@ namespace clutchwork {
 
 inline constexpr int most_inputs = 6;  ///< of one component
 
+/// Whether a component computes with scalar T: all do with plain ones, those with `lanes` also with Lanes.
+template <class E, class T>
+inline constexpr bool computes_with = !has_lanes<T> || requires { requires E::lanes; };
+
 /// Compile-time name of a component.
 template <class E>
 struct Tag {
@@ -27,7 +31,7 @@ struct Curve {
 template <class T, class Words>
 struct Word {
   T number;  ///< [1]
-  CLUTCHWORK_INLINE operator Words() const { return Words(int(value(number))); }
+  CLUTCHWORK_INLINE operator Words() const { return Words(int(common(number))); }
 };
 
 /// Own inputs, by the names of the declaration: `at.input[Input::...]`.
@@ -45,30 +49,30 @@ struct OwnInputs {
 /// Where a component is evaluated.
 template <class S>
 struct At {
-  S rate;                ///< [rad/s] rate of an element; slip of a contact in the direction in which it slips
-  const S* state;        ///< own states
-  OwnInputs<S> input;    ///< own inputs
-  int piece;             ///< number of the smooth piece of the rate
-  const double* points;  ///< pool of curves: x, y, slope to the next point
+  S rate;                 ///< [rad/s] rate of an element; slip of a contact in the direction in which it slips
+  const S* state;         ///< own states
+  OwnInputs<S> input;     ///< own inputs
+  int piece;              ///< number of the smooth piece of the rate
+  const Real<S>* points;  ///< pool of curves: x, y, slope to the next point
 };
 
 /// Number of kinks inside a curve, where one linear piece follows another.
 template <class T>
 CLUTCHWORK_INLINE int curve_edges(const Curve<T>& c) {
-  const int n = int(value(c.count));
+  const int n = int(common(c.count));
   return n > 2 ? n - 2 : 0;
 }
 
 /// Abscissa of kink number i.
 template <class T>
 CLUTCHWORK_INLINE double curve_edge(const Curve<T>& c, const double* points, int i) {
-  return points[3 * (int(value(c.first)) + i + 1)];
+  return points[3 * (int(common(c.first)) + i + 1)];
 }
 
 /// Value of a curve on one of its pieces, continued linearly beyond it.
 template <class T, class S>
-CLUTCHWORK_INLINE S curve_value(const Curve<T>& c, const double* points, S x, int piece) {
-  const double* p = points + 3 * (int(value(c.first)) + piece);
+CLUTCHWORK_INLINE S curve_value(const Curve<T>& c, const Real<S>* points, S x, int piece) {
+  const Real<S>* p = points + 3 * (int(common(c.first)) + piece);
   return (x - S(p[0])) * S(p[2]) + S(p[1]);
 }
 

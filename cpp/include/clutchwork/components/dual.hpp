@@ -37,12 +37,12 @@ struct Dual {
     return chain(a, T(1) / b.v, b, -q / b.v, q);
   }
 
-  friend bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
-  friend bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
-  friend bool operator<=(const Dual& a, const Dual& b) { return a.v <= b.v; }
-  friend bool operator>=(const Dual& a, const Dual& b) { return a.v >= b.v; }
-  friend bool operator==(const Dual& a, const Dual& b) { return a.v == b.v; }
-  friend bool operator!=(const Dual& a, const Dual& b) { return a.v != b.v; }
+  friend auto operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
+  friend auto operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
+  friend auto operator<=(const Dual& a, const Dual& b) { return a.v <= b.v; }
+  friend auto operator>=(const Dual& a, const Dual& b) { return a.v >= b.v; }
+  friend auto operator==(const Dual& a, const Dual& b) { return a.v == b.v; }
+  friend auto operator!=(const Dual& a, const Dual& b) { return a.v != b.v; }
 
   /// f(a) with derivative slope.
   static CLUTCHWORK_INLINE Dual chain(const Dual& a, T f, T slope) {
@@ -61,6 +61,18 @@ struct Dual {
 template <class T, int N>
 CLUTCHWORK_INLINE auto value(const Dual<T, N>& x) {
   return value(x.v);
+}
+
+template <class T, int N>
+struct NumberOf<Dual<T, N>> : NumberOf<T> {};
+
+/// Lane by lane, for scalars with lanes.
+template <class Mask, class T, int N>
+  requires has_lanes<T>
+CLUTCHWORK_INLINE Dual<T, N> select(const Mask& which, const Dual<T, N>& a, const Dual<T, N>& b) {
+  Dual<T, N> r(select(which, a.v, b.v));
+  for (int i = 0; i < N; ++i) r.d[i] = select(which, a.d[i], b.d[i]);
+  return r;
 }
 
 template <class T, int N>
@@ -92,7 +104,7 @@ CLUTCHWORK_INLINE Dual<T, N> tanh(const Dual<T, N>& x) {
 }
 template <class T, int N>
 CLUTCHWORK_INLINE Dual<T, N> abs(const Dual<T, N>& x) {
-  return value(x.v) < 0 ? -x : x;
+  return select(value(x.v) < 0, -x, x);
 }
 /// Power of a positive base.
 template <class T, int N>

@@ -27,9 +27,19 @@ inline double wave_integral(const double* w, double s) {
 }
 inline bool wave_varies(const double* w) { return w[0] != 0 && (w[1] != 0 || w[3] != 0); }
 
+/// The cubic of a segment s seconds after its start, and its time derivative.
+template <class R>
+CLUTCHWORK_INLINE R cubic_value(const R* c, R s) {
+  return c[0] + s * (c[1] + s * (c[2] + s * c[3]));
+}
+template <class R>
+CLUTCHWORK_INLINE R cubic_slope(const R* c, R s) {
+  return c[1] + s * (R(2) * c[2] + s * R(3) * c[3]);
+}
+
 /// Value of a segment s seconds after its start.
 CLUTCHWORK_INLINE double segment_value(const double* c, double s) {
-  double x = c[0] + s * (c[1] + s * (c[2] + s * c[3]));
+  double x = cubic_value(c, s);
   if (c[4] != 0) {
     x += wave_value(c + 4, s);
     if (c[8] != 0) x += wave_value(c + 8, s);
@@ -39,7 +49,7 @@ CLUTCHWORK_INLINE double segment_value(const double* c, double s) {
 
 /// Time derivative of a segment s seconds after its start.
 CLUTCHWORK_INLINE double segment_slope(const double* c, double s) {
-  double x = c[1] + s * (2 * c[2] + s * 3 * c[3]);
+  double x = cubic_slope(c, s);
   if (c[4] != 0) {
     x += wave_slope(c + 4, s);
     if (c[8] != 0) x += wave_slope(c + 8, s);

@@ -51,11 +51,14 @@ inline bool is_compliant_law(int law) {
 
 /// Load of a contact at the given inputs, negative where the clamp is relieved.
 template <class T, class S>
-CLUTCHWORK_INLINE S contact_load(int kind, const T* params, const S* input, const double* points) {
+CLUTCHWORK_INLINE S contact_load(int kind, const T* params, const S* input, const Real<T>* points) {
   return visit_contact(kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
-    const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(params);
-    return E::load(p, At<S>{S(0), nullptr, input, 0, points});
+    if constexpr (computes_with<E, T>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(params);
+      return E::load(p, At<S>{S(0), nullptr, input, 0, points});
+    }
+    return S(0);
   });
 }
 
@@ -64,7 +67,7 @@ template <class T, class S>
 CLUTCHWORK_INLINE S contact_gain(int kind, const T* params, const S& mu, int direction) {
   return visit_contact(kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
-    if constexpr (ShapedContact<E>)
+    if constexpr (ShapedContact<E> && computes_with<E, T>)
       return E::gain(*reinterpret_cast<const typename E::template Params<T>*>(params), mu, direction);
     return mu;
   });
@@ -72,24 +75,29 @@ CLUTCHWORK_INLINE S contact_gain(int kind, const T* params, const S& mu, int dir
 
 /// Static coefficient of a law.
 template <class T>
-CLUTCHWORK_INLINE T law_hold(int law, const T* params, const T* input, const double* points) {
+CLUTCHWORK_INLINE T law_hold(int law, const T* params, const T* input, const Real<T>* points) {
   return visit_law(law, [&](auto tag) {
     using L = typename decltype(tag)::type;
-    const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
-    return L::hold(p, At<T>{T(0), nullptr, input, 0, points});
+    if constexpr (computes_with<L, T>) {
+      const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
+      return L::hold(p, At<T>{T(0), nullptr, input, 0, points});
+    }
+    return T(0);
   });
 }
 
 /// Static torque of a contact that resists slip in a direction, not negative.
-template <class T>
-T contact_limit(const System& sys, int c, const T* params, const T* input, const T* law_input, int direction) {
+template <class T, class Sys>
+T contact_limit(const Sys& sys, int c, const T* params, const T* input, const T* law_input, int direction) {
   const T* own = params + sys.contact_param[c];
   const T hold = law_hold(sys.contact_law[c], params + sys.contact_law_param[c], law_input, sys.points);
   return visit_contact(sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(own);
     const At<T> at{T(0), nullptr, input, 0, sys.points};
-    if constexpr (LimitedContact<E>) {
+    if constexpr (!computes_with<E, T>) {
+      return T(0);
+    } else if constexpr (LimitedContact<E>) {
       return larger(E::limit(p, at, hold, direction), T(0));
     } else {
       const T load = larger(E::load(p, at), T(0));

@@ -18,14 +18,53 @@ CLUTCHWORK_INLINE double value(T x) {
   return x;
 }
 
+/// The plain number behind a scalar, and what a comparison of two gives: double and bool, unless a scalar has lanes.
+template <class T>
+struct NumberOf {
+  using Real = double;
+  using Truth = bool;
+  static constexpr bool lanes = false;
+};
+template <class T>
+using Real = typename NumberOf<T>::Real;
+template <class T>
+using Truth = typename NumberOf<T>::Truth;
+template <class T>
+inline constexpr bool has_lanes = NumberOf<T>::lanes;
+
+/// A number that is the same in all lanes, such as a place or a choice.
+template <class T>
+CLUTCHWORK_INLINE double common(const T& x) {
+  return value(x);
+}
+
+/// Answers to one question: for scalars with lanes there are as many as lanes, components/lanes.hpp.
+CLUTCHWORK_INLINE bool any(bool x) { return x; }
+CLUTCHWORK_INLINE bool all(bool x) { return x; }
+CLUTCHWORK_INLINE bool none(bool x) { return !x; }
+
+/// n where it is true, else zero.
+CLUTCHWORK_INLINE int count_where(bool which, int n) { return which ? n : 0; }
+
+/// a where it is true, else b.
+template <class T>
+CLUTCHWORK_INLINE T select(bool which, T a, T b) {
+  return which ? a : b;
+}
+/// a() where it is true, else b(); what no lane asks for is not computed.
+template <class A, class B>
+CLUTCHWORK_INLINE auto choose(bool which, A&& a, B&& b) {
+  return which ? a() : b();
+}
+
 template <class T>
 CLUTCHWORK_INLINE T larger(T a, T b) {
-  return b > a ? b : a;
+  return select(b > a, b, a);
 }
 
 template <class T>
 CLUTCHWORK_INLINE T smaller(T a, T b) {
-  return b < a ? b : a;
+  return select(b < a, b, a);
 }
 
 }  // namespace clutchwork

@@ -19,14 +19,13 @@ struct StribeckCurve {
 /// |x|^n, finite with its derivative at zero.
 template <class T, class S>
 CLUTCHWORK_INLINE S power_of_size(S x, T n) {
-  if (value(n) == 1) return abs(x);
-  return pow(larger(abs(x), S(1e-12)), S(n));
+  return choose(value(n) == 1, [&] { return abs(x); }, [&] { return pow(larger(abs(x), S(1e-12)), S(n)); });
 }
 
 /// exp(-x), zero where nothing of it is left: underflow is slow.
 template <class S>
 CLUTCHWORK_INLINE S fading(S x) {
-  return value(x) > 200 ? S(0) : exp(-x);
+  return choose(value(x) > 200, [] { return S(0); }, [&] { return exp(-x); });
 }
 
 /// Share of the static excess that is left at x = slip / speed: 1 at rest, falling to 0.

@@ -8,7 +8,7 @@ namespace clutchwork {
 /// Load of a contact now, negative included.
 template <class T>
 T load_of(const Workspace<T>& ws, int c) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   if (ws.contact.fault[c] == cannot_transmit) return T(-1);
   return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], ws.in.u + sys.contact_input[c],
                       sys.points);
@@ -32,7 +32,9 @@ T capacity_of(const Workspace<T>& ws, int c, int direction) {
 /// The capacity that counts while a contact holds a torque: a positive one resists backward slip.
 template <class T>
 T capacity_at(const Workspace<T>& ws, int c, T torque) {
-  return capacity_of(ws, c, value(torque) > 0 && !contact_one_way(ws, c) ? backward : forward);
+  if (contact_one_way(ws, c)) return capacity_of(ws, c, forward);
+  return choose(
+      value(torque) > 0, [&] { return capacity_of(ws, c, backward); }, [&] { return capacity_of(ws, c, forward); });
 }
 
 /// Above zero when a contact fails; below for one that cannot.
@@ -70,7 +72,7 @@ bool may_stick(const Workspace<T>& ws, int c) {
 /// Time derivative of the load of a contact.
 template <class T>
 T load_slope(const Workspace<T>& ws, int c) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   return visit_contact(sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     Dual<T, 1> input[E::inputs > 0 ? E::inputs : 1];

@@ -9,6 +9,7 @@ struct BearingFriction : declared::BearingFriction {
   struct Params {
     T torque;  ///< [N m]
   };
+  static constexpr bool lanes = true;
   static constexpr bool one_way = false;
 
   template <class T, class S>

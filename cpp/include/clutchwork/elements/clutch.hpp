@@ -9,6 +9,7 @@ struct Clutch : declared::Clutch {
   struct Params {
     T gain;  ///< [m3]
   };
+  static constexpr bool lanes = true;
   static constexpr bool one_way = false;
 
   template <class T, class S>

@@ -9,6 +9,7 @@ struct Damper : declared::Damper {
   struct Params {
     T damping;  ///< [N m s/rad]
   };
+  static constexpr bool lanes = true;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {

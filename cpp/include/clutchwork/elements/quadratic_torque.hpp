@@ -11,19 +11,21 @@ struct QuadraticTorque : declared::QuadraticTorque {
     T nominal_speed;   ///< [rad/s]
     T same_direction;  ///< [1]
   };
+  static constexpr bool lanes = true;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {
     const S x = at.rate / p.nominal_speed;
-    const bool flip = p.same_direction == T(0) && (at.piece == 0) == (p.nominal_speed > T(0));
-    return flip ? -(p.nominal_torque * x * x) : p.nominal_torque * x * x;
+    const auto positive = p.nominal_speed > T(0);
+    const auto flip = p.same_direction == T(0) && (at.piece == 0 ? positive : !positive);
+    return select(flip, -(p.nominal_torque * x * x), p.nominal_torque * x * x);
   }
   template <class T, class S>
   static void state_rates(const Params<T>&, const At<S>&, S*) {}
 
   template <class T>
   static int edges(const Params<T>& p) {
-    return p.same_direction == T(0) ? 1 : 0;
+    return common(p.same_direction) == 0 ? 1 : 0;
   }
   template <class T>
   static double edge(const Params<T>&, const double*, int) {

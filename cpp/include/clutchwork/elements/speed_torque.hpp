@@ -10,6 +10,7 @@ struct SpeedTorque : declared::SpeedTorque {
     Curve<T> torque;  ///< rad/s -> N m
     T gain;           ///< [1]
   };
+  static constexpr bool lanes = true;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {

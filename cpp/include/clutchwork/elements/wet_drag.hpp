@@ -10,6 +10,7 @@ struct WetDrag : declared::WetDrag {
     T peak;   ///< [N m]
     T speed;  ///< [rad/s]
   };
+  static constexpr bool lanes = true;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {

@@ -10,6 +10,7 @@ struct Coulomb : declared::Coulomb {
     T static_;  ///< [1]
     T kinetic;  ///< [1]
   };
+  static constexpr bool lanes = true;
 
   template <class T, class S>
   static S slide(const Params<T>& p, const At<S>&) {

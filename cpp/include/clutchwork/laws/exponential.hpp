@@ -12,6 +12,7 @@ struct Exponential : declared::Exponential {
     T fast;     ///< [1]
     T speed;    ///< [rad/s]
   };
+  static constexpr bool lanes = true;
 
   template <class T, class S>
   static S slide(const Params<T>& p, const At<S>& at) {

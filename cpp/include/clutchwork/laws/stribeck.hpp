@@ -7,6 +7,7 @@ namespace clutchwork::laws {
 struct Stribeck : declared::Stribeck {
   template <class T>
   struct Params : StribeckCurve<T> {};
+  static constexpr bool lanes = true;
 
   template <class T, class S>
   static S slide(const Params<T>& p, const At<S>& at) {

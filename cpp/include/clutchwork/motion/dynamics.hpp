@@ -14,7 +14,7 @@ namespace clutchwork {
 
 /// d := (sum of row' torque, state rates) at (t, y). The first part is M dz/dt.
 template <class Form, class T = typename Form::Scalar>
-[[gnu::noinline]] void evaluate(Form& form, double t, const T* y, T* d) {
+CLUTCHWORK_INLINE void evaluate_inline(Form& form, Real<T> t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
   const int nz = form.nz(), n = form.n();
   inputs_with(ws, t, y + nz);
@@ -35,6 +35,11 @@ template <class Form, class T = typename Form::Scalar>
   }
 }
 
+template <class Form, class T = typename Form::Scalar>
+[[gnu::noinline]] void evaluate(Form& form, Real<T> t, const T* y, T* d) {
+  evaluate_inline(form, t, y, d);
+}
+
 /// As evaluate, keeping rates and torques of the branches in ws.seen, for output and guards.
 template <class Form, class T = typename Form::Scalar>
 void observe(Form& form, double t, const T* y, T* d) {
@@ -52,7 +57,7 @@ void observe(Form& form, double t, const T* y, T* d) {
 
 /// evaluate plus all partial derivatives; dt := derivative of d by time.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void linearize(Form& form, double t, const T* y, T* d, T* dt, Edge<T>& edge) {
+CLUTCHWORK_INLINE void linearize(Form& form, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
   const int nz = form.nz(), n = form.n();
   inputs_with(ws, t, y + nz);
@@ -66,7 +71,8 @@ CLUTCHWORK_INLINE void linearize(Form& form, double t, const T* y, T* d, T* dt, 
     const Partial<T> p = branch_partial(ws, b, edge.rate[k], offset_slope(ws, k), y + nz, d + nz, out);
     ws.jacobian.partial[k] = p;
     form.push(k, p.torque, d);
-    if (value(p.by_time) != 0) form.push(k, p.by_time, dt);
+    // a lane without it adds zeros
+    if (any(value(p.by_time) != 0)) form.push(k, p.by_time, dt);
     for (int s = 0; s < b.states; ++s) dt[nz + b.state + s] = out.g_time[s];
   }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) edge.rate[k] = form.rate(k, y) + offset_rate(ws, k);
@@ -116,14 +122,16 @@ CLUTCHWORK_INLINE void multipliers(const Workspace<T>& ws, const T* torque, bool
     }
     return;
   }
-  sparse_multipliers(ws, torque, np, out);
+  if constexpr (!has_lanes<T>) sparse_multipliers(ws, torque, np, out);
 }
 
 /// Size of the time derivative of a capacity, which follows the load.
 template <class T>
 T capacity_swing(const Workspace<T>& ws, int c, T capacity) {
   const T load = load_of(ws, c);
-  return value(load) > 0 && value(capacity) < infinity ? abs(capacity * load_slope(ws, c) / load) : T(0);
+  return choose(
+      value(load) > 0 && value(capacity) < infinity, [&] { return abs(capacity * load_slope(ws, c) / load); },
+      [] { return T(0); });
 }
 
 /// Multipliers of the locked contacts, their drift and their capacities at the point that was linearized last.
@@ -142,19 +150,24 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
     size += abs(p.torque);
     drift[k] = p.by_rate * (edge.slope[k] - offset_slope(ws, k)) + p.by_time;
     for (int s = 0; s < b.states; ++s) drift[k] += ws.jacobian.f_state[b.state + s] * states[b.state + s];
-    const int nx = int(ws.sys.shared);
-    for (int j = 0; j < nx; ++j) drift[k] += ws.shared.torque_by[k * nx + j] * states[ws.sys.states - nx + j];
+    if constexpr (!Form::small) {
+      const int nx = int(ws.sys.shared);
+      for (int j = 0; j < nx; ++j) drift[k] += ws.shared.torque_by[k * nx + j] * states[ws.sys.states - nx + j];
+    }
   }
   multipliers(ws, torque, true, edge.multiplier);
   multipliers(ws, drift, false, edge.drift);
   for (int a = 0; a < m; ++a) {
     edge.noise[a] = T(1e-12) * size;
     edge.capacity[a] = capacity_at(ws, ws.held.contact[a], edge.multiplier[a]);
-    edge.swing[a] =
-        load_bends(ws, ws.held.contact[a]) ? capacity_swing(ws, ws.held.contact[a], edge.capacity[a]) : T(0);
+    edge.swing[a] = choose(
+        load_bends(ws, ws.held.contact[a]), [&] { return capacity_swing(ws, ws.held.contact[a], edge.capacity[a]); },
+        [] { return T(0); });
   }
-  for (int k = 0; k < ws.held.n_sets; ++k) [[unlikely]]
-    edge.room[k] = set_room(ws, k, edge.multiplier, edge.noise[0]);
+  if constexpr (!has_lanes<T>) {
+    for (int k = 0; k < ws.held.n_sets; ++k) [[unlikely]]
+      edge.room[k] = set_room(ws, k, edge.multiplier, edge.noise[0]);
+  }
 }
 
 /// Room of the dependent sets were the torques of their carriers to drift on for a time.
@@ -187,12 +200,12 @@ void expand(Form& form, const T* z, T* v, bool offset = true) {
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void floor_states(Form& form, const T* y) {
   Workspace<T>& ws = form.ws;
-  const double rtol = ws.options.rtol, atol = ws.options.atol;
+  const Real<T> rtol = ws.options.rtol, atol = ws.options.atol;
   for (int i = 0; i < form.ns(); ++i) ws.reduced.floor[i] = atol;
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
     if (b.states == 0) continue;
-    const double rate = atol + rtol * form.rate_size(k, y);
+    const Real<T> rate = atol + rtol * form.rate_size(k, y);
     for (int i = b.state; i < b.state + b.states; ++i)
       ws.reduced.floor[i] += ws.reduced.span[i] * abs(value(ws.jacobian.g_rate[i])) * rate;
   }
@@ -201,13 +214,13 @@ CLUTCHWORK_INLINE void floor_states(Form& form, const T* y) {
 /// Weighted RMS norm of an error in (v, states), relative to the larger of two points; a speed counts as no slower than
 /// a share of the fastest. docs/theory/integrators.md
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE double error_norm(Form& form, const T* error, const T* a, const T* b) {
+CLUTCHWORK_INLINE Real<T> error_norm(Form& form, const T* error, const T* a, const T* b) {
   // of the fastest speed
   constexpr double slow = 1e-3;
   const Workspace<T>& ws = form.ws;
-  const double rtol = ws.options.rtol, atol = ws.options.atol;
+  const Real<T> rtol = ws.options.rtol, atol = ws.options.atol;
   const int nv = Form::small ? int(ws.sys.speeds) : form.nz(), nz = form.nz(), ns = form.ns();
-  double *size = ws.reduced.size, *missed = ws.reduced.missed, fastest = 0, sum = 0;
+  Real<T>*size = ws.reduced.size, *missed = ws.reduced.missed, fastest = 0, sum = 0;
   for (int i = 0; i < nv; ++i) {
     T e = T(0), va = T(0), vb = T(0);
     if constexpr (Form::small) {
@@ -223,16 +236,16 @@ CLUTCHWORK_INLINE double error_norm(Form& form, const T* error, const T* a, cons
     fastest = larger(fastest, size[i]);
   }
   for (int i = 0; i < nv; ++i) {
-    const double x = missed[i] / (atol + rtol * larger(size[i], slow * fastest));
+    const Real<T> x = missed[i] / (atol + rtol * larger(size[i], Real<T>(slow) * fastest));
     sum += x * x;
   }
   if (ns > 0) floor_states(form, a);
   for (int i = 0; i < ns; ++i) {
-    const double s = larger(abs(value(a[nz + i])), abs(value(b[nz + i])));
-    const double x = value(error[nz + i]) / (ws.reduced.floor[i] + rtol * s);
+    const Real<T> s = larger(abs(value(a[nz + i])), abs(value(b[nz + i])));
+    const Real<T> x = value(error[nz + i]) / (ws.reduced.floor[i] + rtol * s);
     sum += x * x;
   }
-  return nv + ns > 0 ? sqrt(sum / (nv + ns)) : 0.0;
+  return nv + ns > 0 ? sqrt(sum / Real<T>(nv + ns)) : Real<T>(0);
 }
 
 }  // namespace clutchwork

@@ -4,86 +4,99 @@
 /// Two forms of the same reduced motion M dz/dt = sum of row' torque, behind one set of functions.
 namespace clutchwork {
 
-/// Up to a handful of speeds: M = 1, dense rows, sizes known to the compiler.
-template <class T, int NZ, int NS>
-struct SmallForm {
-  using Scalar = T;
-  static constexpr bool small = true;
-  static constexpr int fixed_size = NZ + NS, own_states = NS;
-  Workspace<T>& ws;
-  T w[NZ > 0 ? NZ * NZ : 1];
-
-  explicit SmallForm(Workspace<T>& workspace) : ws(workspace) {}
+/// Numbers of speeds and states that the compiler knows.
+template <int NZ, int NS>
+struct KnownSize {
+  static constexpr int most_speeds = NZ, most = NZ + NS;
   static constexpr int nz() { return NZ; }
   static constexpr int ns() { return NS; }
-  static constexpr int n() { return NZ + NS; }
+};
+
+/// Up to a handful of speeds: M = 1, dense rows.
+template <class T, class Size>
+struct DenseForm : Size {
+  using Scalar = T;
+  static constexpr bool small = true;
+  static constexpr int fixed_size = Size::most, own_states = Size::most - Size::most_speeds;
+  using Size::ns, Size::nz;
+  Workspace<T>& ws;
+  T w[Size::most_speeds > 0 ? Size::most_speeds * Size::most_speeds : 1];
+
+  explicit DenseForm(Workspace<T>& workspace, const Size& size = {}) : Size(size), ws(workspace) {}
+  constexpr int n() const { return nz() + ns(); }
 
   CLUTCHWORK_INLINE T rate(int k, const T* z) const {
-    const T* r = ws.reduced.row_z + k * NZ;
+    const T* r = ws.reduced.row_z + k * nz();
     T s = T(0);
-    for (int i = 0; i < NZ; ++i) s += r[i] * z[i];
+    for (int i = 0; i < nz(); ++i) s += r[i] * z[i];
     return s;
   }
   /// Size of what makes the rate of branch k.
-  CLUTCHWORK_INLINE double rate_size(int k, const T* z) const {
-    const T* r = ws.reduced.row_z + k * NZ;
-    double s = 0;
-    for (int i = 0; i < NZ; ++i) s += abs(value(r[i] * z[i]));
+  CLUTCHWORK_INLINE Real<T> rate_size(int k, const T* z) const {
+    const T* r = ws.reduced.row_z + k * nz();
+    Real<T> s = 0;
+    for (int i = 0; i < nz(); ++i) s += abs(value(r[i] * z[i]));
     return s;
   }
   CLUTCHWORK_INLINE void push(int k, T torque, T* q) const {
-    const T* r = ws.reduced.row_z + k * NZ;
-    for (int i = 0; i < NZ; ++i) q[i] += r[i] * torque;
+    const T* r = ws.reduced.row_z + k * nz();
+    for (int i = 0; i < nz(); ++i) q[i] += r[i] * torque;
   }
   CLUTCHWORK_INLINE void add_mass_times(T factor, const T* x, T* y) const {
-    for (int i = 0; i < NZ; ++i) y[i] += factor * x[i];
+    for (int i = 0; i < nz(); ++i) y[i] += factor * x[i];
   }
   CLUTCHWORK_INLINE void solve_mass(T*) const {}
 
   /// w := inverse of scale M - sum row' stiff row (symmetric).
-  CLUTCHWORK_INLINE bool factor(T scale, const T* stiff) {
-    for (int i = 0; i < NZ * NZ; ++i) w[i] = T(0);
+  CLUTCHWORK_INLINE Truth<T> factor(T scale, const T* stiff) {
+    for (int i = 0; i < nz() * nz(); ++i) w[i] = T(0);
     for (int k = 0; k < ws.n_branches; ++k) {
-      if (value(stiff[k]) == 0) continue;
-      const T* r = ws.reduced.row_z + k * NZ;
-      for (int i = 0; i < NZ; ++i) {
+      if (all(value(stiff[k]) == 0)) continue;
+      const T* r = ws.reduced.row_z + k * nz();
+      for (int i = 0; i < nz(); ++i) {
         const T s = stiff[k] * r[i];
-        for (int j = 0; j <= i; ++j) w[i * NZ + j] -= s * r[j];
+        for (int j = 0; j <= i; ++j) w[i * nz() + j] -= s * r[j];
       }
     }
-    for (int i = 0; i < NZ; ++i) w[i * NZ + i] += scale;
+    for (int i = 0; i < nz(); ++i) w[i * nz() + i] += scale;
     return invert_symmetric();
   }
   CLUTCHWORK_INLINE void solve(T* b) const {
-    T x[NZ > 0 ? NZ : 1];
-    for (int i = 0; i < NZ; ++i) {
+    T x[Size::most_speeds > 0 ? Size::most_speeds : 1];
+    for (int i = 0; i < nz(); ++i) {
       T s = T(0);
-      for (int j = 0; j < NZ; ++j) s += w[i * NZ + j] * b[j];
+      for (int j = 0; j < nz(); ++j) s += w[i * nz() + j] * b[j];
       x[i] = s;
     }
-    for (int i = 0; i < NZ; ++i) b[i] = x[i];
+    for (int i = 0; i < nz(); ++i) b[i] = x[i];
   }
 
  private:
   // Gauss-Jordan without pivoting on the symmetric matrix, whose lower half is given
-  CLUTCHWORK_INLINE bool invert_symmetric() {
-    for (int i = 0; i < NZ; ++i) {
-      for (int j = 0; j < i; ++j) w[j * NZ + i] = w[i * NZ + j];
+  CLUTCHWORK_INLINE Truth<T> invert_symmetric() {
+    Truth<T> regular(true);
+    for (int i = 0; i < nz(); ++i) {
+      for (int j = 0; j < i; ++j) w[j * nz() + i] = w[i * nz() + j];
     }
-    for (int c = 0; c < NZ; ++c) {
-      if (value(w[c * NZ + c]) == 0) return false;
-      const T inverse = T(1) / w[c * NZ + c];
-      for (int j = 0; j < NZ; ++j) w[c * NZ + j] = j == c ? inverse : w[c * NZ + j] * inverse;
-      for (int r = 0; r < NZ; ++r) {
+    for (int c = 0; c < nz(); ++c) {
+      regular = regular && value(w[c * nz() + c]) != 0;
+      if (none(regular)) break;
+      const T inverse = T(1) / w[c * nz() + c];
+      for (int j = 0; j < nz(); ++j) w[c * nz() + j] = j == c ? inverse : w[c * nz() + j] * inverse;
+      for (int r = 0; r < nz(); ++r) {
         if (r == c) continue;
-        const T factor = w[r * NZ + c];
-        for (int j = 0; j < NZ; ++j)
-          w[r * NZ + j] = j == c ? -factor * inverse : w[r * NZ + j] - factor * w[c * NZ + j];
+        const T factor = w[r * nz() + c];
+        for (int j = 0; j < nz(); ++j)
+          w[r * nz() + j] = j == c ? -factor * inverse : w[r * nz() + j] - factor * w[c * nz() + j];
       }
     }
-    return true;
+    return regular;
   }
 };
+
+/// The exact sizes that are compiled for one run.
+template <class T, int NZ, int NS>
+using SmallForm = DenseForm<T, KnownSize<NZ, NS>>;
 
 /// Any size: compressed rows, reduced mass, LDL' in an envelope.
 template <class T>

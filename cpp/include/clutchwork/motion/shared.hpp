@@ -32,9 +32,11 @@ CLUTCHWORK_INLINE void shared_inputs(Workspace<T>& ws, const T* state) {
 
 /// All inputs of torques and contacts at time t for the given states.
 template <class T>
-CLUTCHWORK_INLINE void inputs_with(Workspace<T>& ws, double t, const T* state) {
+CLUTCHWORK_INLINE void inputs_with(Workspace<T>& ws, Real<T> t, const T* state) {
   inputs_at(ws, t);
-  if (ws.in.n_shared_refs > 0) shared_inputs(ws, state);
+  if constexpr (!has_lanes<T>) {
+    if (ws.in.n_shared_refs > 0) shared_inputs(ws, state);
+  }
 }
 
 /// Where a reference to a rate or a heat points: its branch, -1 while that is locked; `heat` tells which.

@@ -121,30 +121,35 @@ Status take_outside(Workspace<T>& ws) {
   return switch_modes(ws);
 }
 
-/// Integrate to t_end, filling rows and events on the way.
+/// Up to where the next phase starts, or goes on. `running`: it is ready.
 template <class T>
-Status advance(Workspace<T>& ws, double t_end, Sink& sink) {
+Status reach_phase(Workspace<T>& ws) {
   if (!ws.started) {
     if (!start(ws)) return Status::bad_system;
     const Status status = switch_modes(ws);
     ws.started = status == Status::running;
     if (!ws.started) return status;
   }
-  while (true) {
-    if (ws.events.n >= EventBuffer::room) return Status::events_full;
-    if (ws.params_changed) {
-      // the torques before are those of the present modes
-      if (ws.fresh_phase && !enter_mode(ws)) return Status::no_mode;
-      const Status status = take_outside(ws);
-      if (status != Status::running) return status;
-    }
+  if (ws.events.n >= EventBuffer::room) return Status::events_full;
+  if (ws.params_changed) {
+    // the torques before are those of the present modes
     if (ws.fresh_phase && !enter_mode(ws)) return Status::no_mode;
-    Status status = dispatch(ws, t_end, sink);
-    if (status != Status::running) return status;
-    if (ws.stiffened) continue;
-    status = switch_modes(ws);
+    const Status status = take_outside(ws);
     if (status != Status::running) return status;
   }
+  return ws.fresh_phase && !enter_mode(ws) ? Status::no_mode : Status::running;
+}
+
+/// Integrate to t_end, filling rows and events on the way.
+template <class T>
+Status advance(Workspace<T>& ws, double t_end, Sink& sink) {
+  Status status = reach_phase(ws);
+  while (status == Status::running) {
+    status = dispatch(ws, t_end, sink);
+    if (status == Status::running && !ws.stiffened) status = switch_modes(ws);
+    if (status == Status::running) status = reach_phase(ws);
+  }
+  return status;
 }
 
 }  // namespace clutchwork

@@ -16,10 +16,22 @@ namespace clutchwork {
 
 /// Margin of a locked contact: how much torque is left before it slips, round-off conceded.
 template <class T>
-CLUTCHWORK_INLINE double margin(const Workspace<T>& ws, int a, T torque, T capacity) {
+CLUTCHWORK_INLINE Real<T> margin(const Workspace<T>& ws, int a, T torque, T capacity) {
   capacity += ws.here.noise[a];
   if (!contact_one_way(ws, ws.held.contact[a])) return value(capacity) - abs(value(torque));
   return smaller(value(torque + capacity), value(freewheel_limit(ws, ws.held.contact[a]) - torque));
+}
+
+/// Whether the margin of a locked contact exceeds what can change in a step of length h; its margins at both ends.
+template <class T>
+CLUTCHWORK_INLINE Truth<T> holds_on(const Workspace<T>& ws, int a, Real<T> h, Real<T>& before, Real<T>& after) {
+  const auto &e0 = ws.here, &e1 = ws.there;
+  before = margin(ws, a, e0.multiplier[a], e0.capacity[a]);
+  after = margin(ws, a, e1.multiplier[a], e1.capacity[a]);
+  const Real<T> change = abs(value(e1.multiplier[a] - e0.multiplier[a])) + abs(value(e1.capacity[a] - e0.capacity[a]));
+  const Real<T> drift = h * larger(abs(value(e0.drift[a])), abs(value(e1.drift[a])));
+  const Real<T> swing = h * value(larger(e0.swing[a], e1.swing[a]));
+  return smaller(before, after) > larger(change, drift + swing);
 }
 
 /// Whether a freewheel was hit at the torque at which it gives way, and not where its torque ends.
@@ -77,7 +89,6 @@ double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
 template <class Form, class Integrator>
 CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
-  const auto &e0 = ws.here, &e1 = ws.there;
   int* watched = ws.guard.limit;
   int n = 0;
   double m0 = infinity, m1 = infinity;
@@ -90,12 +101,8 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
       continue;
     }
     if (ws.held.in_set[a] != 0) continue;
-    const double before = margin(ws, a, e0.multiplier[a], e0.capacity[a]),
-                 after = margin(ws, a, e1.multiplier[a], e1.capacity[a]);
-    const double change = abs(value(e1.multiplier[a] - e0.multiplier[a])) + abs(value(e1.capacity[a] - e0.capacity[a]));
-    const double drift = step.h * larger(abs(value(e0.drift[a])), abs(value(e1.drift[a])));
-    const double swing = step.h * value(larger(e0.swing[a], e1.swing[a]));
-    if (smaller(before, after) > larger(change, drift + swing)) continue;
+    double before, after;
+    if (holds_on(ws, a, step.h, before, after)) continue;
     watched[n++] = a;
     m0 = smaller(m0, before), m1 = smaller(m1, after);
   }

@@ -149,23 +149,30 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
   }
 }
 
-/// Slips and kinks: a cubic through values and slopes proves most of them clear.
+/// Whether a cubic through values and slopes proves that branch k stays on its side of a level; its distances at both
+/// ends.
+template <class T>
+CLUTCHWORK_INLINE Truth<T> stays_clear(const Workspace<T>& ws, int k, Real<T> sign, Real<T> level, Real<T> h,
+                                       Real<T> noise, Real<T>& g0, Real<T>& g1) {
+  const auto &e0 = ws.here, &e1 = ws.there;
+  g0 = sign * (value(e0.rate[k]) - level), g1 = sign * (value(e1.rate[k]) - level);
+  // a start behind the surface, within what counts as zero, is on it: docs/theory/events.md, rule 4
+  const Real<T> shift = select(g0 < 0, smaller(-g0, 1e3 * noise), Real<T>(0));
+  g0 += shift, g1 += shift;
+  const Real<T> c0 = g0 + sign * h * value(e0.slope[k]) / 3, c1 = g1 - sign * h * value(e1.slope[k]) / 3;
+  return g1 >= 0 && c0 >= 0 && c1 >= 0;
+}
+
+/// Slips and kinks.
 template <class Form, class Integrator>
 CLUTCHWORK_INLINE void find_line(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
-  const double h = step.h;
-  const auto &e0 = ws.here, &e1 = ws.there;
   // round-off of a rate: far below the slip that counts as zero
   const double noise = 1e-3 * slip_tolerance(ws);
   for (int i = 0; i < ws.guard.n_lines; ++i) {
     const LineGuard& g = ws.guard.line[i];
-    const int k = g.branch;
-    double g0 = g.sign * (value(e0.rate[k]) - g.level), g1 = g.sign * (value(e1.rate[k]) - g.level);
-    // a start behind the surface, within what counts as zero, is on it: docs/theory/events.md, rule 4
-    const double shift = g0 < 0 ? smaller(-g0, 1e3 * noise) : 0.0;
-    g0 += shift, g1 += shift;
-    const double c0 = g0 + g.sign * h * value(e0.slope[k]) / 3, c1 = g1 - g.sign * h * value(e1.slope[k]) / 3;
-    if (g1 >= 0 && c0 >= 0 && c1 >= 0) continue;
+    double g0, g1;
+    if (stays_clear(ws, g.branch, g.sign, g.level, step.h, noise, g0, g1)) continue;
     const double s = line_crossing<Form, Integrator>(form, step, g, g0, g1, noise, hit.s);
     if (is_first(hit, s)) hit = {Hit::line, i, s, -1};
   }

@@ -10,6 +10,7 @@
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/output.hpp>
+#include <clutchwork/run/pace.hpp>
 #include <clutchwork/run/pass.hpp>
 #include <clutchwork/run/power.hpp>
 #include <clutchwork/run/snapshot.hpp>
@@ -22,8 +23,12 @@ namespace clutchwork {
 
 /// Integration until an event, the end time, or a full buffer.
 template <class Form, class Integrator>
-class Phase {
+class Phase : public Pace<typename Form::Scalar> {
   using T = typename Form::Scalar;
+  using Base = Pace<T>;
+  using Base::landings_, Base::rejected_, Base::cut_, Base::over_, Base::status_;
+  using Base::what_is_spent, Base::plan_step, Base::end_of_step, Base::shorten, Base::has_rows, Base::move_on;
+  using Base::ws_, Base::sink_, Base::t_end_, Base::h_, Base::reach_, Base::stop_, Base::error_, Base::before_;
   // a step may be repeated so often to end on an event
   static constexpr int most_landings = 4;
   // of the tolerance: cuts come on top of steps, and there may be one every few steps
@@ -32,40 +37,51 @@ class Phase {
   static constexpr int most_strained = 8;
   static constexpr double strain = 1.5;
 
-  Workspace<T>& ws_;
   Form form_;
   Step<Form> step_;
-  Sink& sink_;
-  const double t_end_;
-  double h_ = 0;       ///< [s] next step
-  double reach_ = 0;   ///< [s] present step
-  double stop_ = 0;    ///< [s] time that it must not pass
-  double error_ = 0;   ///< of the present step in units of the tolerance
-  double before_ = 0;  ///< [s] length of the step that was cut to end on an event
-  int landings_ = 0;
-  bool rejected_ = false, cut_ = false, over_ = false;
-  Status status_ = Status::running;
 
  public:
-  Phase(Workspace<T>& ws, double t_end, Sink& sink) : ws_(ws), form_(ws), step_(form_), sink_(sink), t_end_(t_end) {}
+  Phase(Workspace<T>& ws, double t_end, Sink& sink) : Base(ws, t_end, sink), form_(ws), step_(form_) {
+    Base::rows_ = step_.k(0), Base::width_ = form_.n();
+  }
 
   /// `running`: an event is waiting to be settled.
   Status run() {
     begin();
+    return resume();
+  }
+
+  /// The same for a phase that has begun.
+  [[gnu::noinline]] Status resume() {
     while (!over_) {
-      if (!may_step() || !take_step()) continue;
-      const Hit hit = find_hit<Form, Integrator>(form_, step_);
-      if (must_land(hit)) {
-        land(hit.s);
-      } else if (write(hit.s)) {
-        hit.what == Hit::nothing ? accept() : meet(hit);
-      }
+      if (may_step() && take_step()) settle_step();
     }
     return status_;
   }
 
- private:
-  void begin() {
+  // What a phase does on its own while its steps are taken with others: docs/theory/lanes.md.
+
+  /// A knot, or the end. False: the phase is over.
+  [[gnu::noinline]] bool settle_due() { return may_step(); }
+  /// Whatever happens inside the step, of which the rows of both ends and the stages are given.
+  [[gnu::noinline]] void settle_given() {
+    step_.t = ws_.time, step_.h = reach_, step_.dense = false;
+    settle_step();
+  }
+  /// The step has become too short. The inputs are those of its last stage.
+  [[gnu::noinline]] void collapse() {
+    ws_.in.time = -infinity;
+    blame(form_, step_);
+    leave(ws_.detail.component >= 0 || !(error_ <= 1e300) ? Status::not_finite : Status::step_collapse);
+  }
+  /// To where the phase stands.
+  [[gnu::noinline]] void leave(Status status) {
+    export_state(form_, step_.y0());
+    status_ = status;
+    over_ = true;
+  }
+
+  [[gnu::noinline]] void begin() {
     const bool fresh = ws_.fresh_phase, event = fresh && !ws_.stiffened;
     if constexpr (!Form::small) {
       if (fresh) form_.solve_mass(ws_.reduced.y);
@@ -82,13 +98,8 @@ class Phase {
     h_ = ws_.last_step > 0 ? ws_.last_step : first_step(form_, step_, t_end_ - ws_.time);
   }
 
+ private:
   CLUTCHWORK_INLINE void look_here() { look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here); }
-
-  void leave(Status status) {
-    export_state(form_, step_.y0());
-    status_ = status;
-    over_ = true;
-  }
 
   /// The modes must be decided anew.
   void hand_over(Cause cause, int contact = -1) {
@@ -120,24 +131,21 @@ class Phase {
     if (pass_knot(form_, step_)) hand_over(Cause::input);
   }
 
-  Status what_is_spent() const {
-    if (sink_.steps > 0 && sink_.at + sink_.steps + 2 > sink_.count) return Status::rows_full;
-    if (ws_.events.n >= EventBuffer::room) return Status::events_full;
-    if (ws_.statistics.steps + ws_.statistics.rejected >= ws_.options.max_steps) return Status::too_many_steps;
-    return ws_.poll.stops() ? Status::interrupted : Status::running;
-  }
-
   // ------------------------------------------------------------------------------------------------------------- step
 
-  /// One step, onto knots and the end exactly. False: rejected, or the run cannot go on.
+  /// One step. False: rejected, or the run cannot go on.
   CLUTCHWORK_INLINE bool take_step() {
-    stop_ = smaller(t_end_, ws_.in.next_knot);
-    reach_ = smaller(smaller(h_, signal_step(ws_)), ws_.options.max_step);
-    cut_ = ws_.time + 1.0001 * reach_ >= stop_;
-    if (cut_) reach_ = stop_ - ws_.time;
+    plan_step();
     step_.t = ws_.time;
-    error_ = Integrator::advance(form_, step_, reach_);
-    if (!all_finite(form_.n(), step_.y1())) error_ = infinity;
+    const double error = Integrator::advance(form_, step_, reach_);
+    if (!judge(error, all_finite(form_.n(), step_.y1()))) return false;
+    look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
+    return true;
+  }
+
+  /// Whether a step counts.
+  CLUTCHWORK_INLINE bool judge(double error, bool finite) {
+    error_ = finite ? error : infinity;
     if (error_ <= 1 && ws_.options.work && rates_bend(ws_))
       error_ = larger(error_, work_error<Form, Integrator>(form_, step_));
     if (!(error_ <= 1)) {
@@ -145,18 +153,21 @@ class Phase {
       return false;
     }
     ++ws_.statistics.steps;
-    look(form_, step_, cut_ ? stop_ : ws_.time + reach_, step_.y1(), step_.f1(), step_.dt1(), ws_.there);
     return true;
   }
 
+  /// What happens inside a step, and where the run goes on from.
+  [[gnu::noinline]] void settle_step() {
+    const Hit hit = find_hit<Form, Integrator>(form_, step_);
+    if (must_land(hit)) {
+      land(hit.s);
+    } else if (write(hit.s)) {
+      hit.what == Hit::nothing ? accept() : meet(hit);
+    }
+  }
+
   void reject() {
-    ++ws_.statistics.rejected;
-    h_ = reach_ * (error_ < 1e300 ? larger(0.2, 0.9 * pow(error_, -0.2)) : 0.1);
-    rejected_ = true;
-    before_ = 0;
-    if (h_ > 1e-14 * larger(1e-2, abs(ws_.time))) return;
-    blame(form_, step_);
-    leave(ws_.detail.component >= 0 || !(error_ <= 1e300) ? Status::not_finite : Status::step_collapse);
+    if (!shorten()) collapse();
   }
 
   /// Whether the step must be repeated to end where a guard was hit, because its own estimate does not speak for that
@@ -179,9 +190,7 @@ class Phase {
 
   /// Rows and integrals of the step up to the share s. False: a row is not finite, or the caller wants to stop.
   CLUTCHWORK_INLINE bool write(double s) {
-    const double end = ws_.time + s * reach_;
-    // where no time passes the row is there already
-    const bool rows = end > ws_.time && (sink_.steps > 0 || (sink_.at < sink_.count && sink_.times[sink_.at] <= end));
+    const bool rows = has_rows(s);
     if (!(rows || ws_.options.work || ws_.options.angles) || s <= 0) return true;
     if (!step_.dense) Integrator::prepare_dense(form_, step_);
     if (ws_.options.work) fit_power(form_, step_, s);
@@ -204,13 +213,7 @@ class Phase {
     const Edge<T> edge = ws_.here;
     ws_.here = ws_.there;
     ws_.there = edge;
-    ws_.time = cut_ ? stop_ : ws_.time + reach_;
-    const double growth = 0.9 * pow(larger(error_, 1e-10), -0.2);
-    const double next = reach_ * smaller(rejected_ ? 1.0 : 6.0, larger(0.2, growth));
-    h_ = cut_ ? larger(next, h_) : larger(next, before_);
-    rejected_ = false;
-    before_ = 0, landings_ = 0;
-    ws_.last_step = h_;
+    move_on();
     if (ws_.guard.n_undirected > 0) direct_open(form_, ws_.here);
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) leave(Status::chatter);
     if constexpr (!Integrator::stiff) {

@@ -32,7 +32,7 @@ void balance_massless(SparseForm<T>& form, Step<SparseForm<T>>& step) {
 
 /// Derivatives, rates, slopes, multipliers at one end of the step.
 template <class Form, class T = typename Form::Scalar>
-[[gnu::noinline]] void look(Form& form, Step<Form>& step, double t, const T* y, T* d, T* dt, Edge<T>& edge) {
+CLUTCHWORK_INLINE void look_inline(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
   linearize(form, t, y, d, dt, edge);
   if constexpr (Form::small) {
     slopes(form, d, edge);
@@ -43,6 +43,11 @@ template <class Form, class T = typename Form::Scalar>
     slopes(form, velocity, edge);
   }
   sense(form, d, edge);
+}
+
+template <class Form, class T = typename Form::Scalar>
+[[gnu::noinline]] void look(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
+  look_inline(form, step, t, y, d, dt, edge);
 }
 
 /// A first step from the sizes of state and slope (E. Hairer, G. Wanner, Solving ODEs I, section II.4, shortened).
@@ -115,8 +120,8 @@ double work_error(Form& form, Step<Form>& step) {
 
 /// Whether all of a state is finite.
 template <class T>
-CLUTCHWORK_INLINE bool all_finite(int n, const T* y) {
-  double sum = 0;
+CLUTCHWORK_INLINE Truth<T> all_finite(int n, const T* y) {
+  Real<T> sum = 0;
   for (int i = 0; i < n; ++i) sum += value(y[i]) * 0;
   return sum == 0;
 }

@@ -64,7 +64,8 @@ class Arena {
   explicit Arena(unsigned char* base) : base_(base) {}
   template <class P>
   void take(P*& p, std::int64_t n) {
-    at_ = (at_ + 15) / 16 * 16;
+    constexpr std::int64_t step = alignof(P) > 16 ? alignof(P) : 16;
+    at_ = (at_ + step - 1) / step * step;
     p = base_ ? reinterpret_cast<P*>(base_ + at_) : nullptr;
     at_ += (n > 0 ? n : 1) * std::int64_t(sizeof(P));
     if (base_) raise_fence(base_ + at_);

@@ -76,9 +76,9 @@ struct Reduced {
   T *z_basis = nullptr, *y_basis = nullptr;
   T *row_z = nullptr, *offset = nullptr;                     ///< of each branch
   T *momentum = nullptr, *column = nullptr, *row = nullptr;  ///< scratch, of each speed
-  double* span = nullptr;                                    ///< of each state [s]
-  double *size = nullptr, *missed = nullptr;                 ///< scratch, of each speed: its size in a step, its error
-  double* floor = nullptr;                                   ///< scratch, of each state: its absolute tolerance
+  Real<T>* span = nullptr;                                   ///< of each state [s]
+  Real<T>*size = nullptr, *missed = nullptr;                 ///< scratch, of each speed: its size in a step, its error
+  Real<T>* floor = nullptr;                                  ///< scratch, of each state: its absolute tolerance
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {

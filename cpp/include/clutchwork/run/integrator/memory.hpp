@@ -19,27 +19,32 @@ struct StepRows<T, 0> {
   CLUTCHWORK_INLINE T* row(int i) { return data + i * n; }
 };
 
+/// Rows of a step: the stages come first, then these. The stages are numbered from 0.
+struct StepRow {
+  enum Number : int { y0 = 8, y1, p, f0 = 13, f1, dt0, dt1, u, point, slope };
+};
+
 /// A finished step from y0 to y1 with a quartic between:
 /// (1-s) y0 + s y1 + s (1-s) (p0 + s p1 + s^2 p2), s in [0, 1].
 template <class Form>
 struct Step {
   using T = typename Form::Scalar;
   StepRows<T, Form::fixed_size> rows;
-  double t = 0, h = 0;
+  Real<T> t = 0, h = 0;
   bool dense = false;
 
   explicit Step(Form& form) : rows(form.ws, form.n()) {}
   CLUTCHWORK_INLINE T* k(int i) { return rows.row(i); }
-  CLUTCHWORK_INLINE T* y0() { return rows.row(8); }
-  CLUTCHWORK_INLINE T* y1() { return rows.row(9); }
-  CLUTCHWORK_INLINE T* p(int i) { return rows.row(10 + i); }
-  CLUTCHWORK_INLINE T* f0() { return rows.row(13); }  // d at y0
-  CLUTCHWORK_INLINE T* f1() { return rows.row(14); }  // d at y1
-  CLUTCHWORK_INLINE T* dt0() { return rows.row(15); }
-  CLUTCHWORK_INLINE T* dt1() { return rows.row(16); }
-  CLUTCHWORK_INLINE T* u() { return rows.row(17); }
-  CLUTCHWORK_INLINE T* point() { return rows.row(18); }
-  CLUTCHWORK_INLINE T* slope() { return rows.row(19); }
+  CLUTCHWORK_INLINE T* y0() { return rows.row(StepRow::y0); }
+  CLUTCHWORK_INLINE T* y1() { return rows.row(StepRow::y1); }
+  CLUTCHWORK_INLINE T* p(int i) { return rows.row(StepRow::p + i); }
+  CLUTCHWORK_INLINE T* f0() { return rows.row(StepRow::f0); }  // d at y0
+  CLUTCHWORK_INLINE T* f1() { return rows.row(StepRow::f1); }  // d at y1
+  CLUTCHWORK_INLINE T* dt0() { return rows.row(StepRow::dt0); }
+  CLUTCHWORK_INLINE T* dt1() { return rows.row(StepRow::dt1); }
+  CLUTCHWORK_INLINE T* u() { return rows.row(StepRow::u); }
+  CLUTCHWORK_INLINE T* point() { return rows.row(StepRow::point); }
+  CLUTCHWORK_INLINE T* slope() { return rows.row(StepRow::slope); }
 };
 
 /// The state at t + s h into `out`.

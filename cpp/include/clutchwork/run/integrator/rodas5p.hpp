@@ -48,12 +48,12 @@ struct Rodas5P {
 
   /// Fold the states of the branches into effective dampings and factor. docs/theory/integrators.md
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE bool factor(Form& form, T scale) {
-    if (!factor_motion(form, scale)) return false;
+  static CLUTCHWORK_INLINE Truth<T> factor(Form& form, T scale) {
+    const Truth<T> regular = factor_motion(form, scale);
     if constexpr (!Form::small) {
-      if (form.ws.sys.shared > 0) return factor_border(form, scale, [&](T* b) { solve_motion(form, b); });
+      if (regular && form.ws.sys.shared > 0) return factor_border(form, scale, [&](T* b) { solve_motion(form, b); });
     }
-    return true;
+    return regular;
   }
 
   /// b := (scale M - J)^-1 b.
@@ -67,7 +67,7 @@ struct Rodas5P {
 
   /// As factor, with the shared states held.
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE bool factor_motion(Form& form, T scale) {
+  static CLUTCHWORK_INLINE Truth<T> factor_motion(Form& form, T scale) {
     Workspace<T>& ws = form.ws;
     T* stiff = ws.stages.stiff;
     for (int k = 0; k < ws.n_branches; ++k) {
@@ -81,12 +81,15 @@ struct Rodas5P {
         stiff[k] += ws.jacobian.f_state[b.state] * inverse[0] * ws.jacobian.g_rate[b.state];
         continue;
       }
-      const int m = b.states;
-      for (int i = 0; i < m * m; ++i) inverse[i] = -g[i];
-      for (int i = 0; i < m; ++i) inverse[i * m + i] += scale;
-      if (!invert(m, inverse, ws.stages.pivot)) return false;
-      for (int i = 0; i < m; ++i)
-        stiff[k] += ws.jacobian.f_state[b.state + i] * dot(m, inverse + i * m, ws.jacobian.g_rate + b.state);
+      // no component with more states computes with lanes
+      if constexpr (!has_lanes<T>) {
+        const int m = b.states;
+        for (int i = 0; i < m * m; ++i) inverse[i] = -g[i];
+        for (int i = 0; i < m; ++i) inverse[i * m + i] += scale;
+        if (!invert(m, inverse, ws.stages.pivot)) return false;
+        for (int i = 0; i < m; ++i)
+          stiff[k] += ws.jacobian.f_state[b.state + i] * dot(m, inverse + i * m, ws.jacobian.g_rate + b.state);
+      }
     }
     return form.factor(scale, stiff);
   }
@@ -147,8 +150,8 @@ struct Rodas5P {
   template <class Form, class T = typename Form::Scalar>
   static CLUTCHWORK_INLINE void stage_slope(Form& form, Step<Form>& step, int s, const T* u, T* mix, T* k) {
     const int n = form.n(), nz = form.nz(), ns = form.ns();
-    const T ih = T(1 / step.h);
-    evaluate(form, step.t + node[s] * step.h, u, k);
+    const T ih = T(Real<T>(1) / step.h);
+    evaluate(form, step.t + Real<T>(node[s]) * step.h, u, k);
     for (int i = 0; i < n; ++i) {
       T x = T(0);
       for (int j = 0; j < s; ++j) x += T(c[s][j]) * step.k(j)[i];
@@ -160,9 +163,10 @@ struct Rodas5P {
 
   /// One step of length h from step.y0 with f0 and dt0 known; returns the error in units of the tolerance.
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE double advance(Form& form, Step<Form>& step, double h) {
+  static CLUTCHWORK_INLINE Real<T> advance(Form& form, Step<Form>& step, Real<T> h) {
     const int n = form.n();
-    if (!factor(form, T(1 / (gamma * h)))) return infinity;
+    const Truth<T> regular = factor(form, T(Real<T>(1) / (Real<T>(gamma) * h)));
+    if (none(regular)) return infinity;
     step.h = h;
     step.dense = false;
     T *u = step.u(), *y0 = step.y0();
@@ -178,14 +182,14 @@ struct Rodas5P {
         stage_slope(form, step, s, u, mix, k);
       }
       if (s < 5) {
-        const T hd = T(h * d[s]);
+        const T hd = T(h * Real<T>(d[s]));
         for (int i = 0; i < n; ++i) k[i] += hd * step.dt0()[i];
       }
       solve(form, k);
     }
-    form.ws.statistics.evaluations += 7;
+    form.ws.statistics.evaluations += count_where(regular, 7);
     for (int i = 0; i < n; ++i) step.y1()[i] = u[i] + step.k(7)[i];
-    return error_norm(form, step.k(7), y0, step.y1());
+    return select(regular, error_norm(form, step.k(7), y0, step.y1()), Real<T>(infinity));
   }
 
   /// Coefficients of the quartic.

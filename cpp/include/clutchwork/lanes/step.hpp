@@ -1,0 +1,84 @@
+#pragma once
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/lanes/inputs.hpp>
+#include <clutchwork/run/guards.hpp>
+#include <clutchwork/run/integrator/rodas5p.hpp>
+#include <clutchwork/run/step.hpp>
+
+/// A step of eight lanes: the functions of one run, compiled for the registers of a processor. docs/theory/lanes.md
+namespace clutchwork {
+
+/// Lanes in which something may happen inside the step.
+template <int R>
+CLUTCHWORK_INLINE Mask<R> doubtful_inline(const Workspace<Lanes<R>>& ws, const Lanes<R>& h) {
+  Mask<R> clear(true);
+  Lanes<R> start, end;
+  for (int l = 0; l < ws.guard.n_lines; ++l) {
+    const LaneLine<R>& g = ws.guard.line[l];
+    clear = clear && stays_clear(ws, g.branch, g.sign, g.level, h, ws.noise, start, end);
+  }
+  for (int a = 0; a < ws.held.n; ++a) clear = clear && holds_on(ws, a, h, start, end);
+  // open contacts that have started to move get their direction
+  for (int k = ws.n_branches; ws.guard.n_undirected > 0 && k < ws.n_rates; ++k) {
+    if (ws.branch[k].sign == 0) clear = clear && abs(ws.there.rate[k]) <= 1e-10;
+  }
+  return !clear;
+}
+
+// out of line: what is inlined for one run is several times as long for eight
+template <int R>
+[[gnu::noinline]] Lanes<R> branch_torque(const Workspace<Lanes<R>>& ws, const Branch<Lanes<R>>& b, const Lanes<R>& rate,
+                                         const Lanes<R>* state, Lanes<R>* rates) {
+  return branch_torque<Lanes<R>>(ws, b, rate, state, rates);
+}
+template <int R>
+[[gnu::noinline]] Partial<Lanes<R>> branch_partial(const Workspace<Lanes<R>>& ws, const Branch<Lanes<R>>& b,
+                                                   const Lanes<R>& rate, const Lanes<R>& rate_slope,
+                                                   const Lanes<R>* state, Lanes<R>* rates,
+                                                   const StatePartials<Lanes<R>>& out) {
+  return branch_partial_inline<Lanes<R>>(ws, b, rate, rate_slope, state, rates, out);
+}
+template <int R, int NZ>
+[[gnu::noinline]] void evaluate(LaneForm<R, NZ>& form, const Lanes<R>& t, const Lanes<R>* y, Lanes<R>* d) {
+  evaluate_inline(form, t, y, d);
+}
+
+/// Call f with a step and its form, the number of speeds known to the compiler.
+template <int R, int NZ = 1, class F>
+CLUTCHWORK_INLINE void visit_lanes(void* form, void* step, F&& f) {
+  if (static_cast<LaneForm<R>*>(form)->nz() == NZ)
+    return f(*static_cast<LaneForm<R, NZ>*>(form), *static_cast<Step<LaneForm<R, NZ>>*>(step));
+  if constexpr (NZ < small_speeds) visit_lanes<R, NZ + 1>(form, step, f);
+}
+
+/// What is compiled once for each width of registers. The lanes are in memory alike for all of them.
+template <int R>
+struct LaneStep {
+  /// One step of all lanes; their errors, and whether their new states are finite.
+  static void advance(void* form, void* step, void* error, void* finite) {
+    visit_lanes<R>(form, step, [&](auto& f, auto& s) {
+      *static_cast<Lanes<R>*>(error) = Rodas5P::advance(f, s, s.h);
+      *static_cast<Mask<R>*>(finite) = all_finite(f.n(), s.y1());
+    });
+  }
+  /// Derivatives and guards at its end, at these times.
+  static void look(void* form, void* step, const void* times) {
+    visit_lanes<R>(form, step, [&](auto& f, auto& s) {
+      look_inline(f, s, *static_cast<const Lanes<R>*>(times), s.y1(), s.f1(), s.dt1(), f.ws.there);
+    });
+  }
+  /// Lanes in which something may happen inside it.
+  static void doubt(void* form, void* step, void* doubtful) {
+    *static_cast<Mask<R>*>(doubtful) =
+        doubtful_inline(static_cast<LaneForm<R>*>(form)->ws, static_cast<Step<LaneForm<R>>*>(step)->h);
+  }
+};
+
+/// The same as pointers: which one is taken depends on the processor.
+struct LaneKernel {
+  void (*advance)(void* form, void* step, void* error, void* finite);
+  void (*look)(void* form, void* step, const void* times);
+  void (*doubt)(void* form, void* step, void* doubtful);
+};
+
+}  // namespace clutchwork

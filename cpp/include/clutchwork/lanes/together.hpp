@@ -1,0 +1,224 @@
+#pragma once
+#include <clutchwork/lanes/exchange.hpp>
+#include <clutchwork/lanes/mode.hpp>
+#include <clutchwork/lanes/step.hpp>
+#include <clutchwork/run/pace.hpp>
+
+/// The phases of up to eight runs in one mode, stepped together: docs/theory/lanes.md.
+namespace clutchwork {
+
+/// A phase in a lane; what it does alone depends on its form.
+struct Seat {
+  Pace<double>* pace = nullptr;  ///< null: nobody
+  bool (*settle_due)(Pace<double>&) = nullptr;
+  void (*settle_given)(Pace<double>&) = nullptr, (*collapse)(Pace<double>&) = nullptr;
+  void (*leave)(Pace<double>&, Status) = nullptr;
+
+  Seat() = default;
+  template <class One>
+  explicit Seat(One* phase)
+      : pace(phase),
+        settle_due([](Pace<double>& p) { return static_cast<One&>(p).settle_due(); }),
+        settle_given([](Pace<double>& p) { static_cast<One&>(p).settle_given(); }),
+        collapse([](Pace<double>& p) { static_cast<One&>(p).collapse(); }),
+        leave([](Pace<double>& p, Status status) { static_cast<One&>(p).leave(status); }) {}
+};
+
+/// Takes the steps; everything that happens in one run alone is left to its own phase. A lane leaves when its phase is
+/// over or its mode is another one; the others go on.
+class Together {
+  Workspace<Lanes<2>>& ws_;
+  const LaneKernel& kernel_;
+  const Seat* seat_;
+  LaneForm<2> form_;
+  Step<LaneForm<2>> step_;
+  Lanes<2> end_{0};  ///< [s] of the present step
+  const int n_;      ///< speeds and states
+  int n_active_ = 0;
+  bool active_[n_lanes] = {}, counts_[n_lanes] = {}, visited_[n_lanes] = {};
+
+ public:
+  /// Phases that have begun, all in one mode; `first` is one of those that are there.
+  Together(Workspace<Lanes<2>>& ws, const LaneKernel& kernel, const Seat* seats, int first)
+      : ws_(ws), kernel_(kernel), seat_(seats), form_(ws, size_of(seats[first])), step_(form_), n_(form_.n()) {
+    take_mode(ws_, run_of(first));
+    for (int i = 0; i < n_lanes; ++i) enter(i, seat_[i].pace != nullptr ? i : first);
+    list_varying(ws_);
+  }
+
+  /// Until fewer than two lanes are left.
+  void run() {
+    while (true) {
+      plan();
+      if (n_active_ < 2) break;
+      take_step();
+      settle();
+    }
+    // what the lanes hold of a run that is left goes back to it
+    for (int i = 0; i < n_lanes; ++i)
+      if (active_[i]) rest(i);
+  }
+
+ private:
+  Pace<double>& pace(int i) { return *seat_[i].pace; }
+  Workspace<double>& run_of(int i) { return pace(i).ws_; }
+
+  static LaneSize<> size_of(const Seat& seat) {
+    const Workspace<double>& run = seat.pace->ws_;
+    return {run.reduced.nz, int(run.sys.states)};
+  }
+
+  /// A lane without a phase computes what another one does.
+  void enter(int i, int like) {
+    const Pace<double>& one = pace(like);
+    active_[i] = i == like;
+    n_active_ += active_[i];
+    ws_.run[i] = active_[i] ? &one.ws_ : nullptr;
+    put_motion(ws_, one.ws_, i);
+    load(one, i);
+    step_.t[i] = end_[i] = one.ws_.time, step_.h[i] = one.h_;
+  }
+
+  /// Where a phase stands, into its lane.
+  void load(const Pace<double>& one, int i) {
+    put(step_.y0(), one.row(StepRow::y0), n_, i), put(step_.f0(), one.row(StepRow::f0), n_, i);
+    put(step_.dt0(), one.row(StepRow::dt0), n_, i);
+    put_edge(ws_.here, one.ws_.here, ws_.n_rates, ws_.held.n, i);
+    put_jacobian(ws_, one.ws_, i), put_inputs(ws_, one.ws_, i), put_lines(ws_, one.ws_, i);
+  }
+
+  /// Back to the phase: where the lane stands.
+  void rest(int i) {
+    Pace<double>& one = pace(i);
+    get(one.row(StepRow::y0), step_.y0(), n_, i), get(one.row(StepRow::f0), step_.f0(), n_, i);
+    get(one.row(StepRow::dt0), step_.dt0(), n_, i);
+    get_edge(one.ws_.here, ws_.here, ws_.n_rates, ws_.held.n, i);
+    get_jacobian(one.ws_, ws_, i);
+    get(one.ws_.in.u, ws_.in.u, ws_.in.n_refs, i), get(one.ws_.in.du, ws_.in.du, ws_.in.n_refs, i);
+    one.ws_.in.time = end_[i];
+  }
+
+  /// Back to the phase: a whole step.
+  void unload(int i) {
+    Pace<double>& one = pace(i);
+    rest(i);
+    get(one.row(StepRow::y1), step_.y1(), n_, i), get(one.row(StepRow::f1), step_.f1(), n_, i);
+    get(one.row(StepRow::dt1), step_.dt1(), n_, i);
+    for (int s = 0; s < 8; ++s) get(one.row(s), step_.k(s), n_, i);
+    get_edge(one.ws_.there, ws_.there, ws_.n_rates, ws_.held.n, i);
+  }
+
+  void leave(int i) {
+    active_[i] = false;
+    ws_.run[i] = nullptr;
+    --n_active_;
+  }
+
+  /// Whether a phase that has done something on its own stays in its lane.
+  void go_on(int i) {
+    if (pace(i).over_ || !may_share(run_of(i)) || !same_mode(ws_, run_of(i))) return leave(i);
+    load(pace(i), i);
+    end_[i] = run_of(i).time;
+  }
+
+  /// Knots, the end, a budget that is spent; then the length of the next step of each lane.
+  void plan() {
+    bool changed = false;
+    for (int i = 0; i < n_lanes; ++i) {
+      if (!active_[i]) continue;
+      Pace<double>& one = pace(i);
+      if (one.is_due()) {
+        rest(i);
+        seat_[i].settle_due(one);
+        go_on(i);
+        changed = true;
+      } else {
+        const Status spent = one.what_is_spent();
+        if (spent != Status::running) {
+          rest(i);
+          seat_[i].leave(one, spent);
+          leave(i);
+        }
+      }
+      if (!active_[i]) continue;
+      one.plan_step();
+      step_.t[i] = one.ws_.time, step_.h[i] = one.reach_;
+    }
+    if (changed) list_varying(ws_);
+  }
+
+  void take_step() {
+    Lanes<2> error;
+    Mask<2> finite, counts(false);
+    ws_.statistics.evaluations = 0;
+    kernel_.advance(&form_, &step_, &error, &finite);
+    for (int i = 0; i < n_lanes; ++i) {
+      counts_[i] = visited_[i] = false;
+      if (!active_[i]) continue;
+      run_of(i).statistics.evaluations += std::int64_t(ws_.statistics.evaluations[i]);
+      counts_[i] = judge(i, finite[i] ? error[i] : infinity);
+      if (!counts_[i]) continue;
+      counts.set(i, true);
+      ++run_of(i).statistics.jacobians;
+      end_[i] = pace(i).end_of_step();
+    }
+    // lanes that do not count look again at where they are
+    for (int j = 0; j < n_; ++j) step_.y1()[j] = select(counts, step_.y1()[j], step_.y0()[j]);
+    kernel_.look(&form_, &step_, &end_);
+  }
+
+  /// Whether the step of a lane counts.
+  bool judge(int i, double error) {
+    Pace<double>& one = pace(i);
+    one.error_ = error;
+    if (error <= 1) {
+      ++one.ws_.statistics.steps;
+      return true;
+    }
+    if (!one.shorten()) {
+      rest(i);
+      seat_[i].collapse(one);
+      leave(i);
+    }
+    return false;
+  }
+
+  /// Each lane goes on: alone through what may happen inside its step, else to its end.
+  void settle() {
+    Mask<2> doubtful;
+    kernel_.doubt(&form_, &step_, &doubtful);
+    for (int i = 0; i < n_lanes; ++i) {
+      if (!active_[i] || !counts_[i]) continue;
+      Pace<double>& one = pace(i);
+      if (doubtful[i] || one.ws_.options.work || one.ws_.options.angles || one.has_rows(1)) {
+        unload(i);
+        seat_[i].settle_given(one);
+        visited_[i] = true;
+      } else {
+        one.move_on();
+      }
+    }
+    pass_on();
+  }
+
+  /// The end of the step is the start of the next one, but for those who have gone elsewhere.
+  void pass_on() {
+    for (int j = 0; j < n_; ++j) {
+      step_.y0()[j] = step_.y1()[j];
+      step_.f0()[j] = step_.f1()[j];
+      step_.dt0()[j] = step_.dt1()[j];
+    }
+    const Edge<Lanes<2>> edge = ws_.here;
+    ws_.here = ws_.there;
+    ws_.there = edge;
+    bool changed = false;
+    for (int i = 0; i < n_lanes; ++i) {
+      if (!visited_[i]) continue;
+      go_on(i);
+      changed = true;
+    }
+    if (changed) list_varying(ws_);
+  }
+};
+
+}  // namespace clutchwork
