@@ -65,6 +65,7 @@ def shifts(ramps: int = 25, linings: int = 20, temperatures: int = 20, **how: An
 def picture(found: cw.Sweep, path: Path) -> None:
     """Lock-up, slip energy and peak torque over ramp and lining, at the coldest and the hottest temperature."""
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import MaxNLocator
 
     durations, factors, temperatures = (axis.astype(float) for axis in found.coords.values())
     panels = (
@@ -76,7 +77,7 @@ def picture(found: cw.Sweep, path: Path) -> None:
     for line, place in zip(axes, (0, -1), strict=True):
         for axis, (name, scale, offset, title) in zip(line, panels, strict=True):
             values = scale * (found[name] - offset)
-            levels = np.linspace(np.nanmin(values), np.nanmax(values), 13)
+            levels = MaxNLocator(10).tick_values(np.nanmin(values), np.nanmax(values))
             shown = axis.contourf(durations, factors, values[:, :, place].T, levels, cmap="viridis")
             if place == 0:
                 axis.set_title(title, fontsize=10)
