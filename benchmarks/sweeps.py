@@ -102,8 +102,8 @@ def measured(system: cw.System, compiled: Callable[[int], Taken] | None, variant
     yield Row(
         "sweep: shifts from one Python call, two threads",
         f"{1 / each:.0f} a second",
-        ">= 10 000 a second",
-        each <= 1e-4,
+        ">= 30 000 a second",
+        each <= 1 / 30_000,
     )
     full = min(one.wall for one in kept["full"]) / variants
     yield Row("sweep: the same with work, lock-up, heat and peak torque", f"{1 / full:.0f} a second")
@@ -120,14 +120,13 @@ def measured(system: cw.System, compiled: Callable[[int], Taken] | None, variant
 def changing(system: cw.System) -> Iterator[Row]:
     """System.changed with one number."""
     ramp = cw.Table([(t, 0.9 * p) for t, p in six_speed.SHIFT["F1"]])
-    changes: dict[str, tuple[dict[str, Any], float]] = {
-        "a parameter": ({"F1.gain": 0.3}, 50e-6),
-        "a signal": ({"F1.pressure": ramp}, 50e-6),
-        "an initial speed": ({"w1.speed": 3.0}, 0.0),
-        "an inertia": ({"w1.inertia": 20.0}, 0.0),
-        "a ratio": ({"row1.ratio": 1.9}, 0.0),
+    changes: dict[str, dict[str, Any]] = {
+        "a parameter": {"F1.gain": 0.3},
+        "a signal": {"F1.pressure": ramp},
+        "an initial speed": {"w1.speed": 3.0},
+        "an inertia": {"w1.inertia": 20.0},
+        "a ratio": {"row1.ratio": 1.9},
     }
-    for what, (change, most) in changes.items():
+    for what, change in changes.items():
         each = wall(lambda change=change: system.changed(change), 200)  # type: ignore[misc]
-        target = f"<= {1e6 * most:.0f} us" if most else ""
-        yield Row(f"System.changed: {what}", f"{1e6 * each:.0f} us", target, each <= most if most else None)
+        yield Row(f"System.changed: {what}", f"{1e6 * each:.0f} us")
