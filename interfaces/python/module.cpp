@@ -189,6 +189,8 @@ std::vector<int> advance_group(const std::vector<Run*>& runs, double t_end) {
   std::vector<cw_member> members;
   std::int64_t size = 0;
   for (Run* run : runs) {
+    if (run == nullptr) throw nb::value_error("a run of a group is None");
+    if (std::count(runs.begin(), runs.end(), run) > 1) throw nb::value_error("a run is twice in a group");
     members.push_back({run->handle(), nullptr, nullptr, 0, 0, 0, 0});
     size = std::max(size, cw_group_size(run->handle()));
   }

@@ -66,7 +66,7 @@ inline Model hysteresis() {
   const Numbers curve{0.3, 0.2, 3, 1, 2, 0.001}, points = m.curve({0.01, 0.03, 0.08, 0.2}, {0.1, 0.2, 0.3, 0.4});
   m.element<elements::Torque>(housing, 0, {}, {push});
   for (int i = 0; i < 4; ++i) m.element<elements::SpringDamper>(i, i + 1, {60, 0.3, 0});
-  m.contact<elements::BearingFriction, laws::GMS>(housing, 0, {9}, {}, joined({curve, points, {30}}));
+  m.contact<elements::BearingFriction, laws::GMS>(housing, 0, {9}, {}, joined({curve, points, {30, 0}}));
   m.contact<elements::BearingFriction, laws::Leuven>(housing, 1, {7}, {}, joined({curve, points, {1.5, 0.01}}));
   m.contact<elements::Clutch, laws::Mykhalevych>(0, 2, {1}, {pressure}, {0.2, 0.15, 0.05, 3, 0.5, 0, 2, 1});
   m.contact<elements::Clutch, laws::ElastoPlastic>(3, 4, {1}, {pressure}, joined({curve, {20, 0.05, 0.003, 0}}));

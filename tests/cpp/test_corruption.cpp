@@ -113,7 +113,7 @@ void few_states() {
   const Numbers all = m.curve(x, y), curve{0.3, 0.2, 3, 1, 2, 0.001};
   for (double count : {4.0, 9.0, 10.0, 14.0}) {
     Model n = m;
-    n.contact<elements::BearingFriction, laws::GMS>(housing, a, {9}, {}, joined({curve, {all[0], count}, {30}}));
+    n.contact<elements::BearingFriction, laws::GMS>(housing, a, {9}, {}, joined({curve, {all[0], count}, {30, 0}}));
     const Bytes whole = n.bytes();
     survive(whole);
     System sys{};

@@ -72,7 +72,7 @@ void builds_up() {
 void lags() {
   const Numbers curve = stribeck_curve(0.15, 0.1, 2);
   Model m;
-  driven<laws::GMS>(m, {{0, {0.5}}, {0.1, {3}}}, 10, joined({curve, m.curve(deflections, shares), {20}}));
+  driven<laws::GMS>(m, {{0, {0.5}}, {0.1, {3}}}, 10, joined({curve, m.curve(deflections, shares), {20, 0}}));
   TightRun r(m);
   CHECK(r.advance(0.1) == 0);
   const double before = curve_at(curve, 0.5), after = curve_at(curve, 3);
@@ -114,7 +114,7 @@ void springs() {
     // exactly, up to the first element that breaks away
     Model m;
     const Numbers points = m.curve(deflections, shares);
-    oscillates<laws::GMS>(m, joined({curve, points, {100}}), stiffness, 2e-4, 1.9e-5, 1e-7);
+    oscillates<laws::GMS>(m, joined({curve, points, {100, 0}}), stiffness, 2e-4, 1.9e-5, 1e-7);
   }
   {
     // up to (h/s)^6, here 1e-13
@@ -316,7 +316,7 @@ int main() {
   slides<laws::LuGre>({1e4, 10});
   slides<laws::ElastoPlastic>({1e4, 10, 1e-6, 0});
   slides<laws::Leuven>({1, 10}, true);
-  slides<laws::GMS>({100}, true);
+  slides<laws::GMS>({100, 0}, true);
   slides_otherwise();
   builds_up();
   lags();
@@ -324,7 +324,7 @@ int main() {
   dahl();
   drift();
   for (bool jumps : {false, true}) {
-    remembers<laws::GMS>({100}, jumps);
+    remembers<laws::GMS>({100, 0}, jumps);
     // so sharp that it yields only where it slides
     remembers<laws::Leuven>({300, 0}, jumps);
   }

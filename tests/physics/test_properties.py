@@ -36,8 +36,8 @@ def test_a_contact_never_carries_more_than_its_capacity(seed: int) -> None:
     run = random_drivelines.describe(seed).driveline().simulate(random_drivelines.T_END, **FINE)
     for i in range(3):
         torque, capacity = np.abs(run[f"c{i}.torque"]), run[f"c{i}.capacity"]
-        # round-off of the multiplier at the instant of break-away
-        assert np.all(torque <= capacity * (1 + 1e-9) + 1e-9)
+        # a multiplier has the error of the run, at the instant of break-away and where a load returns from zero
+        assert np.all(torque <= capacity * (1 + 1e-9) + 1e-8 * np.max(capacity))
         assert np.all(run[f"c{i}.slip"][run[f"c{i}.mode"] == 0] == 0.0)
         assert np.all(run[f"c{i}.torque"][run[f"c{i}.mode"] == 2] == 0.0)
 

@@ -10,7 +10,7 @@ import pytest
 
 from clutchwork import _core
 from clutchwork.assembly.system import System
-from support import random_contacts, random_large, six_speed
+from support import random_contacts, random_drivelines, random_large, six_speed
 from support.amount import amount
 from support.pages import page
 from support.project import ROOT
@@ -69,6 +69,18 @@ def test_mixed_groups(seed: int) -> None:
     rng = np.random.default_rng(seed)
     pool = [random_contacts.driveline(k).assemble() for k in range(3)] + [six_speed.gearbox(six_speed.SHIFT).assemble()]
     check([pool[int(k)] for k in rng.integers(0, len(pool), 13)], seed, 1.0, "rodas5p")
+
+
+@pytest.mark.parametrize("seed", range(amount(8)))
+def test_in_pieces_with_work(seed: int) -> None:
+    """Signals that vary are read elsewhere for the work: a run in pieces starts each with those of its own time."""
+    system = random_drivelines.describe(seed).driveline().assemble()
+    alone, together = (
+        [run(system, np.random.default_rng([seed, k]), "rodas5p", work=1.0) for k in range(8)] for _ in "ab"
+    )
+    for t in (0.2, 0.4, 0.6, 0.8, 1.0):
+        assert _core.advance_group(together, t) == [advance(one, t) for one in alone]
+    assert [told(one) for one in together] == [told(one) for one in alone]
 
 
 def test_six_speed_shift() -> None:

@@ -10,12 +10,13 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.declare.core import core
-from clutchwork.model.changes import all_names
+from clutchwork.declare.schema import Role
+from clutchwork.model.changes import all_names, named, target
 from clutchwork.sweeps import batch
 from clutchwork.sweeps.axes import Plan
 from clutchwork.sweeps.outputs import PARTS
 from clutchwork.sweeps.variants import given
-from support import random_drivelines, six_speed
+from support import random_drivelines, samples, six_speed
 from support.amount import amount
 from support.sweep import sweep as over_seeds
 
@@ -216,3 +217,70 @@ def test_settings_of_the_model():
     found = cw.sweep(d, vary={"F1.gain": [0.2, 0.3]}, outputs="w8.speed")
     expected = [d.assemble().changed({"F1.gain": gain}) for gain in (0.2, 0.3)]
     assert found["w8.speed"].tolist() == [cw.simulate(system)["w8.speed"][-1] for system in expected]
+
+
+@pytest.mark.parametrize("cls", samples.declared(*samples.ELEMENT_ROLES, Role.LAW), ids=lambda cls: cls.__name__)
+@pytest.mark.filterwarnings("ignore::clutchwork.ModelWarning")
+def test_words_of_every_number_are_those_of_the_changed_system(cls: type):
+    """What follows from a number goes with it: initial states, tolerances, processes."""
+    system = _with_law(samples.law(cls)) if issubclass(cls, cw.Law) else samples.driveline(cls).assemble()
+    for name, value in _numbers(system):
+        try:
+            expected = system.changed({name: value}).to_bytes()
+        except cw.ModelError:
+            continue
+        plan = Plan.of(system, given({name: [value]}))
+        words = np.frombuffer(plan.systems(0, 1)[0][0].to_bytes(), np.uint64).copy()
+        for axis in plan.axes:
+            words[axis.place] = axis.words[0]
+        assert words.tobytes() == expected, name
+
+
+def _with_law(law: cw.Law) -> cw.System:
+    d = cw.Driveline("law")
+    a, b = d.shaft("a", inertia=1.0, speed=5.0), d.shaft("b", inertia=2.0)
+    d.add(cw.Clutch("c", base=a, follower=b, friction=law, gain=1.0, normal_force=100.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cw.ModelWarning)
+        return d.assemble()
+
+
+def _numbers(system: cw.System) -> list[tuple[str, float]]:
+    """Every name of a number, with a value near its own."""
+    found = []
+    for name in all_names(system.source):
+        aim = target(named(system.source), name)
+        value = aim.owner
+        for word in aim.path:
+            value = getattr(value, word)
+        if isinstance(value, float):
+            found.append((name, 1.01 * value if value else 0.1))
+    return found
+
+
+def test_what_follows_from_a_number():
+    """A spring that starts twisted, and the band of Karnopp's law."""
+    d = cw.Driveline("twisted")
+    a, b = d.shaft("a", inertia=1.0, speed=50.0), d.shaft("b", inertia=1.0)
+    d.add(cw.SpringDamper("k", base=a, follower=b, stiffness=10.0, initial_twist=0.3))
+    karnopp = _with_law(cw.Karnopp(static=0.2, kinetic=0.1, speed=1.0, band=0.01))
+    for system, vary in (
+        (d.assemble(), {"k.stiffness": [10.0, 20.0, 40.0]}),
+        (d.assemble(), {"k.initial_twist": [0.0, 0.3]}),
+        (karnopp, {"c.friction.band": [0.01, 0.5, 3.0]}),
+    ):
+        found = cw.sweep(system, 1.0, vary=vary, outputs=["b.speed"])
+        assert compared(system, found, 1.0, {}, range(len(found))) == ""
+
+
+@pytest.mark.parametrize("other", ["k2.damping", "k2.stiffness"])
+def test_a_shaft_that_loses_its_inertia(other: str):
+    """Its springs are then in series, so that what was a number of its own is none any more."""
+    d = cw.Driveline("series")
+    a, g, e = (d.shaft(n, inertia=j, speed=w) for n, j, w in (("a", 1.0, 50.0), ("g", 0.5, 0.0), ("e", 3.0, 0.0)))
+    d.add(cw.SpringDamper("k1", base=a, follower=g, stiffness=50.0, damping=0.5))
+    d.add(cw.SpringDamper("k2", base=g, follower=e, stiffness=100.0, damping=0.1))
+    system = d.assemble()
+    vary = {"g.inertia": [0.5, 0.0], other: [0.1, 0.3]}
+    found = cw.sweep(system, 1.0, vary=vary, outputs=["a.speed", "e.speed"])
+    assert compared(system, found, 1.0, {}, range(len(found))) == ""

@@ -108,7 +108,9 @@ def _steps(recording: Recording, stop: float, t_end: float, acted: bool, progres
 
 def _grid(recording: Recording, stop: float, t_end: float, times: Array, progress: Progress | None) -> None:
     """Record the given instants, all of them up to the stop."""
-    cuts = range(LARGEST_CHUNK, len(times), LARGEST_CHUNK) if len(times) > LONG_GRID else ()
+    # each stretch ends in a step of its own, so that there are stretches only where somebody is told of them
+    told = progress is not None and len(times) > LONG_GRID
+    cuts = range(LARGEST_CHUNK, len(times), LARGEST_CHUNK) if told else ()
     first = 0
     for cut in cuts:
         _stretch(recording, float(times[cut]), times[first:cut])

@@ -80,6 +80,7 @@ class Plan:
     axes: list[Axis] = field(default_factory=list)
     bound: list[Varied] = field(default_factory=list)
     targets: dict[str, Target] = field(default_factory=dict)
+    whole: set[int] = field(default_factory=set)  # identities of the Systems of a block that need no axes
 
     @classmethod
     def of(cls, base: System, variants: Variants) -> Plan:
@@ -116,15 +117,14 @@ class Plan:
             self.bound.append(one)
 
     def _axis(self, one: Varied, aim: Target) -> Axis:
-        slot = self.base.parameters.get(one.name)
         spec = _plain_number(aim)
-        if slot is not None and spec is not None:
-            first = self._layout.starts["params"] // 8 + slot
+        if one.name in self.base.parameters and spec is not None:
             problems = [found for value in one.values for found in _number_problems(value, spec, aim)]
             if problems:
                 raise ModelError(problems[:MOST_PROBLEMS], self.base.name)
-            words = np.array(one.values, dtype=float).view(np.uint64).reshape(-1, 1)
-            return Axis(one.name, np.array([first], dtype=np.int64), words)
+            place = np.array([self._layout.starts["params"] // 8 + self.base.parameters[one.name]], dtype=np.int64)
+            if self._nothing_follows(one, aim, place):
+                return Axis(one.name, place, np.array(one.values, dtype=float).view(np.uint64).reshape(-1, 1))
         lines = [self._line(patches(self.base.numbered, aim.owner, self._renewed(aim, value))) for value in one.values]
         place = np.array(sorted({word for place, _ in lines for word in place.tolist()}), dtype=np.int64)
         base = np.frombuffer(self.base.to_bytes(), dtype=np.uint64)
@@ -132,6 +132,14 @@ class Plan:
         for line, (own, numbers) in zip(words, lines, strict=True):
             line[np.searchsorted(place, own)] = numbers
         return Axis(one.name, place, words)
+
+    def _nothing_follows(self, one: Varied, aim: Target, place: NDArray[np.int64]) -> bool:
+        """Whether a number stands at its own place alone, for the least and the largest of its values."""
+        for value in sorted(one.values)[:: max(1, len(one.values) - 1)]:
+            touched, _ = self._line(patches(self.base.numbered, aim.owner, self._renewed(aim, value)))
+            if not np.isin(touched, place).all():
+                return False
+        return True
 
     def _line(self, found: Sequence[Patch]) -> tuple[NDArray[np.int64], Words]:
         """Words that patches change, and what to."""
@@ -185,14 +193,36 @@ class Plan:
 
     def systems(self, first: int, last: int) -> tuple[list[System], Codes]:
         """The Systems of some variants, without their axes, and which of them each has."""
-        return systems_of(self.base, self.bound, first, last)
+        found, which = systems_of(self.base, self.bound, first, last)
+        odd = [number for number, system in enumerate(found) if not self._fits(system)]
+        self.whole = set()
+        return self._made_whole(found, which, odd, first) if odd else (found, which)
+
+    def _fits(self, system: System) -> bool:
+        """Whether the axes, or as many of another layout, give all that varies beside this System."""
+        if not self.axes or self.key(system) == self.key(self.base):
+            return True
+        return {axis.name for axis in self.axes_on(system)} == {axis.name for axis in self.axes}
+
+    def _made_whole(
+        self, found: list[System], which: Codes, odd: Sequence[int], first: int
+    ) -> tuple[list[System], Codes]:
+        """A System of its own, with all that varies, for each variant of those that the axes do not fit."""
+        made, places = list(found), which.copy()
+        for place in np.flatnonzero(np.isin(which, odd)).tolist():
+            own, _ = systems_of(self.base, self.variants.varied, first + place, first + place + 1)
+            places[place] = len(made)
+            made += own
+        self.whole = {id(system) for system in made[len(found) :]}
+        return made, places
 
     def key(self, system: System) -> tuple[Any, ...]:
         """What two Systems share where the words of an axis are at the same places in both."""
         if any(_holds_points(self.targets[one.name], one.values) for one in self.bound):
             return (id(system),)
         names = [name for name, kind, _, _ in FIELDS if kind == "i4"]
-        return (*system.counts.values(), *(system.arrays[name].tobytes() for name in names))
+        massless = bool(np.any(system.arrays["massless"]))
+        return (massless, *system.counts.values(), *(system.arrays[name].tobytes() for name in names))
 
     def axes_on(self, system: System) -> list[Axis]:
         """The axes for a System of another layout."""

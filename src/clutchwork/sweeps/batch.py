@@ -79,6 +79,8 @@ class Wanted:
             if isinstance(one, Integral) and not one.kept_as(self.channels):
                 remedy = "give a power, a speed or an acceleration, or a function of the run"
                 yield f"{one.signal} has no exact integral: {remedy}"
+            if isinstance(one, Extreme) and not self.channels[one.signal].unit:
+                yield f"{one.signal} is a word, which has no {one.kind}; take {one.signal.removesuffix('state')}mode"
             if isinstance(one, AtTimes) and one.times[-1] > self.t_end:
                 yield f"{one.name} {one.times[-1]:g} s is after t_end = {self.t_end:g} s"
 
@@ -153,6 +155,8 @@ class Batch:
         before = 0
         for axes, members in self._layouts(systems):
             who = np.flatnonzero(np.isin(base, members))
+            if not len(who):
+                continue
             call = Call(axes, [systems[member] for member in members], np.searchsorted(members, base[who]), who)
             told = None if progress is None else partial(_add, progress, before)
             block = self._ran(block, call, forms, told)
@@ -173,8 +177,12 @@ class Batch:
             yield [], np.arange(len(systems))
             return
         own, groups = self.plan.key(self.plan.base), dict[Any, list[int]]()
+        whole = [number for number, system in enumerate(systems) if id(system) in self.plan.whole]
+        if whole:
+            yield [], np.array(whole)
         for number, system in enumerate(systems):
-            groups.setdefault(self.plan.key(system), []).append(number)
+            if id(system) not in self.plan.whole:
+                groups.setdefault(self.plan.key(system), []).append(number)
         for key, members in groups.items():
             axes = self.plan.axes if key == own else self.plan.axes_on(systems[members[0]])
             yield axes, np.array(members)

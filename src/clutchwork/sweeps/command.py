@@ -63,7 +63,11 @@ def sweep_command(asked: argparse.Namespace) -> int:
     """Run, report, write; the exit code."""
     if asked.out is not None and asked.out.suffix not in WRITERS:
         raise UseError("sweep", [f"--out {asked.out}: must end in .parquet or .csv"])
-    vary = dict(map(_varied, asked.vary))
+    given = [_varied(text) for text in asked.vary]
+    vary = dict(given)
+    twice = [name for name in vary if [one for one, _ in given].count(name) > 1]
+    if twice:
+        raise UseError("sweep", [f"--vary {name} appears twice; give all its values at once" for name in twice])
     model = Driveline.load(asked.model)
     wanted = _outputs(asked.outputs) if asked.outputs else _by_default(model)
     code = DONE

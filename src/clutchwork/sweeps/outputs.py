@@ -59,8 +59,9 @@ class AtTimes:
     def of(self, run: Trajectory) -> Array:
         """Its values in a run, NaN at instants that it did not reach."""
         there = run.at(self.times)
-        found = np.full(len(self.times), _missing(run, self.signal))
-        found[: len(there)] = there[self.signal]
+        values = there[self.signal]
+        found = np.full(len(self.times), _missing(run, self.signal), dtype=values.dtype)
+        found[: len(there)] = values
         return found
 
 
@@ -212,7 +213,7 @@ def _counted(call: str, number: object) -> int:
 
 def asked(outputs: Any) -> dict[str, Output]:
     """The outputs that a call means, by the name that the result gives them."""
-    if isinstance(outputs, Mapping):
+    if isinstance(outputs, Mapping) and outputs:
         return {str(name): _output(one) for name, one in outputs.items()}
     listed = [outputs] if isinstance(outputs, str) or callable(outputs) or not hasattr(outputs, "__iter__") else outputs
     made = [_output(one) for one in listed]

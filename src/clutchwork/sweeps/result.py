@@ -80,13 +80,13 @@ class Sweep:
             self.codes[number] = NAMES.index(status)
         for name, value in found.items():
             if name not in self.values:
-                self.values[name] = self._column(name)
+                self.values[name] = self._column(name, value)
             self.values[name][number] = value
 
-    def _column(self, name: str) -> Array:
+    def _column(self, name: str, first: Any) -> Array:
         one = self.swept.outputs[name]
         if isinstance(one, AtTimes):
-            return np.full((len(self), len(one.times)), np.nan)
+            return empty_like(np.asarray(first)[np.newaxis], len(self))
         return np.full(len(self), None, dtype=object)
 
     # ------------------------------------------------------------------------------------------------------ what it has

@@ -70,7 +70,7 @@ class Together {
 
   /// A lane without a phase computes what another one does.
   void enter(int i, int like) {
-    const Pace<double>& one = pace(like);
+    Pace<double>& one = pace(like);
     active_[i] = i == like;
     n_active_ += active_[i];
     ws_.run[i] = active_[i] ? &one.ws_ : nullptr;
@@ -80,7 +80,9 @@ class Together {
   }
 
   /// Where a phase stands, into its lane.
-  void load(const Pace<double>& one, int i) {
+  void load(Pace<double>& one, int i) {
+    // rows and guards may have read the signals elsewhere
+    inputs_at(one.ws_, one.ws_.time), input_slopes_at(one.ws_, one.ws_.time);
     put(step_.y0(), one.row(StepRow::y0), n_, i), put(step_.f0(), one.row(StepRow::f0), n_, i);
     put(step_.dt0(), one.row(StepRow::dt0), n_, i);
     put_edge(ws_.here, one.ws_.here, ws_.n_rates, ws_.held.n, i);
