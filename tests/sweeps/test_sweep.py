@@ -373,3 +373,17 @@ def test_a_sweep_is_copied_with_its_results():
     again = pickle.loads(pickle.dumps(found))
     assert again["lock(c1)"].tobytes() == found["lock(c1)"].tobytes()
     assert again.run(1).status == "done"
+
+
+def test_a_name_that_varies_and_is_an_output():
+    """The speed at the start and at the end have columns of their own; the status keeps its own."""
+    d = cw.Driveline("disc")
+    s = d.shaft("s", inertia=2.0, speed=1.0)
+    d.add(cw.Torque("pull", shaft=s, torque=3.0))
+    found = cw.sweep(d, 1.0, vary={"s.speed": [1.0, 2.0]}, outputs=["s.speed"])
+    table = found.to_pandas()
+    assert list(table["s.speed given"]) == [1.0, 2.0]
+    assert list(table["s.speed"]) == pytest.approx([2.5, 3.5], rel=1e-9)
+    assert found.to_xarray()["s.speed"].dims == ("s.speed given",)
+    with pytest.raises(cw.UseError, match="an output is called 'status'"):
+        cw.sweep(d, 1.0, vary={"s.speed": [1.0]}, outputs={"status": "s.speed"})

@@ -186,7 +186,7 @@ class Sweep:
     def columns(self) -> Iterator[tuple[str, Array]]:
         """Columns of a table with one line for each variant: values that vary, outputs, the status."""
         for one in self.swept.variants.varied:
-            yield one.name, one.column
+            yield self._given(one.name), one.column
         for name, output in self.swept.outputs.items():
             values = self.flat(name)
             if isinstance(output, AtTimes):
@@ -202,12 +202,17 @@ class Sweep:
         frame.attrs["units"] = self.units
         return frame
 
+    def _given(self, name: str) -> str:
+        """What a table calls a value that varies: an initial speed and the speed at the end have one name."""
+        return f"{name} given" if name in self.swept.outputs else name
+
     def to_xarray(self) -> Any:
         """An xarray Dataset over the axes of the grid, or over the variants, with units as attributes. Needs xarray."""
         xarray, units, swept = _need("xarray"), self.units, self.swept
         grid = swept.variants.shape is not None and len(swept.variants.varied) > 0
-        axes = self.varied if grid else ("variant",)
-        coords: dict[str, Any] = {name: (name if grid else "variant", axis) for name, axis in self.coords.items()}
+        axes = tuple(map(self._given, self.varied)) if grid else ("variant",)
+        named = {self._given(name): axis for name, axis in self.coords.items()}
+        coords: dict[str, Any] = {name: (name if grid else "variant", axis) for name, axis in named.items()}
         shape, data = self.shape if grid else (len(self),), dict[str, Any]()
         for name, output in swept.outputs.items():
             values, dims = self.flat(name), axes

@@ -26,7 +26,7 @@ from clutchwork.sweeps.batch import Batch, Wanted, Way
 from clutchwork.sweeps.outputs import Asked, Computed, Output, asked
 from clutchwork.sweeps.progress import Shown, shown_by
 from clutchwork.sweeps.result import Sweep, SweepInterrupted, Swept
-from clutchwork.sweeps.variants import Variants, given
+from clutchwork.sweeps.variants import given
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -74,7 +74,7 @@ def sweep(
     plain = settled.changed({"dt": None, "times": None})
     refuse_endless(system.inputs, end, plain.max_steps)
     count = _threads(threads)
-    _refuse_clashes(variants, wanted)
+    _refuse_clashes(wanted)
     swept = Swept(system, variants, wanted, end, plain)
     with shown_by(progress, len(variants)) as told, warnings.catch_warnings():
         # a value may be rarely wanted; that of a single run is given there
@@ -82,14 +82,10 @@ def sweep(
         return _swept(swept, count, told)
 
 
-def _refuse_clashes(variants: Variants, wanted: Mapping[str, Output]) -> None:
-    """Tables have a column for each value that varies, for each output, and for the status."""
-    taken = {one.name for one in variants.varied} | {"status"}
-    problems = [
-        f"the output {name!r} has the name of a column of its own; give it another" for name in wanted if name in taken
-    ]
-    if problems:
-        raise UseError("sweep", problems)
+def _refuse_clashes(wanted: Mapping[str, Output]) -> None:
+    """Tables have a column of their own for the status."""
+    if "status" in wanted:
+        raise UseError("sweep", ["an output is called 'status', as the column that says how a run ended; rename it"])
 
 
 def _system(model: Assembles | System) -> System:
