@@ -174,7 +174,7 @@ class Phase : public Pace<typename Form::Scalar> {
   /// point. docs/theory/events.md, rule 7
   CLUTCHWORK_INLINE bool must_land(const Hit& hit) {
     if (hit.what == Hit::nothing || landings_ >= most_landings || hit.s <= 0 || hit.s >= 1) return false;
-    return !(Integrator::dense_share * error_until(form_, step_, hit.s) <= most_cut_error);
+    return !(error_until(form_, step_, hit.s) <= most_cut_error);
   }
 
   /// Repeat the step so that it ends there.

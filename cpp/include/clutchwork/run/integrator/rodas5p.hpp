@@ -15,7 +15,6 @@ struct Rodas5P {
   static constexpr bool stiff = true;
   static constexpr double restart = 0.25;
   static constexpr int most_small_states = small_states;
-  static constexpr double dense_share = 1;  ///< error inside a step over its estimate
   static constexpr double gamma = 0.21193756319429014;
   static constexpr double a[6][5] = {
       {0},
