@@ -41,6 +41,8 @@ bool is_soft(Workspace<T>& ws) {
   constexpr double slow = 0.1;
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
+    // its reversals are found within a few implicit steps
+    if (b.law >= 0 && is_chattering_law(b.law)) return false;
     // a step may run over the rise of a coefficient before the slip vanishes, unseen by the estimate of an explicit
     // pair
     if (b.law >= 0 && b.states == 0 && bends_near_zero(ws, b, state_partials(ws, k))) return false;
