@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import importlib
 from typing import Any
 
 from clutchwork.base.errors import ClutchworkError
+from clutchwork.base.extras import need
 
 
 class FitError(ClutchworkError, ValueError):
@@ -18,7 +18,4 @@ class FitError(ClutchworkError, ValueError):
 
 def scipy(module: str) -> Any:
     """A module of SciPy, imported now; ImportError with the remedy when there is none."""
-    try:
-        return importlib.import_module(f"scipy.{module}")
-    except ImportError as error:
-        raise ImportError('fits need SciPy: pip install "clutchwork[fit]"') from error
+    return need(f"scipy.{module}", "fit", "a fit")

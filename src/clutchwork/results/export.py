@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import csv
-import importlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from clutchwork.base.extras import need
 
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
@@ -26,7 +27,7 @@ def to_csv(run: Recorded, path: Path, names: tuple[str, ...]) -> None:
 
 def to_pandas(run: Recorded, names: tuple[str, ...]) -> Any:
     """DataFrame with the time as index; `frame.attrs["units"]` holds the units."""
-    pandas = _need("pandas")
+    pandas = need("pandas", "tables", "a table")
     frame = pandas.DataFrame({name: run[name] for name in names}, index=pandas.Index(run.time, name="time"))
     frame.attrs["units"] = {name: run.units[name] for name in names}
     return frame
@@ -34,13 +35,6 @@ def to_pandas(run: Recorded, names: tuple[str, ...]) -> Any:
 
 def to_xarray(run: Recorded, names: tuple[str, ...]) -> Any:
     """Dataset with the dimension time; every variable carries its unit."""
-    xarray = _need("xarray")
+    xarray = need("xarray", "tables", "a Dataset")
     variables = {name: ("time", np.ascontiguousarray(run[name]), {"units": run.units[name]}) for name in names}
     return xarray.Dataset(variables, coords={"time": ("time", run.time, {"units": "s"})})
-
-
-def _need(package: str) -> Any:
-    try:
-        return importlib.import_module(package)
-    except ImportError as error:
-        raise ImportError(f"this needs {package}: pip install {package}") from error

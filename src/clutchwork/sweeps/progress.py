@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 from clutchwork.base.errors import UseError
+from clutchwork.base.extras import need
 from clutchwork.base.shown import shown
 
 Shown = Callable[[int], None]
@@ -32,8 +32,4 @@ def _silent(done: int) -> None:
 
 
 def _tqdm() -> Any:
-    try:
-        return importlib.import_module("tqdm.auto").tqdm
-    except ImportError as error:
-        remedy = "pip install tqdm, or give a function of (done, variants)"
-        raise ImportError(f"progress=True needs tqdm: {remedy}") from error
+    return need("tqdm.auto", "notebook", "progress=True").tqdm

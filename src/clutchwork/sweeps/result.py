@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import importlib
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import ModelError, UnknownName, near
+from clutchwork.base.extras import need
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES
@@ -198,7 +198,7 @@ class Sweep:
 
     def to_pandas(self) -> Any:
         """A pandas DataFrame with one line for each variant; `attrs["units"]` holds the units. Needs pandas."""
-        frame = _need("pandas").DataFrame(dict(self.columns()))
+        frame = need("pandas", "tables", "a table").DataFrame(dict(self.columns()))
         frame.attrs["units"] = self.units
         return frame
 
@@ -208,7 +208,7 @@ class Sweep:
 
     def to_xarray(self) -> Any:
         """An xarray Dataset over the axes of the grid, or over the variants, with units as attributes. Needs xarray."""
-        xarray, units, swept = _need("xarray"), self.units, self.swept
+        xarray, units, swept = need("xarray", "tables", "a Dataset"), self.units, self.swept
         grid = swept.variants.shape is not None and len(swept.variants.varied) > 0
         axes = tuple(map(self._given, self.varied)) if grid else ("variant",)
         named = {self._given(name): axis for name, axis in self.coords.items()}
@@ -225,10 +225,10 @@ class Sweep:
 
     def to_parquet(self, path: str | Path) -> None:
         """Write the table of `to_pandas` as a Parquet file, with the units as metadata. Needs pyarrow."""
-        pyarrow = _need("pyarrow", "clutchwork[parquet]")
+        pyarrow = need("pyarrow", "exchange", "a Parquet file")
         table = pyarrow.table({name: pyarrow.array(column.tolist()) for name, column in self.columns()})
         units = {f"unit {name}": unit for name, unit in self.units.items()}
-        importlib.import_module("pyarrow.parquet").write_table(table.replace_schema_metadata(units), str(path))
+        need("pyarrow.parquet", "exchange").write_table(table.replace_schema_metadata(units), str(path))
 
     def to_csv(self, path: str | Path) -> None:
         """Write the table with all digits; heads are `name [unit]` where there is one."""
@@ -272,10 +272,3 @@ def _plain(values: Array) -> Array:
         return np.array(listed, dtype=float)
     except (TypeError, ValueError):
         return values
-
-
-def _need(package: str, install: str = "") -> Any:
-    try:
-        return importlib.import_module(package)
-    except ImportError as error:
-        raise ImportError(f"this needs {package}: pip install {install or package!r}") from error
