@@ -6,9 +6,11 @@ import math
 
 import pytest
 
-from clutchwork.declare.quantity import QuantityError, curve_in_si, factor_to_si, in_si
+from clutchwork.declare.quantity import QuantityError, factor_to_si, in_si
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.units import parse, split
+from clutchwork.files.lists import curve_in_si
+from clutchwork.model.numbers import At
 
 
 @pytest.mark.parametrize(
@@ -86,12 +88,12 @@ def test_whole_numbers_stay_whole():
 
 
 def test_curves():
-    spec = Spec("curve", "N m", "", unit_x="rad/s")
-    assert curve_in_si([[0, 1], [2, 3]], spec, "N m") == [(0, 1), (2, 3)]
-    table = {"points": [[0, 1], [60, 2]], "unit_x": "rpm", "unit": "kN m"}
-    assert curve_in_si(table, spec, "N m") == [(0.0, 1000.0), (pytest.approx(2 * math.pi), 2000.0)]
+    spec, at = Spec("curve", "N m", "", unit_x="rad/s"), At("", "torque", "N m")
+    assert curve_in_si([[0, 1], [2, 3]], spec, at) == [[0, 1], [2, 3]]
+    table = {"points": [[0, 1], [60, "2 N m"]], "unit_x": "rpm", "unit": "kN m"}
+    assert curve_in_si(table, spec, at) == ((0.0, 1000.0), (pytest.approx(2 * math.pi), 2.0))
     with pytest.raises(QuantityError, match="does not fit"):
-        curve_in_si({"points": [[0, 1]], "unit": "bar"}, spec, "N m")
+        curve_in_si({"points": [[0, 1]], "unit": "bar"}, spec, at)
 
 
 def test_dimension():

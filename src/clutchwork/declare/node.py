@@ -7,7 +7,8 @@ from enum import Enum, Flag, auto
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias, cast
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base.classes import PLAIN, dataclass
+from clutchwork.declare import given
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -45,6 +46,12 @@ class Node:
     angle: float = 0.0
     fixed: bool = False
 
+    def _accept(self) -> None:
+        """Values with units are put into SI."""
+        values = vars(self)
+        for name, unit in zip(PLACES, NODE_UNITS[self.domain], strict=True):
+            values[name] = given.Wanted(unit).number(values[name])
+
     def __reduce__(self) -> str | tuple[Any, ...]:
         # there is one housing, copies included
         if self is HOUSING:
@@ -52,6 +59,8 @@ class Node:
         return Node, (self.name, self.domain, self.inertia, self.speed, self.angle, self.fixed)
 
 
+PLACES = ("inertia", "speed", "angle")
+NODE_UNITS = {Domain.ROTATION: ("kg m2", "rad/s", "rad"), Domain.TRANSLATION: ("kg", "m/s", "m")}
 HOUSING = Node("housing", fixed=True)
 
 
@@ -68,6 +77,15 @@ class ThermalNode:
     name: str
     capacity: float | None = None
     temperature: SignalLike = 300.0
+
+    def _accept(self) -> None:
+        """Values with units are put into SI."""
+        values = vars(self)
+        values["capacity"] = given.Wanted("J/K").number(values["capacity"])
+        values["temperature"] = given.driving(given.Wanted("K").number(values["temperature"]), "K")
+
+
+PLAIN |= {Node, ThermalNode, Domain}
 
 
 class Work(Flag):
@@ -107,6 +125,10 @@ class Listed(type):
 
 class Declared(metaclass=Listed):
     """Base of elements, laws and signals."""
+
+    def _accept(self) -> None:
+        """Values with units are put into SI."""
+        given.accept(self)
 
     def __dir__(self) -> list[str]:
         known: Any = self
