@@ -88,7 +88,7 @@ def numbers_in_si(value: Any, wanted: Wanted) -> Any:
     if not _is_list(value) or (wanted.scale is PLAIN and NUMBERS.issuperset(map(type, value))):
         return value
     made = [
-        numbers_in_si(item, wanted) if _is_list(item) or _is_array(item) else wanted.number(item) for item in value
+        numbers_in_si(item, wanted) if _is_list(item) or is_array(item) else wanted.number(item) for item in value
     ]
     return value if all(new is old for new, old in zip(made, value, strict=True)) else tuple(made)
 
@@ -97,7 +97,8 @@ def _is_list(value: Any) -> bool:
     return isinstance(value, list | tuple) or getattr(getattr(value, "dtype", None), "kind", "") == "O"
 
 
-def _is_array(value: Any) -> bool:
+def is_array(value: Any) -> bool:
+    """Whether a value is an array of pint."""
     return pints.is_quantity(value) and pints.is_list(value)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 from clutchwork.declare.unit_words import OTHER_ZERO, QUANTITIES, TABLE, Quantity
@@ -27,7 +28,8 @@ class UnitRow(NamedTuple):
     examples: tuple[str, ...]
 
 
-def unit_table() -> list[UnitRow]:
+@cache
+def unit_table() -> tuple[UnitRow, ...]:
     """All words for units and what is often made of them, by quantity.
 
     Words are put together with blanks, powers and one slash: "kg cm2", "N m s/rad", "kJ/(kg K)".
@@ -41,7 +43,13 @@ def unit_table() -> list[UnitRow]:
         for name in names:
             made = scale_to_si(name, quantity.unit)
             found.append(UnitRow(name, quantity.name, quantity.unit, made.factor, made.zero, quantity.examples))
-    return found
+    return tuple(found)
+
+
+def fitting(unit: str) -> list[str]:
+    """Units that values in one of SI may be given in."""
+    exact = [row.name for row in unit_table() if row.si == unit]
+    return exact or [row.name for row in unit_table() if powers_of(row.si) == powers_of(unit)]
 
 
 def _measures(name: str, quantity: Quantity) -> bool:

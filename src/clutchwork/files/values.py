@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import listed, shown
-from clutchwork.declare.node import HOUSING, Node, ThermalNode
+from clutchwork.declare.node import HOUSING, Domain, Node, ThermalNode
 from clutchwork.declare.given import with_gain
 from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
 from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
@@ -21,6 +21,10 @@ from clutchwork.signals.column import Column
 T = TypeVar("T")
 
 
+# what a port of a domain may be
+PORTS = {"rotation": "shaft", "translation": "mass", "": "shaft or mass"}
+
+
 class Values:
     """Turns the values of one file into those of fields; every mistake is collected."""
 
@@ -30,16 +34,20 @@ class Values:
         self.problems: list[Problem] = []
         self.nodes: dict[str, Node] = {HOUSING.name: HOUSING}
         self.thermal: dict[str, ThermalNode] = {}
+        self.strays: dict[str, str] = {}  # names in tables whose heads are misspelt
 
     def _report(self, at: At, message: str, value: str = "", remedy: str = "") -> Any:
         self.problems.append(at.problem(message, value, remedy))
         return BROKEN
 
     def _unknown(self, data: Iterable[str], known: Any, at: At) -> None:
+        rest = f"known keys: {listed(known)}"
         for key in data:
             if key not in known:
-                remedy = f"known keys: {listed(known)}"
-                self._report(at.inner(str(key)), "is an unknown key" + near(key, known), remedy=remedy)
+                # the list of all is only said once, and not where a near one says enough
+                meant = near(key, known)
+                self._report(at.inner(str(key)), "is an unknown key" + meant, remedy="" if meant else rest)
+                rest = rest if meant else ""
 
     def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
         """Values of the fields of a declaration, in SI; mistakes are reported."""
@@ -113,9 +121,15 @@ class Values:
         part = self.elements.thermal_part(value) if spec.what == "thermal" else None
         if part is not None:
             return part
-        what = "shaft" if spec.what == "port" else "thermal node"
-        remedy = f"known {what}s: {listed(known)}" if known else "add one: [[thermal]] or [[ambient]]"
-        return self._report(at, f"is not a {what} of this model" + near(value, known), shown(value), remedy)
+        moving = any(node.domain is Domain.TRANSLATION for node in self.nodes.values())
+        what = PORTS[spec.domain if moving else spec.domain or "rotation"] if spec.what == "port" else "thermal node"
+        if isinstance(value, str) and value in self.strays:
+            remedy = f"it stands in [[{self.strays[value]}]]: write [[{what.partition(' ')[0]}]]"
+            return self._report(at, f"is not a {what} of this model", shown(value), remedy)
+        fits = [name for name in known if _is_of(known[name], spec)]
+        many = {"mass": "masses", "shaft or mass": "shafts and masses"}.get(what, f"{what}s")
+        remedy = f"known {many}: {listed(fits)}" if fits else "add one: [[thermal]] or [[ambient]]"
+        return self._report(at, f"is not a {what} of this model" + near(value, fits), shown(value), remedy)
 
     def _other(self, value: Any, at: At) -> Any:
         """An input that a thermal node, an element or a shaft gives."""
@@ -166,6 +180,11 @@ class Values:
                 fault = f"cannot be given: the head of the column has the unit [{unit}]"
                 return self._report(at.inner("unit"), fault, shown(value["unit"]), "remove unit")
         return BROKEN if scale is BROKEN else signal
+
+
+def _is_of(node: Any, spec: Spec) -> bool:
+    """Whether a port may be on a node."""
+    return spec.what != "port" or not spec.domain or node.fixed or node.domain.value == spec.domain
 
 
 def _in_tuples(value: Any) -> Any:

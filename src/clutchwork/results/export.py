@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from clutchwork.base.extras import need
+from clutchwork.results.units import converter
 
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
@@ -25,11 +27,12 @@ def to_csv(run: Recorded, path: Path, names: tuple[str, ...]) -> None:
         file.writelines(",".join(map(str, line)) + "\n" for line in zip(*cells, strict=True))
 
 
-def to_pandas(run: Recorded, names: tuple[str, ...]) -> Any:
+def to_pandas(run: Recorded, names: tuple[str, ...], units: Mapping[str, str] | None = None) -> Any:
     """DataFrame with the time as index; `frame.attrs["units"]` holds the units."""
-    pandas = need("pandas", "tables", "a table")
-    frame = pandas.DataFrame({name: run[name] for name in names}, index=pandas.Index(run.time, name="time"))
-    frame.attrs["units"] = {name: run.units[name] for name in names}
+    pandas, made = need("pandas", "tables", "a table"), converter(run, units)
+    index = pandas.Index(made.time(run), name="time")
+    frame = pandas.DataFrame({name: made.values(run, name) for name in names}, index=index)
+    frame.attrs["units"] = {name: made.unit(name) for name in names}
     return frame
 
 

@@ -99,6 +99,18 @@ class Trajectory:
         """A signal over `time`; KeyError with near names when there is none of that name."""
         return self.channels[name].evaluate(self.rows)
 
+    def in_units(self, name: str, unit: str) -> NDArray[Any]:
+        """A signal over `time` in another unit: `run.in_units("engine.speed", "rpm")`.
+
+        UseError, a TypeError, where the unit is not one of the signal, with those that are; KeyError with near names
+        where there is no such signal.
+        """
+        from clutchwork.results.units import converter
+
+        self.channels[name]
+        found: NDArray[Any] = converter(self, {name: unit}).values(self, name)
+        return found
+
     def __contains__(self, name: object) -> bool:
         return name in self.channels
 
@@ -143,11 +155,15 @@ class Trajectory:
 
         to_csv(self, Path(path), self._chosen(names))
 
-    def to_pandas(self, names: Any = None) -> Any:
-        """A pandas DataFrame over time; needs pandas."""
+    def to_pandas(self, names: Any = None, *, units: Mapping[str, str] | None = None) -> Any:
+        """A pandas DataFrame over time; needs pandas.
+
+        Parameters: names of signals, all by default; units, other ones than those of SI by signal, `*` for any
+        characters: {"engine.speed": "rpm", "*.pressure": "bar", "time": "ms"}; `frame.attrs["units"]` holds all.
+        """
         from clutchwork.results.export import to_pandas
 
-        return to_pandas(self, self._chosen(names))
+        return to_pandas(self, self._chosen(names), units)
 
     def to_xarray(self, names: Any = None) -> Any:
         """An xarray Dataset with units as attributes; needs xarray."""

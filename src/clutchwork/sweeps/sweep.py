@@ -26,7 +26,7 @@ from clutchwork.sweeps.batch import Batch, Wanted, Way
 from clutchwork.sweeps.outputs import Asked, Computed, Output, asked
 from clutchwork.sweeps.progress import Shown, shown_by
 from clutchwork.sweeps.result import Sweep, SweepInterrupted, Swept
-from clutchwork.sweeps.variants import given
+from clutchwork.sweeps.variants import given, in_si
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -57,14 +57,14 @@ def sweep(
     how many run at once, by default as many as there are cores; progress, True for a bar of tqdm, or a function of
     (variants done, variants).
 
-    Names are those of `System.changed`. An output is the name of a signal, for its value at the end, `cw.at`,
+    Names are those of `System.changed`; values may have units, "2 bar", and are kept in SI. An output is the name of a signal, for its value at the end, `cw.at`,
     `cw.maximum`, `cw.minimum`, `cw.peak`, `cw.integral`, `cw.lock` or `cw.break_away`, or a function of the Trajectory;
     a mapping gives them names.
 
     A variant that stops early has its status, and hurts no other. Ctrl-C ends the sweep with what is done.
     """
     system, wanted = _system(model), asked(outputs)
-    variants = given(vary)
+    variants = given(vary) if system.source is None else in_si(given(vary), system.source)
     chosen = {**changes} if t_end is None else {**changes, "t_end": t_end}
     useless = [name for name in ROWS if name in changes]
     if useless:
