@@ -93,15 +93,21 @@ def _init(thing: Any, /, *args: Any, **named: Any) -> None:
     for name, make in own:
         values[name] = make()
     vars(thing).update(values)
-    if accepts and not (PLAIN.issuperset(map(type, named.values())) and PLAIN.issuperset(map(type, args[named_first:]))):
+    if accepts and not (
+        (not named or PLAIN.issuperset(map(type, named.values())))
+        and (len(args) <= named_first or PLAIN.issuperset(map(type, args[named_first:])))
+    ):
         thing._accept()
     if checked:
         thing.__post_init__()
 
 
 def _refuse(thing: Any, args: tuple[Any, ...], named: dict[str, Any]) -> None:
-    """TypeError for a call that does not fit; `explain` of declarations says more."""
+    """TypeError for a call that does not fit; `explain` of declarations gives classes a method that says more."""
     cls = type(thing)
+    explained = getattr(cls, "_explained", None)
+    if explained is not None:
+        explained(cls, args, named)
     try:
         signature(cls).bind(*args, **named)
     except TypeError as error:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import is_dataclass
 from typing import Any, TypeVar
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, near, nearest
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import counted
@@ -39,6 +40,10 @@ def explained(call: str) -> Callable[[F], F]:
 
 def explain(cls: Any) -> None:
     """Let the constructor of a declaration do so."""
+    if getattr(cls.__init__, "__module__", "") == dataclass.__module__:
+        # which asks for this where a call does not fit, and costs nothing where it does
+        cls._explained = staticmethod(_explained)
+        return
     made = cls.__init__
 
     @functools.wraps(made)
@@ -46,12 +51,17 @@ def explain(cls: Any) -> None:
         try:
             made(self, *args, **named)
         except TypeError:
-            problems = list(_problems(cls, args, named, _meanings(cls)))
-            if not problems:
-                raise
-            raise UseError(f"cw.{cls.__name__}({_name(args, named)})", problems) from None
+            _explained(cls, args, named)
+            raise
 
     cls.__init__ = construct
+
+
+def _explained(cls: Any, args: tuple[Any, ...], named: Mapping[str, Any]) -> None:
+    """A UseError that names every mistake of a call, where there is one."""
+    problems = list(_problems(cls, args, named, _meanings(cls)))
+    if problems:
+        raise UseError(f"cw.{cls.__name__}({_name(args, named)})", problems) from None
 
 
 def _name(args: tuple[Any, ...], named: Mapping[str, Any]) -> str:

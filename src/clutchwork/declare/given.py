@@ -150,9 +150,15 @@ def accept(thing: Any) -> None:
             given = [other for other in _gains(cls) if values[other] is not None] if name == "gain" else ()
             new = field_in_si(value, with_gain(name, spec, cls, given))
             if spec.unit == "*" and _is_open(new, spec):
-                values[OPEN] = True
+                mark_open(thing)
         if new is not value:
             values[name] = new
+
+
+def mark_open(signal: Any) -> None:
+    """Remember that a signal has values with units; from now on, those who are given one of its class look for it."""
+    vars(signal)[OPEN] = True
+    PLAIN_TYPES.discard(type(signal))
 
 
 def _is_open(value: Any, spec: Spec) -> bool:

@@ -313,6 +313,11 @@ class Signal(Declared):
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return []
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        if given.OPEN in state:
+            given.mark_open(self)
+
     def segments(self) -> tuple[Segment, ...]:
         """Pieces in order of their start.
 

@@ -296,8 +296,7 @@ def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, .
         _check_work(cls)
         frozen.kind, frozen.role, frozen.states, frozen.hooks = kind, role, states, hooks
         REGISTRY[role].add(kind, frozen)
-        if role is not Role.SIGNAL:
-            PLAIN.add(frozen)
+        PLAIN.add(frozen)
         schema_hash.cache_clear()
         return cls
 
