@@ -82,7 +82,7 @@ def _from_text(value: str, unit: str, others: tuple[str, ...], difference: bool)
         example = "" if unit == "1" else f" or add one, such as '{parts[0]:g} {unit}'"
         raise QuantityError("has no unit", shown(value), f"remove the quotes{example}")
     found = scale_to_si(parts[1], unit, others, value, difference=difference)
-    return parts[0] * found.factor + found.zero
+    return found.si(parts[0])
 
 
 def from_pint(quantity: Any, unit: str, others: tuple[str, ...] = (), *, difference: bool = False) -> Any:
@@ -153,8 +153,7 @@ def times(value: Any, scale: Scale) -> Any:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
     try:
-        # minus zero becomes zero, so that what is written reads back to the same bits
-        return value * scale.factor + scale.zero
+        return scale.si(value)
     except OverflowError:
         # an integer beyond all floats, which the checks that follow refuse
         return value

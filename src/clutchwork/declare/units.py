@@ -37,6 +37,12 @@ class Scale(NamedTuple):
     factor: float
     zero: float = 0.0
 
+    def si(self, number: float) -> float:
+        """A number in SI; 35 mm are 0.035 m to the last bit, which no product with 0.001 promises."""
+        parts = 1.0 / self.factor if 0.0 < self.factor < 1.0 else 0.5
+        # minus zero becomes zero, so that what is written reads back to the same bits
+        return number / parts + self.zero if parts.is_integer() else number * self.factor + self.zero
+
 
 def parse(text: str) -> Unit:
     """Read a unit such as "N m s/rad", "kg.m2" or "1/s"; ValueError names the part that is not known."""

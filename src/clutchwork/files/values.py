@@ -93,7 +93,7 @@ class Values:
             return self._report(at, "is a difference of temperatures, which degrees have no zero for", remedy=remedy)
         if type(value) is float and not spec.whole:
             # minus zero becomes zero, so that what is written reads back to the same bits
-            return value * scale.factor + scale.zero
+            return value + 0.0 if scale is PLAIN else scale.si(value)
         others = (*spec.units, *at.units)
         return self._converted(
             lambda: in_si(

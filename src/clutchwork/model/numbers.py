@@ -98,7 +98,7 @@ def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if has_unit(value) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:
         yield at.problem("must be a list of numbers", value=shown(value), remedy=f"write [x, y, ...]: {spec.doc}")
         return
-    rows = [row if hasattr(row, "__len__") and not isinstance(row, str) else [row] for row in value]
+    rows = [row if hasattr(row, "__len__") and not has_unit(row) else [row] for row in value]
     if len({len(row) for row in rows}) > 1:
         lengths = listed(len(row) for row in rows)
         yield at.problem("has rows of different lengths", value=lengths, remedy="give every row as many numbers")
@@ -138,7 +138,7 @@ def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
 
 def _point(point: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A pair of finite numbers."""
-    if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
+    if has_unit(point) or not hasattr(point, "__len__") or len(point) != 2:
         yield at.problem("must be a pair of numbers", value=shown(point), remedy="write [x, y]")
         return
     plain = Spec("param", spec.unit_x, "", units=spec.units_x)
