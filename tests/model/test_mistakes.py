@@ -110,7 +110,11 @@ CASES = {
         "[0.5, 2e5], [0.4, 1.0]",
         "pressure.points, point 3 = 0.4 s: comes after 0.5 s",
     ),
-    "table with text": ("[0.5, 2e5]", '[0.5, "x"]', "pressure.points, point 2 = 'x': is not a number; write a number in [Pa]"),
+    "table with text": (
+        "[0.5, 2e5]",
+        '[0.5, "x"]',
+        "pressure.points, point 2 = 'x': is not a number; write a number in [Pa]",
+    ),
     "table with a triple": ("[0.5, 2e5]", "[0.5, 1.0, 2.0]", "point 2 = [0.5, 1.0, 2.0]: must be a pair of numbers"),
     "empty table": ("[[0.0, 0.0], [0.5, 2e5]]", "[]", "pressure.points = []: must be a list of points"),
     "unknown signal": ('"table"', '"tabel"', "pressure.type = 'tabel': is an unknown type; did you mean 'table'?"),

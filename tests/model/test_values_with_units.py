@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support.other_units import UREG, WAYS, other, text
-from support.samples import ELEMENT_ROLES, declared, driveline, fields, nodes, number, value
 
 import clutchwork as cw
 from clutchwork.declare.node import Component, Node
@@ -21,6 +19,8 @@ from clutchwork.model.components import component_problems
 from clutchwork.model.fields import object_problems
 from clutchwork.model.numbers import At
 from clutchwork.model.problems import NODE_FIELDS
+from support.other_units import UREG, WAYS, other, text
+from support.samples import ELEMENT_ROLES, declared, driveline, fields, nodes, number, value
 
 # a string has the digits of what pint converted to; both conversions round their factor and their product: 4 roundings
 CLOSE = 4 * np.finfo(float).eps
@@ -343,7 +343,9 @@ def test_a_signal_is_shared_by_two_quantities() -> None:
     assert step.height == "2 kN"
 
 
-WORDS = st.sampled_from(["bar", "rpm", "kg", "m2", "/", " ", "-", "1", "2,5", "%", "degC", "°", "²", "e5", ".", "(", "*"])
+WORDS = st.sampled_from(
+    ["bar", "rpm", "kg", "m2", "/", " ", "-", "1", "2,5", "%", "degC", "°", "²", "e5", ".", "(", "*"]
+)
 TEXTS = st.one_of(st.text(max_size=30), st.lists(WORDS, max_size=8).map("".join), WORDS.map("3 {}".format))
 
 

@@ -97,7 +97,7 @@ def _init(thing: Any, /, *args: Any, **named: Any) -> None:
         (not named or PLAIN.issuperset(map(type, named.values())))
         and (len(args) <= named_first or PLAIN.issuperset(map(type, args[named_first:])))
     ):
-        thing._accept()
+        thing._accept()  # noqa: SLF001, a method that classes have for this
     if checked:
         thing.__post_init__()
 

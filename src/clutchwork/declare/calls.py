@@ -99,12 +99,12 @@ def _problems(
         yield _spare(spare, [p for p in by_place if p not in OWNERS], [p.name for p in rest if p.name not in given])
     for name in set(by_place[: len(args)]) & set(named):
         yield f"{name} is given twice, by position and by keyword; give it once"
-    rest = f"known fields: {listed(known)}"
+    fields = f"known fields: {listed(known)}"
     for name in unknown:
         # the list of all is only said once, and not where a near one says enough
         said = near(name, known)
-        yield f"unknown field {shown(name)}{said or f'; {rest}'}" if said or rest else f"unknown field {shown(name)}"
-        rest = rest if said else ""
+        yield f"unknown field {shown(name)}{said or (fields and f'; {fields}')}"
+        fields = fields if said else ""
     for p in parameters[len(args) :]:
         lacks = p.default is p.empty and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) and p.name not in named
         # values by place are meant for some of them, and so is a name close to theirs

@@ -87,9 +87,7 @@ def numbers_in_si(value: Any, wanted: Wanted) -> Any:
         return _in_tuples(found)
     if not _is_list(value) or (wanted.scale is PLAIN and NUMBERS.issuperset(map(type, value))):
         return value
-    made = [
-        numbers_in_si(item, wanted) if _is_list(item) or is_array(item) else wanted.number(item) for item in value
-    ]
+    made = [numbers_in_si(item, wanted) if _is_list(item) or is_array(item) else wanted.number(item) for item in value]
     return value if all(new is old for new, old in zip(made, value, strict=True)) else tuple(made)
 
 
@@ -113,7 +111,7 @@ def _in_tuples(value: Any) -> Any:
     return tuple(map(_in_tuples, value)) if isinstance(value, list) else value
 
 
-def with_gain(name: str, spec: Spec, cls: type, given: Iterable[str]) -> Spec:
+def with_gain(name: str, spec: Spec, cls: Any, given: Iterable[str]) -> Spec:
     """The spec of a gain with only the units that fit what it multiplies: a pressure or a force."""
     gains = _gains(cls) if name == "gain" else {}
     found = {gains[other] for other in given if other in gains}
@@ -139,7 +137,8 @@ def _specs(cls: Any) -> tuple[tuple[str, Spec], ...]:
 
 def accept(thing: Any) -> None:
     """Put the values of a declared object that was just made into SI, as far as they can be read."""
-    cls, values = type(thing), vars(thing)
+    cls: Any = type(thing)
+    values = vars(thing)
     for name, spec in _specs(cls):
         value = values[name]
         if type(value) in PLAIN_TYPES or (spec.what == "curve" and _all_plain(value)):
@@ -174,7 +173,8 @@ def driving(signal: Any, unit: str, others: tuple[str, ...] = ()) -> Any:
     if OPEN not in getattr(signal, "__dict__", ()):
         return signal
     driven = Wanted(unit, others)
+    cls: Any = type(signal)
     values = vars(signal)
-    new = {name: field_in_si(values[name], spec, driven) for name, spec in _specs(type(signal)) if spec.unit == "*"}
+    new = {name: field_in_si(values[name], spec, driven) for name, spec in _specs(cls) if spec.unit == "*"}
     changed = {name: value for name, value in new.items() if value is not values[name]}
     return replace(signal, **changed) if changed else signal

@@ -62,5 +62,5 @@ def has_other_zero(quantity: Any) -> bool:
 def _root(quantity: Any) -> Any:
     try:
         return quantity.to_root_units()
-    except Exception:  # noqa: BLE001, errors of pint cannot be named without importing it
+    except Exception:
         raise Foreign from None

@@ -13,7 +13,6 @@ from clutchwork.base.shown import shortened, shown
 from clutchwork.declare import pints, units
 from clutchwork.declare.unit_table import example_of
 from clutchwork.declare.unit_table import unit_table as unit_table
-from clutchwork.declare.unit_words import OTHER_ZERO
 from clutchwork.declare.units import KELVIN, Scale
 
 # numbers as they are
@@ -140,7 +139,9 @@ def _refused(value: str, word: str, wanted: str, difference: bool) -> QuantityEr
         remedy = "give it in [K]; a difference of 1 degC, or of 1.8 degF, is 1 K"
         return QuantityError(f"is in {word}, which has another zero, and a difference has none", value, remedy)
     remedy = f"give it in {wanted}; per kelvin, a degree Celsius is 1 K"
-    return QuantityError(f"is in {word}, which has another zero", value, remedy if "K" in wanted else f"give it in {wanted}")
+    return QuantityError(
+        f"is in {word}, which has another zero", value, remedy if "K" in wanted else f"give it in {wanted}"
+    )
 
 
 def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), whole: object = None) -> float:

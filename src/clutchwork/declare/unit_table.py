@@ -6,7 +6,7 @@ from functools import cache
 from typing import NamedTuple
 
 from clutchwork.declare.unit_words import OTHER_ZERO, QUANTITIES, TABLE, Quantity
-from clutchwork.declare.units import powers_of
+from clutchwork.declare.units import Scale, powers_of, scale
 
 # two words of one unit are listed once, and what is no word of its own is
 HIDDEN = ("l", "ml", "C", "F")
@@ -34,14 +34,12 @@ def unit_table() -> tuple[UnitRow, ...]:
 
     Words are put together with blanks, powers and one slash: "kg cm2", "N m s/rad", "kJ/(kg K)".
     """
-    from clutchwork.declare.quantity import scale_to_si
-
     found = []
     for quantity in QUANTITIES:
         names = [name for name in (*TABLE, *MADE_OF) if name not in HIDDEN and _measures(name, quantity)]
         names += [name for name in OTHER_ZERO if name not in HIDDEN and quantity.unit == "K"]
         for name in names:
-            made = scale_to_si(name, quantity.unit)
+            made = scale(name, (quantity.unit,)) or Scale(1.0)
             found.append(UnitRow(name, quantity.name, quantity.unit, made.factor, made.zero, quantity.examples))
     return tuple(found)
 

@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import listed, shown
-from clutchwork.declare.node import HOUSING, Domain, Node, ThermalNode
 from clutchwork.declare.given import with_gain
+from clutchwork.declare.node import HOUSING, Domain, Node, ThermalNode
 from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
 from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
 from clutchwork.files.lists import curve_in_si, list_in_si

@@ -1,4 +1,4 @@
-"""Results in other units than SI: `converter` says for each signal what puts its values into the unit that is asked for."""
+"""Results in other units than SI: `converter` says what puts the values of each signal into the one asked for."""
 
 from __future__ import annotations
 
@@ -111,11 +111,12 @@ def _fits(unit: object, si: str) -> str:
     """A unit that fits a signal; QuantityError says what the signal has, and what it may be given in."""
     if not si:
         raise QuantityError("is a word and has no unit", shown(unit), "leave it out")
+    remedy = f"the signal is in [{si}]; give it in {listed(fitting(si))}" if fitting(si) else f"it is in [{si}]"
     try:
         scale_to_si(unit, si)
-        if si in ("N m", "J") and str(unit).strip() in WORK_OR_TORQUE - {*fitting(si)}:
-            raise QuantityError("has a unit that does not fit", "", "")
     except QuantityError as bad:
-        remedy = f"the signal is in [{si}]; give it in {listed(fitting(si))}" if fitting(si) else f"it is in [{si}]"
         raise QuantityError(bad.message, shown(unit), remedy) from None
-    return str(unit).strip()
+    word = str(unit).strip()
+    if si in ("N m", "J") and word in WORK_OR_TORQUE - {*fitting(si)}:
+        raise QuantityError("has a unit that does not fit", shown(unit), remedy)
+    return word

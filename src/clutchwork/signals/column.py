@@ -17,8 +17,8 @@ class Column(Signal):
     """Measured or prepared values: one column of a CSV file, linear over its time column, held outside.
 
     The first line of the file names the columns; the separator is a comma. Equal times make a jump. Values below a head
-    with a unit, such as `c1 [bar]`, are converted to SI, `[degC]` too, and so are times; it must fit the driven quantity. A name
-    without its unit finds that column too. Without a unit they are in SI.
+    with a unit, such as `c1 [bar]` or `oil [degC]`, are converted to SI, and so are times; it must fit the driven
+    quantity. A name without its unit finds that column too. Without a unit they are in SI.
     In a model file the path is relative to that file. A file that cannot be used raises `FileError`.
     """
 

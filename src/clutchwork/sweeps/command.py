@@ -23,7 +23,7 @@ from clutchwork.sweeps.result import Sweep, SweepInterrupted
 from clutchwork.sweeps.sweep import ROWS, sweep
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
 DONE, STOPPED, INTERRUPTED = 0, 1, 130
 CALLS = ("at", "maximum", "minimum", "peak", "integral", "lock", "break_away")
@@ -133,7 +133,8 @@ def _varied(text: str) -> tuple[str, Any]:
     units = {part[1] for part in parts if part is not None and part[1]}
     try:
         if spaced:
-            numbers = np.linspace(*numbers, int(values.split(":")[2])).tolist()
+            first, last = numbers
+            numbers = np.linspace(first, last, int(values.split(":")[2])).tolist()
     except (ValueError, TypeError):
         numbers = []
     if not sign or not name or not numbers or None in parts or (":" in values and not spaced):

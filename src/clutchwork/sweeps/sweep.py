@@ -57,8 +57,9 @@ def sweep(
     how many run at once, by default as many as there are cores; progress, True for a bar of tqdm, or a function of
     (variants done, variants).
 
-    Names are those of `System.changed`; values may have units, "2 bar", and are kept in SI. An output is the name of a signal, for its value at the end, `cw.at`,
-    `cw.maximum`, `cw.minimum`, `cw.peak`, `cw.integral`, `cw.lock` or `cw.break_away`, or a function of the Trajectory;
+    Names are those of `System.changed`; values may have units, "2 bar", and are kept in SI. An output is the name of a
+    signal, for its value at the end, `cw.at`, `cw.maximum`, `cw.minimum`, `cw.peak`, `cw.integral`, `cw.lock` or
+    `cw.break_away`, or a function of the Trajectory;
     a mapping gives them names.
 
     A variant that stops early has its status, and hurts no other. Ctrl-C ends the sweep with what is done.
