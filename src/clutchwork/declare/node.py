@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from enum import Enum, Flag, auto
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeAlias, cast
 
 from clutchwork.base.classes import PLAIN, dataclass
 from clutchwork.declare import given
@@ -17,6 +17,17 @@ if TYPE_CHECKING:
 
 # what is wrong, as (quantity, what is so, remedy)
 Found: TypeAlias = "list[tuple[str, str, str]]"
+
+
+class Measured(Protocol):
+    """A quantity of pint."""
+
+    @property
+    def magnitude(self) -> Any:
+        """Its number in its unit."""
+
+    def to_root_units(self) -> Any:
+        """The same in the base units of its registry."""
 
 
 class Domain(Enum):
@@ -365,6 +376,9 @@ class HeatFlow:
 SignalLike: TypeAlias = "float | Signal | ThermalNode | Element | tuple[Element, str] | Node | Rate | HeatFlow"
 # (x, y) pairs of a curve
 Points: TypeAlias = "Sequence[tuple[float, float]]"
+# what may be given for a number, and for pairs of them
+Number: TypeAlias = "float | str | Measured"
+PointsWithUnits: TypeAlias = "Sequence[tuple[Number, Number]]"
 # coefficients of friction: one, a table, or rows of one
 Coefficients: TypeAlias = "float | Points | Sequence[float] | Sequence[Sequence[float]]"
 # units of the gain of a contact, on shafts and on masses: torque or force per pressure, per force, per share

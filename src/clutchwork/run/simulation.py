@@ -33,6 +33,7 @@ from clutchwork.run.record import Progress, Recording, record
 from clutchwork.run.settings import merged
 
 if TYPE_CHECKING:
+    from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
 
 Array = NDArray[np.float64]
@@ -63,7 +64,7 @@ class Job:
 @explained("simulate")
 def simulate(
     model: Assembles | System,
-    t_end: float | None = None,
+    t_end: Number | None = None,
     *,
     options: Options | None = None,
     progress: Progress | None = None,

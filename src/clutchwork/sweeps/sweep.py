@@ -31,6 +31,7 @@ from clutchwork.sweeps.variants import given, in_si
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
 
 # options that say which rows a single run has
@@ -41,7 +42,7 @@ Told = Callable[[int, int], None]
 @explained("sweep")
 def sweep(
     model: Assembles | System,
-    t_end: float | None = None,
+    t_end: Number | None = None,
     *,
     vary: Any,
     outputs: Mapping[str, Asked] | Sequence[Asked] | Asked,
@@ -52,10 +53,10 @@ def sweep(
 ) -> Sweep:
     """Run a Driveline or a System with many sets of values, and keep what is asked for of each run.
 
-    Parameters: t_end [s], options and their fields by name are those of `simulate`; vary, values by name (all
-    combinations), a list with the values of each variant, `cw.variants` or a DataFrame; outputs, what is kept; threads,
-    how many run at once, by default as many as there are cores; progress, True for a bar of tqdm, or a function of
-    (variants done, variants).
+    Parameters: t_end [s], or with a unit, options and their fields by name are those of `simulate`; vary, values by
+    name (all combinations), a list with the values of each variant, `cw.variants` or a DataFrame; outputs, what is
+    kept; threads, how many run at once, by default as many as there are cores; progress, True for a bar of tqdm, or a
+    function of (variants done, variants).
 
     Names are those of `System.changed`; values may have units, "2 bar", and are kept in SI. An output is the name of a
     signal, for its value at the end, `cw.at`, `cw.maximum`, `cw.minimum`, `cw.peak`, `cw.integral`, `cw.lock` or
