@@ -146,6 +146,18 @@ def test_an_error_inside_a_call_stays_what_it_is():
         cw.simulate(Odd(), 1.0)
 
 
+def test_a_list_of_all_fields_is_given_once_and_only_where_it_helps():
+    with pytest.raises(cw.UseError) as caught:
+        cw.Clutch("c", bas=1, gaain=2, zzz=3, qqqq=4)
+    words = str(caught.value)
+    assert words.count("known fields: ") == 1
+    assert "unknown field 'bas'; did you mean 'base'?\n" in words
+    assert "unknown field 'qqqq'\n" in words
+    with pytest.raises(cw.UseError) as caught:
+        cw.Clutch("c", bas=1)
+    assert "known fields" not in str(caught.value)
+
+
 # --- runs ---
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 NUMBERS = frozenset((float, int, bool))
 # sorts of fields that hold numbers
 READ = ("param", "option", "signal", "alternative", "curve", "numbers")
-# in the dictionary of a signal: it holds values with units that only what it drives can tell the meaning of
+# in the dictionary of a signal: it holds values with units, whose meaning depends on what it drives
 OPEN = "_has_units"
 
 
@@ -161,7 +161,7 @@ def mark_open(signal: Any) -> None:
 
 
 def _is_open(value: Any, spec: Spec) -> bool:
-    """Whether values have units that only what a signal drives can tell the meaning of."""
+    """Whether values have units, whose meaning depends on what the signal drives."""
     if spec.what != "curve":
         return has_unit(value)
     pairs = value if _is_list(value) else ()

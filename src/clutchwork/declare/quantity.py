@@ -47,7 +47,7 @@ def in_si(
     difference: bool = False,
     zero: float = 0.0,
 ) -> Any:
-    """The number in SI. What is no string, quantity or table is returned for the checks that follow.
+    """The number in SI. Anything but a string, a quantity or a table is returned for the checks that follow.
 
     Parameters: unit, the SI unit that is wanted; others, further ones that the quantity may have; factor and zero, to
     SI from a plain number; whole, whether an integer stays one; difference, whether it is one of temperatures.

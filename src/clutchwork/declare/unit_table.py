@@ -8,8 +8,9 @@ from typing import NamedTuple
 from clutchwork.declare.unit_words import OTHER_ZERO, QUANTITIES, TABLE, Quantity
 from clutchwork.declare.units import Scale, powers_of, scale
 
-# two words of one unit are listed once, and what is no word of its own is
+# second words of units that are listed already
 HIDDEN = ("l", "ml", "C", "F")
+# what is often made of words
 MADE_OF = (
     *("N m", "lbf ft", "1/min", "U/min", "deg/s", "rad/s", "rad/s2", "1/s", "m/s", "km/h", "m/s2", "m2", "cm2", "m3"),
     *("cm3", "L/min", "kg m2", "kg cm2", "g cm2", "N m/rad", "N m/deg", "N m s/rad", "Nm/rpm", "N/m", "N s/m", "J/K"),

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
 
-# a torque is no work, though both are N m
+# a torque is not work, though both are N m
 WORK_OR_TORQUE = {*fitting("N m"), *fitting("J")}
 
 
