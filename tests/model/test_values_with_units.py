@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clutchwork as cw
+from clutchwork.declare.given import PARTNERS
 from clutchwork.declare.node import Component, Node
 from clutchwork.declare.schema import Role, Spec, specs
 from clutchwork.declare.units import parse
@@ -36,9 +37,12 @@ FIELDS = [
 DRIVEN = [case for case in FIELDS if case.values[2].what in ("signal", "alternative")]
 
 
-def made(cls: type, **changes: Any) -> Any:
+def made(cls: type, on_masses: bool = False, **changes: Any) -> Any:
     """An object of a class whose other fields are samples; of two ways to give an input the one that changes."""
-    values = fields(cls, nodes())
+    joined = nodes()
+    if on_masses:
+        joined |= {name: cw.Node(name, cw.Domain.TRANSLATION, 1.0) for name in ("rotation", "other", "translation")}
+    values = fields(cls, joined)
     for item, spec in specs(cls, "alternative"):
         if item.name in changes:
             values.pop(spec.instead_of, None)
@@ -134,8 +138,9 @@ def signals(way: Callable[[float, str], Any], unit: str) -> Iterator[tuple[cw.Si
 @pytest.mark.parametrize(("cls", "name", "spec"), DRIVEN)
 def test_signals_take_the_unit_of_what_they_drive(cls: type, name: str, spec: Spec, way: str) -> None:
     for unit in (spec.unit, *spec.units):
+        on_masses = PARTNERS.get(spec.unit) == unit
         for signal, plain in signals(WAYS[way], unit):
-            found, wanted = getattr(made(cls, **{name: signal}), name), getattr(made(cls, **{name: plain}), name)
+            found, wanted = (getattr(made(cls, on_masses, **{name: one}), name) for one in (signal, plain))
             for one, other_one in zip(found.segments(), wanted.segments(), strict=True):
                 # a slope is a quotient of differences of rounded numbers
                 assert tuple(one) == pytest.approx(tuple(other_one), rel=1e-13, abs=1e-12)
@@ -236,7 +241,7 @@ def test_all_mistakes_of_a_model_come_at_once() -> None:
         "shaft \"engine\": inertia = '0.2 kg m': has a unit that does not fit; give it in [kg m2], such as '0.2 kg m2'",
         "shaft \"engine\": speed = '955 rmp': has the unknown unit 'rmp'; did you mean 'rpm'? give it in [rad/s]",
         "cw.Clutch(\"c1\"): friction.static = '12 m': has a unit that does not fit",
-        "cw.Clutch(\"c1\"): gain = '5e-4 m': has a unit that does not fit; give it in [m3] or [m2], such as '5e-4 m3'",
+        "cw.Clutch(\"c1\"): gain = '5e-4 m': has a unit that does not fit; give it in [m3], such as '5e-4 m3'",
         "cw.Clutch(\"c1\"): pressure.points, point 2 = '2 rpm': has a unit that does not fit; give it in [Pa]",
     ):
         assert any(words in one for one in found), found
@@ -336,11 +341,52 @@ def test_a_signal_is_shared_by_two_quantities() -> None:
     """It has no unit of its own: each of those that take it reads it."""
     d = cw.Driveline()
     a = d.shaft("a", inertia=1.0)
-    step = cw.Step(height="2 kN", start="10 ms")
-    one = d.add(cw.Torque("one", shaft=a, torque=step))
-    two = d.add(cw.Torque("two", shaft=a, torque=cw.Step(height="2 kNm", start=0.01)))
-    assert one.torque == two.torque == cw.Step(height=2000.0, start=0.01)
-    assert step.height == "2 kN"
+    step = cw.Step(height="50 %", start="10 ms")
+    law = cw.Coulomb(static=0.2, kinetic=0.1)
+    clutch = cw.Brake("one", shaft=a, friction=law, gain="2 kNm", normal_force=step)
+    drag = cw.WetDrag("two", base=d.housing, follower=a, peak="5 N m", speed="100 rpm", scale=step)
+    assert clutch.normal_force == drag.scale == cw.Step(height=0.5, start=0.01)
+    assert step.height == "50 %"
+
+
+def test_what_turns_has_other_units_than_what_moves_on_a_line() -> None:
+    """5 kN are no torque, though a torque element may be on a mass; files say the same."""
+    d = cw.Driveline()
+    a, b, m = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0), d.mass("m", mass=2.0)
+    law = cw.Coulomb(static=0.2, kinetic=0.1)
+    d.add(cw.Torque("t1", shaft=a, torque="5 kN"))
+    d.add(cw.Torque("t2", shaft=m, torque=cw.Step(height="5 kNm")))
+    d.add(cw.Spring("s", base=a, follower=b, stiffness="5 N/mm"))
+    d.add(cw.Brake("b1", shaft=m, friction=law, gain="5 cm3", pressure="2 bar"))
+    d.add(cw.Brake("b2", shaft=a, friction=law, gain="5 cm2", pressure="2 bar", tolerance="1 mm/s"))
+    found = {str(problem).partition(" = ")[0]: problem.remedy.partition(",")[0] for problem in d.check()}
+    assert found == {
+        'cw.Torque("t1"): torque': "give it in [N m]",
+        'cw.Torque("t2"): torque.height': "give it in [N]",
+        'cw.Spring("s"): stiffness': "give it in [N m/rad]",
+        'cw.Brake("b1"): gain': "give it in [m2]",
+        'cw.Brake("b2"): gain': "give it in [m3]",
+        'cw.Brake("b2"): tolerance': "give it in [rad/s]",
+    }
+    data = {
+        "shaft": [{"name": "a", "inertia": 1.0}],
+        "mass": [{"name": "m", "mass": 1.0}],
+        "element": [
+            {"name": "t1", "type": "torque", "shaft": "a", "torque": "5 kN"},
+            {"name": "t2", "type": "torque", "shaft": "m", "torque": {"type": "step", "height": 5, "unit": "kNm"}},
+            {"name": "t3", "type": "torque", "shaft": "m", "torque": {"type": "step", "height": "5 kN"}},
+        ],
+    }
+    with pytest.raises(cw.ModelError) as caught:
+        cw.Driveline.from_dict(data)
+    assert [problem.remedy.partition(",")[0] for problem in caught.value.problems] == [
+        "give it in [N m]",
+        "give it in [N]",
+    ]
+    system = cw.Driveline.from_dict(data | {"element": data["element"][2:]}).assemble()
+    with pytest.raises(cw.ModelError, match="does not fit"):
+        system.changed({"t3.torque": "5 N m"})
+    assert system.changed({"t3.torque.height": "6 kN"}).source is not None
 
 
 WORDS = st.sampled_from(

@@ -15,7 +15,7 @@ from clutchwork.declare import pints
 from clutchwork.declare.quantity import PLAIN, QuantityError, from_pint, has_unit, in_si, times
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from clutchwork.declare.schema import Spec
     from clutchwork.declare.units import Scale
@@ -39,7 +39,7 @@ class Wanted(NamedTuple):
         """The number in SI; a value that is none, or does not fit, as it is."""
         if not has_unit(value):
             return value if self.scale is PLAIN else times(value, self.scale)
-        if self.unit == "*":
+        if self.unit == "*" or is_array(value):
             return value
         try:
             return in_si(value, self.unit, self.others, difference=self.difference)
@@ -111,11 +111,38 @@ def _in_tuples(value: Any) -> Any:
     return tuple(map(_in_tuples, value)) if isinstance(value, list) else value
 
 
-def with_gain(name: str, spec: Spec, cls: Any, given: Iterable[str]) -> Spec:
-    """The spec of a gain with only the units that fit what it multiplies: a pressure or a force."""
+# units of what turns, and of the same on a line
+PARTNERS = {
+    "rad/s": "m/s",
+    "rad": "m",
+    "N m": "N",
+    "N m/rad": "N/m",
+    "N m s/rad": "N s/m",
+    "m3": "m2",
+    # of a gain, per force
+    "m": "1",
+}
+
+
+def settled(name: str, spec: Spec, cls: Any, values: Mapping[str, Any]) -> Spec:
+    """The spec of a field with only the units that fit the others: what it joins, and for a gain what that multiplies.
+
+    Parameters: values of the fields that are given, nodes at its ports.
+    """
+    if not spec.units:
+        return spec
+    units = (spec.unit, *spec.units)
     gains = _gains(cls) if name == "gain" else {}
-    found = {gains[other] for other in given if other in gains}
-    return _in_units(spec, *found) if len(found) == 1 else spec
+    found = {gains[other] for other, value in values.items() if value is not None and other in gains}
+    units = next(iter(found)) if len(found) == 1 else units
+    domains = {value.domain.value for value in values.values() if hasattr(value, "domain") and not value.fixed}
+    if len(domains) == 1:
+        turns = "rotation" in domains
+        wrong = {
+            unit for pair in PARTNERS.items() if pair[0] in units and pair[1] in units for unit in pair[turns:][:1]
+        }
+        units = tuple(unit for unit in units if unit not in wrong)
+    return spec if units == (spec.unit, *spec.units) else _in_units(spec, units)
 
 
 @cache
@@ -144,10 +171,10 @@ def accept(thing: Any) -> None:
         if type(value) in PLAIN_TYPES or (spec.what == "curve" and _all_plain(value)):
             continue
         if spec.what in ("signal", "alternative") and not has_unit(value):
-            new = driving(value, spec.unit, spec.units)
+            fits = settled(name, spec, cls, values)
+            new = driving(value, fits.unit, fits.units)
         else:
-            given = [other for other in _gains(cls) if values[other] is not None] if name == "gain" else ()
-            new = field_in_si(value, with_gain(name, spec, cls, given))
+            new = field_in_si(value, settled(name, spec, cls, values))
             if spec.unit == "*" and _is_open(new, spec):
                 mark_open(thing)
         if new is not value:

@@ -97,7 +97,9 @@ class Setting:
             in_si(value, self.spec.unit)
         except QuantityError as bad:
             return Fault(bad.value, bad.message, bad.remedy)
-        return Fault(shown(value), "must be a whole number", f"it is the {self.spec.doc}")
+        return Fault(
+            shown(value), f"must be a {'whole ' if self.spec.whole else ''}number", f"it is the {self.spec.doc}"
+        )
 
     def _wrong(self, number: float | None) -> str:
         """What a number must be, empty when it is that."""

@@ -122,7 +122,8 @@ def _readings(text: str) -> list[Unit]:
 def split(text: str) -> tuple[float, str] | None:
     """Number and unit of a string such as "0.2 kg m2"; None when it does not start with a number."""
     match = _QUANTITY.fullmatch(text.strip().replace("−", "-")) if len(text) <= LONGEST else None
-    return (float(match[1]), match[2]) if match else None
+    # a decimal comma is not the beginning of a unit
+    return (float(match[1]), match[2]) if match and not match[2].startswith(",") else None
 
 
 def has_comma(text: str) -> bool:

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import listed, shown
-from clutchwork.declare.given import with_gain
+from clutchwork.declare.given import settled
 from clutchwork.declare.node import HOUSING, Domain, Node, ThermalNode
 from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
 from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
@@ -53,8 +53,13 @@ class Values:
         """Values of the fields of a declaration, in SI; mistakes are reported."""
         known = {item.name: spec for item, spec in specs(cls)}
         self._unknown([key for key in entry if key not in taken], known, at)
+        joined = {
+            key: value if known[key].what != "port" else self._node_of(value)
+            for key, value in entry.items()
+            if key in known
+        }
         values = {
-            key: self._value(entry[key], with_gain(key, spec, cls, entry), at, key)
+            key: self._value(entry[key], settled(key, spec, cls, joined), at, key)
             for key, spec in known.items()
             if key in entry
         }
@@ -113,6 +118,10 @@ class Values:
             return convert()
         except QuantityError as bad:
             return self._report(at, bad.message, bad.value, bad.remedy)
+
+    def _node_of(self, name: Any) -> Any:
+        """The shaft or mass of a name; nothing where there is none."""
+        return self.nodes.get(name) if isinstance(name, str) else None
 
     def _port(self, value: Any, spec: Spec, at: At) -> Any:
         known: Mapping[str, Any] = self.nodes if spec.what == "port" else self.thermal

@@ -12,7 +12,7 @@ from typing import Any
 
 from clutchwork.base.errors import ModelError, Problem, near
 from clutchwork.base.shown import shown
-from clutchwork.declare.given import Wanted, field_in_si, with_gain
+from clutchwork.declare.given import Wanted, field_in_si, settled
 from clutchwork.declare.node import (
     Component,
     HeatFlow,
@@ -93,14 +93,15 @@ def in_si(aim: Target, value: Any) -> Any:
     thing, driven = aim.owner, None
     for name in aim.path[:-1]:
         spec = _spec(thing, name)
-        driven = Wanted(spec.unit, spec.units) if spec.what in ("signal", "alternative") else driven
+        if spec.what in ("signal", "alternative"):
+            fits = settled(name, spec, type(thing), vars(thing))
+            driven = Wanted(fits.unit, fits.units)
         thing = getattr(thing, name)
     name = aim.path[-1]
     spec = _spec(thing, name)
     if spec.what == "law" or spec.flag or spec.choices:
         return value
-    given = [item.name for item in fields(thing) if getattr(thing, item.name) is not None]
-    return field_in_si(value, with_gain(name, spec, type(thing), given), driven)
+    return field_in_si(value, settled(name, spec, type(thing), vars(thing)), driven)
 
 
 def _spec(thing: Any, name: str) -> Spec:

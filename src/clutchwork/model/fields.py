@@ -9,7 +9,7 @@ from typing import Any
 
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import shown
-from clutchwork.declare.given import with_gain
+from clutchwork.declare.given import settled
 from clutchwork.declare.node import Component, Domain, Law, Node, Signal, ThermalNode, is_reference
 from clutchwork.declare.quantity import has_unit, within
 from clutchwork.declare.schema import Role, Spec, inputs, specs
@@ -86,17 +86,13 @@ def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Pro
         if spec.unit == "*":
             place = At(at.path, at.inner(item.name).quantity, at.unit, units=at.units)
         else:
-            spec = with_gain(item.name, spec, cls, _given(values)) if has_unit(value) else spec
+            spec = settled(item.name, spec, cls, values) if has_unit(value) or isinstance(value, Signal) else spec
             place = at.inner(item.name, spec.unit)
         if value is MISSING:
             yield place.problem("is missing", remedy=f"give {wanted(spec, place.unit)}: {spec.doc}")
         else:
             yield from CHECKS[spec.what](value, spec, place)
     yield from _choice_problems(cls, values, at)
-
-
-def _given(values: Mapping[str, Any]) -> list[str]:
-    return [name for name, value in values.items() if value is not None]
 
 
 def _choice_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.changes import UNKNOWN_SOURCE
 from clutchwork.assembly.patches import PLAIN, Patch, Unpatched, patches
 from clutchwork.base.errors import ModelError, Problem
-from clutchwork.declare.given import with_gain
+from clutchwork.declare.given import settled
 from clutchwork.declare.layout import COUNTS, FIELDS
 from clutchwork.declare.node import Component, Law, Signal, ThermalNode
 from clutchwork.declare.quantity import has_unit
@@ -317,8 +317,7 @@ def _number_problems(value: Any, spec: Any, aim: Target) -> Iterable[Problem]:
     if is_right(value, spec):
         return ()
     if has_unit(value):
-        given = [name for name, other in vars(aim.owner).items() if other is not None]
-        spec = with_gain(aim.path[-1], spec, type(aim.owner), given)
+        spec = settled(aim.path[-1], spec, type(aim.owner), vars(aim.owner))
     return list(number_problems(value, spec, At(path_of(aim.owner), ".".join(aim.path), spec.unit)))
 
 
