@@ -53,16 +53,13 @@ class Values:
         """Values of the fields of a declaration, in SI; mistakes are reported."""
         known = {item.name: spec for item, spec in specs(cls)}
         self._unknown([key for key in entry if key not in taken], known, at)
-        joined = {
-            key: value if known[key].what != "port" else self._node_of(value)
-            for key, value in entry.items()
-            if key in known
-        }
-        values = {
-            key: self._value(entry[key], settled(key, spec, cls, joined), at, key)
-            for key, spec in known.items()
-            if key in entry
-        }
+        values = {}
+        for key, spec in known.items():
+            if key in entry:
+                value = entry[key]
+                if spec.units and type(value) is not float:
+                    spec = settled(key, spec, cls, self._joined(entry, known))
+                values[key] = self._value(value, spec, at, key)
         self.problems += value_problems(cls, values, at)
         # lists could be changed by their owner, and the reader has none
         return {key: _in_tuples(value) if type(value) is list else value for key, value in values.items()}
@@ -118,6 +115,14 @@ class Values:
             return convert()
         except QuantityError as bad:
             return self._report(at, bad.message, bad.value, bad.remedy)
+
+    def _joined(self, entry: Mapping[str, Any], known: Mapping[str, Spec]) -> dict[str, Any]:
+        """The entries of fields, nodes at the ports."""
+        return {
+            key: self._node_of(value) if known[key].what == "port" else value
+            for key, value in entry.items()
+            if key in known
+        }
 
     def _node_of(self, name: Any) -> Any:
         """The shaft or mass of a name; nothing where there is none."""
