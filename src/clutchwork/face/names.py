@@ -31,6 +31,7 @@ NAMES = {
     "UnknownName": "base.errors",
     "UseError": "base.errors",
     "export_c": "codegen",
+    "load_run": "run.saved",
     "Sweep": "sweeps.result",
     "SweepInterrupted": "sweeps.result",
     "at": "sweeps.outputs",
