@@ -22,8 +22,12 @@ def write(path: str | Path, parts: Mapping[str, bytes]) -> None:
             archive.writestr(zipfile.ZipInfo(name, EPOCH), data, zipfile.ZIP_DEFLATED)
 
 
-def read(path: str | Path, names: Sequence[str], most: int = MOST_BYTES) -> list[bytes]:
-    """The parts of an archive; ValueError says why there are none, OSError that it cannot be read."""
+def read(path: str | Path, names: Sequence[str], most: int = 0) -> list[bytes]:
+    """The parts of an archive; ValueError says why there are none, OSError that it cannot be read.
+
+    Parameters: most, bytes that it may have, MOST_BYTES by default.
+    """
+    most = most or MOST_BYTES
     data = read_regular(path, most)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:

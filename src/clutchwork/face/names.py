@@ -41,6 +41,7 @@ NAMES = {
     "maximum": "sweeps.outputs",
     "minimum": "sweeps.outputs",
     "peak": "sweeps.outputs",
+    "read_columns": "signals.bases.measured",
     "simulate": "run.simulation",
     "sweep": "sweeps.sweep",
     "variants": "sweeps.variants",

@@ -70,7 +70,7 @@ def load_run(path: str | Path) -> Trajectory:
 
 
 def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
-    about = json.loads(data)
+    about: Mapping[str, Any] = json.loads(data)
     if "format" not in about:
         raise ValueError("it does not say what it holds")
     if about["format"] > FORMAT:

@@ -48,6 +48,7 @@ class Wanted:
     time: str
     column: str
     scale: float = 1.0
+    group: str = ""  # what the column stands in, where a file of another format has several of its name
 
     def error(self, quantity: str, message: str, remedy: str) -> FileError:
         """A single mistake."""
@@ -84,7 +85,7 @@ def _folder(path: Path) -> str:
     return shown(str(path.absolute().parent))
 
 
-def _scaled(table: Array, factors: tuple[float, float], wanted: Wanted) -> Array:
+def scaled(table: Array, factors: tuple[float, float], wanted: Wanted) -> Array:
     """Times and values times a factor each, all finite and so are the slopes between them."""
     with np.errstate(all="ignore"):
         made = table * factors
@@ -103,8 +104,8 @@ def _column(sheet: Sheet, wanted: Wanted) -> Values | None:
     places = [sheet.header.index(time.text), sheet.header.index(column.text)]
     if not sheet.is_plain(places[0]):
         return None
-    made, factors = sheet.table[:, places], _factors(time, column, wanted)
-    return Values(made if factors == (1.0, 1.0) else _scaled(made, factors, wanted), column)
+    made, factors = sheet.table[:, places], factors_of(time, column, wanted)
+    return Values(made if factors == (1.0, 1.0) else scaled(made, factors, wanted), column)
 
 
 def _read(file: BinaryIO, wanted: Wanted, path: Path) -> Values:
@@ -120,11 +121,11 @@ def _read(file: BinaryIO, wanted: Wanted, path: Path) -> Values:
             return found
         header, lines = _opened(text)
         time, column = _heads(header, wanted)
-        factors = _factors(time, column, wanted)
+        factors = factors_of(time, column, wanted)
         places = header.index(time.text), header.index(column.text)
         made = _at_once(lines, places) if alike else None
         made = _by_cells(_opened(text)[1], header, places, wanted) if made is None else made
-    return Values(_scaled(made, factors, wanted), column)
+    return Values(scaled(made, factors, wanted), column)
 
 
 def _opened(text: io.TextIOWrapper) -> tuple[list[str], Iterator[list[str]]]:
@@ -204,21 +205,21 @@ def _name_fault(
     return quantity, f"{path} has no column {shown(name)}", remedy
 
 
-def _factors(time: Head, column: Head, wanted: Wanted) -> tuple[float, float]:
+def factors_of(time: Head, column: Head, wanted: Wanted) -> tuple[float, float]:
     """Factors to SI of times and values, by the units of their heads; a scale that repeats the unit is refused."""
-    factors, faults = [], []
+    made, faults = [], []
     for quantity, head, units in (("time", time, ("s",)), ("column", column, ())):
         try:
-            factors.append(head.factor(units))
+            made.append(head.factor(units))
         except QuantityError as bad:
             fault = f"column {shown(head.text)} of {shown(wanted.path)} {bad.message}"
             faults.append((quantity, fault, bad.remedy))
     if faults:
         raise FileError(faults)
-    if factors[1] != 1.0 and isclose(factors[1], wanted.scale):
+    if made[1] != 1.0 and isclose(made[1], wanted.scale):
         fault = f"repeats the unit of column {shown(column.text)} of {shown(wanted.path)}"
         raise FileError([("scale", fault, "remove scale: the values are already converted by the unit of the column")])
-    return factors[0], factors[1] * wanted.scale
+    return made[0], made[1] * wanted.scale
 
 
 def _at_once(lines: Iterator[list[str]], places: tuple[int, int]) -> Array | None:
