@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -57,6 +57,10 @@ class Recorded(Protocol):
     @property
     def statistics(self) -> Mapping[str, float]:
         """What the solver did."""
+
+    @property
+    def repeat(self) -> Callable[[Any], Any]:
+        """Computes it again at other instants [s]."""
 
     @property
     def wiring(self) -> Wiring:

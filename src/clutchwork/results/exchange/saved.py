@@ -75,7 +75,8 @@ def _without_controllers(run: Recorded) -> tuple[System, list[str]]:
     system = run.system
     asked = [place for place, item in enumerate(system.inputs) if item.signal.sampling() is not None]
     if not asked:
-        return system, []
+        # a run that was loaded says whose controllers it lacks
+        return system, list(getattr(run.repeat, "controllers", ()))
     names = [system.inputs[place].name for place in asked]
     begin = run.wiring.columns["input"].start
     first = [run.rows[0, begin + place] if len(run) else 0.0 for place in asked]
