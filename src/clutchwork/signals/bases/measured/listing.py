@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import overload
@@ -14,9 +13,10 @@ from clutchwork.base.regular import open_regular, reason
 from clutchwork.base.shown import shown
 from clutchwork.base.text import columns
 from clutchwork.declare.calls import explained
-from clutchwork.signals.bases.column_file import MOST_BYTES
+from clutchwork.signals.bases.column_file import MOST_BYTES, as_text
 from clutchwork.signals.bases.column_heads import split
 from clutchwork.signals.bases.measured.formats import format_of, opened
+from clutchwork.signals.bases.semicolons import with_commas
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,7 @@ class Listed:
     samples: int
     group: str  # for `Column(group=)`, where a file has several of one name
     is_text: bool  # words, which no signal can follow
+    aliases: tuple[str, ...] = ()  # shorter names that find it too
 
 
 class FileColumns(Sequence[Listed]):
@@ -73,7 +74,9 @@ def read_columns(path: str | Path) -> FileColumns:
         form = format_of(where)
         if form:
             with opened(where, form, told) as found:
-                return FileColumns([Listed(one.name, one.unit, one.samples, one.group, one.is_text) for one in found])
+                return FileColumns(
+                    [Listed(one.name, one.unit, one.samples, one.group, one.is_text, one.aliases) for one in found]
+                )
         return FileColumns(_of_csv(where))
     except FileNotFoundError:
         raise FileError([("path", f"{shown(told)} does not exist", "check the path")]) from None
@@ -83,7 +86,7 @@ def read_columns(path: str | Path) -> FileColumns:
 
 
 def _of_csv(path: Path) -> list[Listed]:
-    with open_regular(path, MOST_BYTES) as file, io.TextIOWrapper(file, "utf-8-sig", newline="") as text:
+    with open_regular(path, MOST_BYTES) as file, with_commas(file) as plain, as_text(plain) as text:
         lines = csv.reader(text)
         heads = [split(head.strip()) for head in next(lines, [])]
         samples = sum(1 for line in lines if any(line))

@@ -37,11 +37,10 @@ def read(path: Path, wanted: Wanted) -> Values:
         raise FileError([("path", str(missing), "")]) from None
     _refuse_lengths(clock, values, wanted)
     heads = Head(clock.name, clock.unit), Head(one.name, one.unit)
-    factors = column_file.factors_of(*heads, wanted)
     faults = list(_faults(one.name, clock, values, invalid, wanted))
     if faults:
         raise FileError(faults[:MOST_FAULTS])
-    return Values(column_file.scaled(np.column_stack([clock.values, values]), factors, wanted), heads[1])
+    return column_file.in_si(np.column_stack([clock.values, values]), heads, wanted)
 
 
 def pick(found: list[Series], wanted: Wanted) -> Series:

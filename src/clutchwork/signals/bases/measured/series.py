@@ -45,7 +45,8 @@ class Series:
 
     def is_called(self, name: str) -> bool:
         """Whether a name means it; a unit may stand with the name."""
-        return name in (self.name, *self.aliases) or (split(name)[0] == self.name and split(name)[1] == self.unit != "")
+        known, (bare, unit) = (self.name, *self.aliases), split(name)
+        return name in known or (bare in known and unit == self.unit != "")
 
 
 def headed(name: str, unit: str) -> tuple[str, str]:
