@@ -19,7 +19,7 @@ from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, NAMES
 from clutchwork.results.channels import Channels, Units, channels
 from clutchwork.results.events import Events
-from clutchwork.results.exchange.handed_on import HandedOn
+from clutchwork.results.exchange.exports import Exports
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -46,7 +46,7 @@ class SimulationError(ClutchworkError, RuntimeError):
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory(HandedOn):
+class Trajectory(Exports):
     """The result of a run.
 
     `run.time` [s] and `run["engine.speed"]` are arrays over the same instants; an instant that appears twice gives

@@ -109,12 +109,12 @@ def _system(about: Mapping[str, Any], model: list[bytes], path: str | Path) -> S
         if not model[1]:
             return System.from_bytes(model[0], str(about["system"]))
         with warnings.catch_warnings():
-            # whoever saved the run was told
+            # whoever saved the run was warned
             warnings.simplefilter("ignore", ModelWarning)
             return System.of_parts(model, str(path))
     except SystemFormatError as error:
         by = f"it was saved by {about.get('program')}, this is {program()}"
-        remedy = "load it with that version and hand it on with run.write"
+        remedy = "load it with that version and export it with run.write"
         raise RunFormatError(f"{path}: its model cannot be used: {error} ({by}); {remedy}") from None
 
 

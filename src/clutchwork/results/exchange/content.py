@@ -1,4 +1,4 @@
-"""What is handed on of a run: some signals at some instants, and where they come from."""
+"""What is exported of a run: some signals at some instants, and where they come from."""
 
 from __future__ import annotations
 
@@ -102,13 +102,13 @@ def program() -> str:
 
 
 def settings_of(run: Recorded) -> dict[str, Any]:
-    """Options of a run by name; a long list of instants is told by the time itself."""
+    """Options of a run by name; a long list of instants is that of the time itself."""
     return plain_settings({name: getattr(run.options, name) for name in OPTIONS if name != "times"})
 
 
 def content(run: Recorded, names: Any = None, dt: float | None = None, times: Any = None) -> Content:
     """The signals that are meant, at the instants that are meant."""
     known = run.channels
-    # a wrong name is told of before the run is repeated
+    # a wrong name is reported before the run is repeated
     picked = chosen(names, known, known.fault)
     return Content(at_raster(run, dt, times), picked)

@@ -40,10 +40,10 @@ def _refuse_others(path: Path, form: str) -> None:
 
 
 @contextmanager
-def opened(path: Path, form: str, told: str) -> Iterator[list[Series]]:
+def opened(path: Path, form: str, given: str) -> Iterator[list[Series]]:
     """The series of a file while it is open; FileError where it is damaged, or no file of that format.
 
-    Parameters: told, the path as it was given.
+    Parameters: given, the path in the words of the model.
     """
     module = import_module(f"clutchwork.signals.bases.measured.{form}_file")
     open_: Callable[[Path], AbstractContextManager[list[Series]]] = module.opened
@@ -55,5 +55,5 @@ def opened(path: Path, form: str, told: str) -> Iterator[list[Series]]:
         raise
     # libraries raise whatever they stumble over, in words that tell what is in the file
     except Exception:
-        told_of = f"{shown(told)} cannot be read as {WORDS[form]}: it is damaged, or has another format"
-        raise FileError([("path", told_of, "write it once more, or give a CSV file")]) from None
+        message = f"{shown(given)} cannot be read as {WORDS[form]}: it is damaged, or has another format"
+        raise FileError([("path", message, "write it once more, or give a CSV file")]) from None

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
 
-class HandedOn:
+class Exports:
     """Ways out of a run. All take the same choice of signals and instants.
 
     Parameters: names, signals by name, or wildcards such as "c1.*" and "*.speed", all by default; dt, distance of the
