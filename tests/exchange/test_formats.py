@@ -253,6 +253,12 @@ def test_a_run_that_stopped_early_is_handed_on_as_far_as_it_came(tmp_path: Path)
         assert "too_many_steps" in file.header.description
 
 
+def test_what_is_no_path(run: cw.Trajectory) -> None:
+    for call in (run.to_csv, run.write, run.to_mdf, run.save, cw.read_columns):
+        with pytest.raises(cw.UseError, match="path: 3 is not a path"):
+            call(3)  # type: ignore[operator]
+
+
 def test_endings(run: cw.Trajectory, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"ends in '.parket'; did you mean '.parquet'\?"):
         run.write(tmp_path / "x.parket")

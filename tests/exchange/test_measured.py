@@ -339,3 +339,24 @@ def test_a_fit_over_two_rasters_is_refused(recorded: Path) -> None:
     law = cw.Coulomb(static=0.2, kinetic=0.1)
     with pytest.raises(ValueError, match="load has other times than the torque"):
         fit_csv(recorded, law, slip="EngSpd", torque="count", load="pAmbient")
+
+
+def _outcome(path: Path) -> Any:
+    try:
+        return cw.Column(str(path), "x").points
+    except FileError as error:
+        return str(error).replace(path.name, "file").replace("'x [", "'").replace("]'", "'").partition("'x'")[0]
+
+
+@pytest.mark.parametrize("unit", ["Nm", "bar", "rpm", "%", "kNm", "degC", "deg", "m/s"])
+def test_units_mean_what_they_mean_in_the_head_of_a_csv_file(unit: str, tmp_path: Path) -> None:
+    values = np.array([0.1, 20.0, -3.0])
+    frame = pd.DataFrame({"time [s]": [0.0, 1.0, 2.0], f"x [{unit}]": values})
+    frame.to_csv(tmp_path / "x.csv", index=False)
+    with asammdf.MDF(version="4.10") as file:
+        file.append([_channel("x", values, np.arange(3.0), unit)], common_timebase=True)
+        file.save(tmp_path / "x.mf4")
+    expected, found = _outcome(tmp_path / "x.csv"), _outcome(tmp_path / "x.mf4")
+    assert isinstance(found, str) == isinstance(expected, str)
+    if not isinstance(expected, str):
+        assert found == expected

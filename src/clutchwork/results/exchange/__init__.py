@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import ClutchworkError, near
+from clutchwork.base.errors import ClutchworkError, UseError, near
 from clutchwork.base.shown import shown
 from clutchwork.results.exchange.content import Content, content
 
@@ -38,9 +38,17 @@ def write(
     Parameters: names, signals and wildcards, such as "c1.*", all by default; dt [s] or times [s], instants that are
     computed, not interpolated, all of the run by default; form, a format in place of that of the ending.
     """
-    path = Path(path)
+    path = path_of(path, form or "write")
     make = _writer(form or _format(path))
     make(content(run, names, dt, times), path)
+
+
+def path_of(path: str | Path, call: str) -> Path:
+    """A path that is one; UseError where it is something else."""
+    try:
+        return Path(path)
+    except TypeError:
+        raise UseError(call, [f"path: {shown(path)} is not a path; give a string, such as 'run.mf4'"]) from None
 
 
 def _format(path: Path) -> str:

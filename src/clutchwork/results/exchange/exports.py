@@ -69,9 +69,10 @@ class Exports:
     @explained("save")
     def save(self, path: str | Path) -> None:
         """Write the whole run to one file, from which `cw.load_run` makes it again; nothing in it is code."""
+        from clutchwork.results.exchange import path_of
         from clutchwork.results.exchange.saved import save
 
-        save(self._recorded, path)
+        save(self._recorded, path_of(path, "save"))
 
     @property
     def _recorded(self) -> Recorded:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator, Sequence
+from os import PathLike
 from pathlib import Path
 from typing import overload
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import FileError
+from clutchwork.base.errors import FileError, UseError
 from clutchwork.base.regular import open_regular, reason
 from clutchwork.base.shown import shown
 from clutchwork.base.text import columns
@@ -69,6 +70,8 @@ def read_columns(path: str | Path) -> FileColumns:
 
     Parameters: path of a CSV, MDF, MAT, Parquet or NetCDF file. FileError, a ValueError, where it cannot be read.
     """
+    if not isinstance(path, str | PathLike):
+        raise UseError("read_columns", [f"path: {shown(path)} is not a path; give a string, such as 'measured.mf4'"])
     where, told = Path(path), str(path)
     try:
         form = format_of(where)

@@ -118,7 +118,8 @@ def _clock(file: Any, group: int, wanted: str, signal: Any) -> Clock | None:
     if wanted in (CLOCKS[0], channels[master].name if master >= 0 else CLOCKS[0]):
         if master < 0 or getattr(channels[master], "sync_type", TIME) not in (0, TIME):
             return None
-        return Clock(str(channels[master].name), "s", numbers(signal().timestamps))
+        unit = own_unit(str(file.get_channel_unit(group=group, index=master) or "")) if master >= 0 else ""
+        return Clock(str(channels[master].name), unit or "s", numbers(signal().timestamps))
     places = [place for place, channel in enumerate(channels) if channel.name == wanted]
     if len(places) != 1:
         return None
