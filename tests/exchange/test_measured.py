@@ -226,11 +226,11 @@ def test_what_one_run_writes_drives_another(ending: str, tmp_path: Path) -> None
     run = random_drivelines.describe(3).driveline().simulate(1.0)
     run.write(tmp_path / f"run{ending}")
     found = cw.read_columns(tmp_path / f"run{ending}")
-    for name in run.names:
-        if not name.endswith(".state"):
-            points = np.array(cw.Column(str(tmp_path / f"run{ending}"), name).points)
-            np.testing.assert_array_equal(points[:, 0], run.time)
-            np.testing.assert_array_equal(points[:, 1], run[name])
+    # one of each kind, such as "c1.torque": a file is opened for each
+    for name in {name.rpartition(".")[2]: name for name in run.names if not name.endswith(".state")}.values():
+        points = np.array(cw.Column(str(tmp_path / f"run{ending}"), name).points)
+        np.testing.assert_array_equal(points[:, 0], run.time)
+        np.testing.assert_array_equal(points[:, 1], run[name])
     assert len(found) >= len(run.names)
 
 
@@ -341,11 +341,12 @@ def test_a_fit_over_two_rasters_is_refused(recorded: Path) -> None:
         fit_csv(recorded, law, slip="EngSpd", torque="count", load="pAmbient")
 
 
-def _outcome(path: Path) -> Any:
+def _points(path: Path) -> Any:
+    """Points of a column, None where its unit is refused."""
     try:
         return cw.Column(str(path), "x").points
-    except FileError as error:
-        return str(error).replace(path.name, "file").replace("'x [", "'").replace("]'", "'").partition("'x'")[0]
+    except FileError:
+        return None
 
 
 @pytest.mark.parametrize("unit", ["Nm", "bar", "rpm", "%", "kNm", "degC", "deg", "m/s"])
@@ -356,7 +357,4 @@ def test_units_mean_what_they_mean_in_the_head_of_a_csv_file(unit: str, tmp_path
     with asammdf.MDF(version="4.10") as file:
         file.append([_channel("x", values, np.arange(3.0), unit)], common_timebase=True)
         file.save(tmp_path / "x.mf4")
-    expected, found = _outcome(tmp_path / "x.csv"), _outcome(tmp_path / "x.mf4")
-    assert isinstance(found, str) == isinstance(expected, str)
-    if not isinstance(expected, str):
-        assert found == expected
+    assert _points(tmp_path / "x.mf4") == _points(tmp_path / "x.csv")

@@ -20,10 +20,11 @@ def opened(path: Path) -> Iterator[list[Series]]:
         engine = "scipy" if file.read(3) == b"CDF" else "h5netcdf"
     need("scipy" if engine == "scipy" else "h5py", "exchange", "a NetCDF file")
     with xarray.open_dataset(str(path), engine=engine, decode_times=False) as data:
+        lines = {str(name): one for name, one in data.variables.items() if len(one.dims) == 1}
         made = []
-        for dimension in dict.fromkeys(one.dims[0] for one in data.variables.values() if len(one.dims) == 1):
-            inside = [name for name in data.variables if data[name].dims == (dimension,)]
-            made += table({str(name): _column(data[name]) for name in inside}, str(dimension))
+        for dimension in dict.fromkeys(one.dims[0] for one in lines.values()):
+            beside = {name: _column(one) for name, one in lines.items() if one.dims == (dimension,)}
+            made += table(beside, str(dimension))
         yield made
 
 
