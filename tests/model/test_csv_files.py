@@ -149,8 +149,7 @@ def test_the_driven_quantity_decides_which_unit_fits(tmp_path):
     assert _braked(_column(tmp_path, "time,p [kNm]\n0,2\n")).check() == []
     (problem,) = _braked(_column(tmp_path, "time,p [bar]\n0,2\n")).check()
     assert str(problem) == (
-        "cw.Torque(\"t\"): torque.column 'p [bar]' has a unit that does not fit; "
-        "give it in [N m] or [N], such as '150 N m'"
+        "cw.Torque(\"t\"): torque.column 'p [bar]' has a unit that does not fit; give it in [N m], such as '150 N m'"
     )
     (problem,) = _braked(_column(tmp_path, "time,p [degC]\n0,2\n")).check()
     assert "torque.column 'p [degC]' is in degC" in str(problem)

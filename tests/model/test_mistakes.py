@@ -90,7 +90,7 @@ CASES = {
         'gain = "0.1 m2/s"',
         "gain = '0.1 m2/s': has a unit that does not fit; give it in [m3]",
     ),
-    "gain of a force at a pressure": ("gain = 0.1", 'gain = "0.1 N m"', "give it in [m3] or [m2]"),
+    "gain of a force at a pressure": ("gain = 0.1", 'gain = "0.1 N m"', "give it in [m3], such as '5e-4 m3'"),
     "unknown unit": ("speed = 100.0", 'speed = "100 rpn"', "unknown unit 'rpn'; did you mean 'rpm'?"),
     "no inertia": (
         "inertia = 0.2",

@@ -35,13 +35,10 @@ class Converter:
 
     def values(self, run: Recorded, name: str) -> Any:
         """A signal over time in its unit."""
-        return self._put(run[name], name)
+        return self.put(run[name], name)
 
-    def time(self, run: Recorded) -> Any:
-        """The instants of a run, in s or in the unit of "time"."""
-        return self._put(run.time, "time")
-
-    def _put(self, values: Any, name: str) -> Any:
+    def put(self, values: Any, name: str) -> Any:
+        """Values of a signal in SI, or of "time", in their unit."""
         scale = self.scales.get(name, PLAIN)
         return values if scale == PLAIN else (values - scale.zero) / scale.factor
 
