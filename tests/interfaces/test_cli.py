@@ -112,7 +112,7 @@ def test_the_demonstration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caps
 def test_the_demonstration_without_matplotlib(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("clutchwork.command.main.find_spec", lambda name: None)
+    monkeypatch.setattr("clutchwork.command.run.find_spec", lambda name: None)
     assert main(["demo", "--out", str(tmp_path)]) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["events.csv", "trajectory.csv"]
     assert "clutchwork[plot]" in capsys.readouterr().err
@@ -121,7 +121,7 @@ def test_the_demonstration_without_matplotlib(
 def test_the_demonstration_of_a_damaged_installation(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("clutchwork.command.main.DEMO", Path("examples", "none.toml"))
+    monkeypatch.setattr("clutchwork.command.run.DEMO", Path("examples", "none.toml"))
     assert main(["demo"]) == 4
     told = capsys.readouterr().err
     assert "none.toml not found" in told
@@ -166,7 +166,7 @@ def test_no_end_time(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 
 
 def test_unknown_commands_and_options_are_refused_by_code_2() -> None:
-    for line in (["fly"], ["run"], ["run", "m.toml", "--methd", "x"], []):
+    for line in (["fly"], ["run"], ["run", "m.toml", "--methd", "x"]):
         with pytest.raises(SystemExit) as stopped:
             main(line)
         assert stopped.value.code == 2

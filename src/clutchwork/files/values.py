@@ -45,7 +45,7 @@ class Values:
         known = {item.name: spec for item, spec in specs(cls)}
         self._unknown([key for key in entry if key not in taken], known, at)
         values = {
-            key: self._value(entry[key], _with_gain(key, spec, cls, entry), at, key)
+            key: self._value(entry[key], with_gain(key, spec, cls, entry), at, key)
             for key, spec in known.items()
             if key in entry
         }
@@ -157,7 +157,7 @@ def _place(at: At, key: str, spec: Spec) -> At:
     return At(at.path, at.inner(key).quantity, at.unit, at.factor) if spec.unit == "*" else at.inner(key, spec.unit)
 
 
-def _with_gain(name: str, spec: Spec, cls: type, entry: Mapping[str, Any]) -> Spec:
+def with_gain(name: str, spec: Spec, cls: type, entry: Mapping[str, Any]) -> Spec:
     """The spec of a gain with only the units that fit what it multiplies: a pressure or a force."""
     gains = [other.gain for item, other in specs(cls) if other.gain and item.name in entry] if name == "gain" else []
     return _in_units(spec, gains[0]) if len(gains) == 1 else spec

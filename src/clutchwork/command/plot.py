@@ -1,0 +1,39 @@
+"""`clutchwork plot`: the picture of a stored run, or of several, to compare them."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from clutchwork.base.shell import DONE, add_command, add_json, tell, tell_json, writable, wrote
+
+EXAMPLES = (
+    ("clutchwork run model.toml --save first.run", "store a run"),
+    ("clutchwork plot first.run", "its picture, first.png"),
+    ('clutchwork plot first.run c1.slip "*.speed" --out speeds.svg', "some of its signals"),
+    ("clutchwork plot first.run second.run c1.torque", "the same signal of two runs, to compare them"),
+)
+
+
+def add_commands(commands: Any) -> None:
+    """Add `plot`."""
+    plot = add_command(commands, "plot", plot_command, "draw a stored run, or compare several", examples=EXAMPLES)
+    plot.add_argument("run", type=Path, help="file that clutchwork run --save wrote")
+    plot.add_argument("more", nargs="*", help="more of them, to compare; then signals, such as c1.slip or '*.speed'")
+    plot.add_argument("--out", type=Path, metavar="FILE", help="picture (png, svg or pdf); default: named as the run")
+    add_json(plot)
+
+
+def split(first: Path, more: Sequence[str]) -> tuple[list[Path], list[str]]:
+    """The files and the signals: a file is there, or ends as the first one does."""
+    files = [word for word in more if Path(word).is_file() or (first.suffix != "" and word.endswith(first.suffix))]
+    return [first, *map(Path, files)], [word for word in more if word not in files]
+
+
+def plot_command(asked: argparse.Namespace) -> int:
+    """Draw, and say where; the exit code."""
+    files, names = split(asked.run, asked.more)
+    path = asked.out or asked.run.with_suffix(".png").name
+    raise NotImplementedError(f"{files} {names} {path} {tell} {tell_json} {writable} {wrote} {DONE}")
