@@ -10,27 +10,7 @@ from pathlib import Path
 import pytest
 
 from clutchwork.command.main import main
-
-MODEL = """
-name = "two discs"
-[simulation]
-t_end = 2.0
-[[shaft]]
-name = "engine"
-inertia = 0.2
-speed = 100.0
-[[shaft]]
-name = "load"
-inertia = 0.8
-[[element]]
-name = "c1"
-type = "clutch"
-base = "engine"
-follower = "load"
-gain = 1.0
-normal_force = 100.0
-friction = {type = "coulomb", static = 0.1, kinetic = 0.1}
-"""
+from support.two_discs import MODEL
 
 SIX_SPEED = Path(__file__).resolve().parents[2] / "examples" / "six_speed" / "model.toml"
 

@@ -34,6 +34,25 @@ def split(first: Path, more: Sequence[str]) -> tuple[list[Path], list[str]]:
 
 def plot_command(asked: argparse.Namespace) -> int:
     """Draw, and say where; the exit code."""
+    import clutchwork as cw
+
     files, names = split(asked.run, asked.more)
-    path = asked.out or asked.run.with_suffix(".png").name
-    raise NotImplementedError(f"{files} {names} {path} {tell} {tell_json} {writable} {wrote} {DONE}")
+    path = asked.out or Path(asked.run.with_suffix(".png").name)
+    writable([path])
+    runs = {label: cw.load_run(file) for label, file in zip(labels(files), files, strict=True)}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if len(files) == 1:
+        runs[labels(files)[0]].plot(*names, path=path)
+    else:
+        cw.compare(runs, *names, path=path)
+    if asked.json:
+        tell_json({"runs": [str(file) for file in files], "signals": names, "files": [str(path)]})
+    else:
+        tell("\n".join(wrote([path])))
+    return DONE
+
+
+def labels(files: Sequence[Path]) -> list[str]:
+    """Short names of files that tell them apart."""
+    stems = [file.stem for file in files]
+    return stems if len(set(stems)) == len(stems) else [str(file) for file in files]

@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.base.errors import near
 from clutchwork.base.shell import (
     DONE,
     INTERRUPTED,
@@ -145,11 +146,39 @@ def _wanted(asked: argparse.Namespace) -> dict[Path, Writer]:
     """The files that are asked for, and what writes each."""
     folder = asked.out
     named: list[tuple[Path | None, Writer]] = [
-        (asked.plot or (folder and folder / "picture.png"), lambda run, path, names: run.plot(path)),
-        (asked.csv or (folder and folder / "trajectory.csv"), lambda run, path, names: run.to_csv(path, names)),
-        (asked.events or (folder and folder / "events.csv"), lambda run, path, names: run.events.to_csv(path)),
+        (asked.plot or (folder and folder / "picture.png"), _plot),
+        (asked.csv or (folder and folder / "trajectory.csv"), _csv),
+        (asked.events or (folder and folder / "events.csv"), _events),
+        *((path, _writer(path)) for path in asked.write),
+        (asked.save, _save),
     ]
     return {path: write for path, write in named if path is not None}
+
+
+def _plot(run: Trajectory, path: Path, _names: tuple[str, ...]) -> None:
+    run.plot(path)
+
+
+def _csv(run: Trajectory, path: Path, names: tuple[str, ...]) -> None:
+    run.to_csv(path, names)
+
+
+def _events(run: Trajectory, path: Path, _names: tuple[str, ...]) -> None:
+    run.events.to_csv(path)
+
+
+def _save(run: Trajectory, path: Path, _names: tuple[str, ...]) -> None:
+    run.save(path)
+
+
+def _writer(path: Path) -> Writer:
+    """What writes a file for another program."""
+    from clutchwork.results.exchange import ENDINGS
+
+    if path.suffix.lower() not in ENDINGS:
+        known = f"known: {', '.join(ENDINGS)}"
+        raise ValueError(f"--write {path}: no format ends in {path.suffix!r}{near(path.suffix, ENDINGS, known)}")
+    return lambda run, path, names: run.write(path, names)
 
 
 def _write(run: Trajectory, names: tuple[str, ...], wanted: dict[Path, Writer]) -> list[Path]:
@@ -164,11 +193,8 @@ def demo_command(asked: argparse.Namespace) -> int:
     """The demonstration is a plain run of a model of the examples; its picture needs a package that a user may lack."""
     out, drawn = asked.out, find_spec("matplotlib") is not None
     asked.model, asked.out = _demo_model(), None
-    asked.csv, asked.events, asked.plot = (
-        out / "trajectory.csv",
-        out / "events.csv",
-        out / "shift.png" if drawn else None,
-    )
+    asked.csv, asked.events = out / "trajectory.csv", out / "events.csv"
+    asked.plot = out / "shift.png" if drawn else None
     code = run_command(asked)
     if not drawn:
         sys.stderr.write("clutchwork: no picture, which needs matplotlib: pip install 'clutchwork[plot]'\n")

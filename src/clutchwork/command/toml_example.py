@@ -19,13 +19,13 @@ def toml_example(cls: Any) -> str:
     if cls.role is Role.LAW:
         return f"friction = {toml_value({'type': cls.kind, **values})}"
     known = {item.name: spec for item, spec in specs(cls)}
-    rows = [(f"{name} = {toml_value(value)}", _unit(known[name], values)) for name, value in values.items()]
+    rows = [(f"{name} = {toml_value(value)}", _unit(known[name])) for name, value in values.items()]
     lines = [f"{line:<24}{unit}".rstrip() for line, unit in rows]
     return "\n".join(["[[element]]", 'name = "x1"', f'type = "{cls.kind}"', *lines])
 
 
-def _unit(spec: Spec, values: dict[str, Any]) -> str:
-    """The unit as a comment: that of the example where there are several."""
+def _unit(spec: Spec) -> str:
+    """The unit as a comment."""
     if spec.what in ("port", "thermal", "law", "text") or spec.flag or spec.choices or spec.unit in ("", "1"):
         return ""
     return f"  # {spec.unit_x}, {spec.unit}" if spec.what == "curve" else f"  # {spec.unit}"

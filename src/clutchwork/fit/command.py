@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 DETERMINED, OPEN = 0, 1
 EXAMPLES = (
     (
-        "clutchwork fit measured.csv --law stribeck --slip slip --torque torque --start static=0.15,kinetic=0.1,speed=2",
+        "clutchwork fit measured.csv --law stribeck --slip slip --torque M --start static=0.15,kinetic=0.1,speed=2",
         "a Stribeck curve; units stand in the head of the file",
     ),
     (
-        "clutchwork fit measured.csv --law coulomb --slip slip --torque torque --load load --start "
+        "clutchwork fit measured.csv --law coulomb --slip slip --torque M --load load --start "
         "static=0.15,kinetic=0.1 --bounds kinetic=0.05:0.2",
         "coefficients under a measured load, within bounds",
     ),
