@@ -7,6 +7,7 @@ import json
 import shlex
 import tomllib
 import warnings
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -86,11 +87,11 @@ def test_a_new_model_overwrites_nothing(model: str, capsys: pytest.CaptureFixtur
 
 
 def test_set_gives_the_run_of_a_changed_system(model: str, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["--set", "c1.gain=0.5", "--set", "load.inertia=2000 kg cm2", "--set", "engine.speed=1200 rpm"]
+    words = ["--set", "c1.gain=1.5", "--set", "load.inertia=2000 kg cm2", "--set", "engine.speed=1200 rpm"]
     words += ["--set", "c1.friction.static=0.12", "--set", "c1.locked=false"]
     told = data(capsys, "run", model, *words)
     system = cw.Driveline.load(model).assemble()
-    same = {"c1.gain": 0.5, "load.inertia": 0.2, "engine.speed": 125.66370614359172, "c1.friction.static": 0.12}
+    same = {"c1.gain": 1.5, "load.inertia": 0.2, "engine.speed": 125.66370614359172, "c1.friction.static": 0.12}
     run = cw.simulate(system.changed(same))
     assert told["events"][-1]["time"] == run.events[-1].time
     assert told["final"]["load.speed"] == float(run["load.speed"][-1])
@@ -128,7 +129,7 @@ def test_all_mistakes_of_set_at_once(model: str, capsys: pytest.CaptureFixture[s
         "load.inertia=-1": "inertia = -1.0 kg m2: must be >= 0 kg m2",
         "c1.base=load": "c1.base: is not a number; build another driveline",
         "c1.friction.kinetic=much": "kinetic = 'much': is not a number",
-        "gain": "'gain' is not a name and a value",
+        "gain": "'gain': is not a name and a value",
         "": "is not a name and a value; write NAME=VALUE",
     }
     words = [word for one in wrong for word in ("--set", one)]
@@ -215,7 +216,7 @@ def test_check_of_a_model_with_many_contacts_is_short(
     d = cw.Driveline("many")
     law = cw.Coulomb(static=0.1, kinetic=0.1)
     shafts = [d.shaft(f"s{i}", inertia=1.0) for i in range(9)]
-    for i, (a, b) in enumerate(zip(shafts, shafts[1:], strict=False)):
+    for i, (a, b) in enumerate(pairwise(shafts)):
         for name in ("x", "y"):
             d.add(cw.Clutch(f"{name}{i}", base=a, follower=b, friction=law, gain=1.0, normal_force=1.0))
     d.add(cw.Torque("in", shaft=shafts[0], torque=1.0))

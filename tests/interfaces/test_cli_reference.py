@@ -131,7 +131,7 @@ def test_units(capsys: pytest.CaptureFixture[str]) -> None:
     ("words", "told"),
     [
         (["elements", "cluch"], "no element 'cluch', and no description holds this word; did you mean 'clutch'?"),
-        (["elements", "DiskCluch"], "did you mean 'DiskClutch'?"),
+        (["elements", "DiskCluch"], "did you mean 'disk_clutch'?"),
         (["elements", "stribeck"], "one of the laws: clutchwork laws stribeck"),
         (["laws", "disk_clutch"], "one of the elements: clutchwork elements disk_clutch"),
         (["laws", "strybeck"], "did you mean 'stribeck'?"),

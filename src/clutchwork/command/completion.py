@@ -29,7 +29,7 @@ def add_commands(commands: Any) -> None:
         "'clutchwork[completion]'.",
         examples=tuple((line, shell) for shell, line in SHELLS.items()),
     )
-    completion.add_argument("shell", choices=SHELLS, help="the shell that is to read the script")
+    completion.add_argument("shell", choices=list(SHELLS), help="the shell that is to read the script")
 
 
 def completion_command(asked: argparse.Namespace) -> int:

@@ -39,7 +39,7 @@ def add_commands(commands: Any) -> None:
     new.add_argument(
         "file", nargs="?", type=Path, default=Path("model.toml"), help="file to write; default: model.toml"
     )
-    new.add_argument("--kind", choices=KINDS, default=FIRST, help=f"which model; default: {FIRST}")
+    new.add_argument("--kind", choices=list(KINDS), default=FIRST, help=f"which model; default: {FIRST}")
     new.add_argument("--force", action="store_true", help="overwrite a file that is there")
     add_json(new)
 

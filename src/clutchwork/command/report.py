@@ -116,7 +116,7 @@ def model_text(system: System, shafts: tuple[str, str] | None) -> str:
     parts = [f"{system.name}: no mistakes", paragraphs(has, width())]
     if system.dependent:
         sets = [f"  {' '.join(names)}" for names in system.dependent]
-        head = "these depend on each other when locked together, and share their load by capacity:"
+        head = "depend on each other when locked together, and share their load by capacity:"
         parts.append("\n".join([head, *_first(sets)]))
     if shafts is None:
         return "\n\n".join(parts)

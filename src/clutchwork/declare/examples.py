@@ -31,7 +31,7 @@ USUAL = {
 NAMED = {"ratio": 2.5, "thickness": 0.005, "conductivity": 50.0, "specific_heat": 480.0, "travel": 0.004, "bore": 0.05}
 LAW = {"type": "coulomb", "static": 0.12, "kinetic": 0.1}
 # fields of signals, which drive a pressure in the examples
-OF_SIGNALS = {"points": [[0.0, 0.0], [0.2, 2e5]], "*": 2e5, "s": 0.5, "Hz": 10.0, "1/s": 2.0}
+OF_SIGNALS = {"width": 0.2, "points": [[0.0, 0.0], [0.2, 2e5]], "*": 2e5, "s": 0.5, "Hz": 10.0, "1/s": 2.0}
 WORDS = {"path": "pressures.csv", "column": "c1"}
 
 
