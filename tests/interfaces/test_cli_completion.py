@@ -35,7 +35,7 @@ def completed(script: Path, line: str, folder: Path) -> set[str]:
     bash = shutil.which("bash")
     assert bash
     ask = (
-        f"source {script}; COMP_WORDS=({line}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); COMP_LINE=\"{line}\"; "
+        f'source {script}; COMP_WORDS=({line}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); COMP_LINE="{line}"; '
         "COMP_POINT=${#COMP_LINE}; f=$(complete -p clutchwork | sed 's/.*-F \\([^ ]*\\).*/\\1/'); "
         '$f clutchwork "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD-1]}"; printf "%s\\n" "${COMPREPLY[@]}"'
     )
