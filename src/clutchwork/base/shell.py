@@ -165,15 +165,15 @@ def wrote(paths: Iterable[Path]) -> list[str]:
     return [f"wrote {path}" for path in paths]
 
 
-class OutputError(OSError):
-    """Files that cannot be written, all at once, found before the work is done."""
+class FilesError(OSError):
+    """Files that cannot be written or read, all at once, found before the work is done."""
 
 
 def writable(paths: Iterable[Path | None]) -> None:
-    """OutputError when one of the files cannot be written, found before the run that would be lost."""
+    """FilesError when one of the files cannot be written, found before the run that would be lost."""
     wrong = [f"{path}: cannot be written: {why}" for path in paths if path is not None and (why := _unwritable(path))]
     if wrong:
-        raise OutputError("\n".join(wrong))
+        raise FilesError("\n".join(wrong))
 
 
 def _unwritable(path: Path) -> str:

@@ -5,10 +5,15 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.shell import DONE, add_command, add_json, tell, tell_json, writable, wrote
+from clutchwork.base.shell import DONE, FilesError, add_command, add_json, tell, tell_json, writable, wrote
 
+if TYPE_CHECKING:
+    from clutchwork.results.trajectory import Trajectory
+
+# endings of model files
+MODELS = (".toml", ".json")
 EXAMPLES = (
     ("clutchwork run model.toml --save first.run", "store a run"),
     ("clutchwork plot first.run", "its picture, first.png"),
@@ -39,7 +44,7 @@ def plot_command(asked: argparse.Namespace) -> int:
     files, names = split(asked.run, asked.more)
     path = asked.out or Path(asked.run.with_suffix(".png").name)
     writable([path])
-    runs = {label: cw.load_run(file) for label, file in zip(labels(files), files, strict=True)}
+    runs = dict(zip(labels(files), _loaded(files), strict=True))
     path.parent.mkdir(parents=True, exist_ok=True)
     if len(files) == 1:
         runs[labels(files)[0]].plot(*names, path=path)
@@ -50,6 +55,24 @@ def plot_command(asked: argparse.Namespace) -> int:
     else:
         tell("\n".join(wrote([path])))
     return DONE
+
+
+def _loaded(files: Sequence[Path]) -> list[Trajectory]:
+    """The stored runs; FilesError names all files that hold none."""
+    import clutchwork as cw
+
+    runs, wrong = list["Trajectory"](), list[str]()
+    for file in files:
+        if file.suffix in MODELS and file.is_file():
+            wrong.append(f"{file}: is a model; run it first: clutchwork run {file} --save {file.stem}.run")
+            continue
+        try:
+            runs.append(cw.load_run(file))
+        except cw.ClutchworkError as error:
+            wrong.append(str(error))
+    if wrong:
+        raise FilesError("\n".join(wrong))
+    return runs
 
 
 def labels(files: Sequence[Path]) -> list[str]:
