@@ -113,10 +113,10 @@ def test_set_takes_all_that_a_file_may_have(model: str, capsys: pytest.CaptureFi
 
 def test_names_are_those_of_set(model: str, capsys: pytest.CaptureFixture[str]) -> None:
     names = data(capsys, "check", model, "--names")["names"]
-    assert names["c1.gain"] == "1"
+    assert names["c1.gain"] == 1.0
     assert names["c1.friction"] == "coulomb"
-    assert names["load.speed"] == "none"
-    known = [f"{name}={value}" for name, value in names.items() if value not in ("none", "coulomb")]
+    assert names["load.speed"] is None
+    known = [f"{name}={json.dumps(value)}" for name, value in names.items() if value not in (None, "coulomb")]
     words = [word for one in known for word in ("--set", one)]
     assert data(capsys, "run", model, *words)["events"] == data(capsys, "run", model)["events"]
 

@@ -45,6 +45,7 @@ def export_command(asked: argparse.Namespace) -> int:
     from clutchwork.codegen import export_c
     from clutchwork.face.driveline import Driveline
 
+    shell.writable([asked.out / "model.h"])
     signals = None if asked.signals is None else [name.strip() for name in asked.signals.split(",")]
     with warnings.catch_warnings(record=True) as warned, words_of_files():
         warnings.simplefilter("always", ModelWarning)

@@ -43,7 +43,8 @@ def check_command(asked: argparse.Namespace) -> int:
         more: dict[str, Any] = {"names": names} if asked.names else {}
         tell_json(report.model_data(system, shafts) | more | ({"signals": units} if asked.signals else {}))
     elif asked.names or asked.signals:
-        lists = [columns([*table.items()]) for table in (names, units) if table]
+        words = {name: report.in_words(value) for name, value in names.items()}
+        lists = [columns([*table.items()]) for table in (words, units) if table]
         tell("\n\n".join(lists))
     else:
         tell(report.model_text(system, shafts))

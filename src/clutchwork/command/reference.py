@@ -136,7 +136,8 @@ def _next(topic: str) -> str:
     lines = {
         "elements": "In Python, disk_clutch is cw.DiskClutch, and so on.",
         "laws": 'In a model file: friction = {type = "NAME", ...}.',
-        "signals": 'In a model file: pressure = {type = "NAME", ...}.',
+        "signals": 'In a model file: pressure = {type = "NAME", ...}. The name of a thermal node, an actuator or '
+        'another process gives its temperature or state: pressure = "piston".',
     }
     return paragraphs(f"All fields of one: clutchwork {topic} NAME. {lines[topic]}", width())
 

@@ -136,27 +136,26 @@ def _first(lines: Sequence[str]) -> list[str]:
     return [*lines] if more <= 0 else [*lines[:MOST_LINES], f"... and {more} more, which --json lists"]
 
 
-def changeable_values(system: System) -> dict[str, str]:
-    """What `System.changed` may change, and its value as a model file writes it."""
+def changeable_values(system: System) -> dict[str, Any]:
+    """What `System.changed` may change, and its value: a number, a word, the type of a law or signal, or None."""
     model = system.source
     targets, _ = targets_of(model, all_names(model)) if model is not None else ({}, [])
-    return {name: _in_file(reduce(getattr, aim.path, aim.owner)) for name, aim in targets.items()}
+    return {name: _plain(reduce(getattr, aim.path, aim.owner)) for name, aim in targets.items()}
 
 
-def _in_file(value: Any) -> str:
-    """A value in short."""
-    if value is None:
-        return "none"
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, int | float):
-        return f"{value:.12g}"
-    if isinstance(value, str):
+def _plain(value: Any) -> Any:
+    """A value in short, as a model file says it."""
+    if value is None or isinstance(value, bool | int | float | str):
         return value
-    kind = getattr(value, "kind", None)
-    if kind is None:
-        return shortened(str(value), LONGEST)
-    return f"{kind} {value.name}" if hasattr(value, "name") else kind
+    kind, name = getattr(value, "kind", ""), getattr(value, "name", "")
+    return name or kind or shortened(str(value), LONGEST)
+
+
+def in_words(value: Any) -> str:
+    """One of these values for reading."""
+    if value is None or isinstance(value, bool):
+        return "none" if value is None else str(value).lower()
+    return f"{value:.12g}" if isinstance(value, int | float) else str(value)
 
 
 def signal_units(system: System) -> dict[str, str]:

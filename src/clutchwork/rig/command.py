@@ -48,6 +48,7 @@ def rig_command(asked: argparse.Namespace) -> int:
     if asked.experiment == LIST:
         shell.tell(listing())
         return DONE
+    shell.writable([asked.out / "table.csv"])
     done, data = True, []
     for outcome in outcomes(asked.experiment, asked.laws, asked.preset, asked.set, asked.out, asked.signals):
         done &= outcome.result.complete
