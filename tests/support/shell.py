@@ -19,4 +19,8 @@ def options(name: str) -> list[argparse.Action]:
 
 def _commands() -> dict[str, argparse.ArgumentParser]:
     (found,) = [action for action in parser()._actions if isinstance(action, argparse._SubParsersAction)]
-    return dict(found.choices)
+    named: dict[int, tuple[str, argparse.ArgumentParser]] = {}
+    for name, one in found.choices.items():
+        # the first name of each; others are spellings of it
+        named.setdefault(id(one), (name, one))
+    return dict(named.values())

@@ -92,15 +92,17 @@ def add_command(
     about: str = "",
     examples: Sequence[Example] = (),
     codes: str = "",
+    aliases: Sequence[str] = (),
 ) -> argparse.ArgumentParser:
     """Add a command with its help.
 
     Parameters: commands, what `add_subparsers` returned; purpose, half a line for the list of commands; about, what
-    else the help says first; examples, at its end; codes, exit codes of its own.
+    else the help says first; examples, at its end; codes, exit codes of its own; aliases, further names.
     """
     first = f"{purpose[0].upper()}{purpose[1:]}."
     parser: argparse.ArgumentParser = commands.add_parser(
         name,
+        aliases=aliases,
         help=purpose,
         description="\n\n".join(filter(None, (first, about))),
         epilog="\n\n".join(filter(None, (example_text(examples), codes))) or None,

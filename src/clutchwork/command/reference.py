@@ -123,7 +123,8 @@ def _unknown(name: str, topic: str, known: Mapping[str, Any]) -> str:
         return f"no {topic.removesuffix('s')} {name!r}, but one of the {elsewhere[0]}: clutchwork {elsewhere[0]} {name}"
     found = nearest(name.lower(), known) or nearest(name, [cls.__name__ for cls in known.values()])
     meant = f"; did you mean {found!r}?" if found else ""
-    return f"no {topic.removesuffix('s')} {name!r}, and no description holds this word{meant}\nknown: {listed(known)}"
+    first = f"no {topic.removesuffix('s')} {name!r}, and no description holds this word{meant}"
+    return f"{first}\n{_hanging('known: ', listed(known))}"
 
 
 def _listed(heading: str, found: Mapping[str, Any]) -> str:
@@ -198,7 +199,8 @@ def look_up_units(asked: argparse.Namespace) -> int:
             names = [*(row.unit for row in rows), *(row.quantity for row in rows)]
             found = nearest(word, names)
             meant = f"; did you mean {found!r}?" if found else ""
-            raise ValueError(f"no unit or quantity {word!r}{meant}\nknown: {listed(row.unit for row in rows)}")
+            known = _hanging("known: ", listed(row.unit for row in rows))
+            raise ValueError(f"no unit or quantity {word!r}{meant}\n{known}")
         rows = [row for row in rows if row.quantity in quantities]
     if asked.json:
         tell_json({"units": [row._asdict() for row in rows]})
