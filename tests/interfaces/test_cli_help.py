@@ -46,6 +46,12 @@ def test_every_help_has_examples_that_are_right(name: str, capsys: pytest.Captur
         assert unknown == [], line
 
 
+def test_help_is_found_as_in_other_programs(capsys: pytest.CaptureFixture[str]) -> None:
+    assert said(["help"], capsys)[:2] == (DONE, said([], capsys)[1])
+    assert said(["help", "run"], capsys) == said(["run", "--help"], capsys)
+    assert said(["help", "rnu"], capsys) == said(["rnu"], capsys)
+
+
 @pytest.mark.parametrize("name", commands())
 def test_every_argument_is_explained(name: str) -> None:
     for option in options(name):

@@ -64,7 +64,12 @@ class Help(argparse.HelpFormatter):
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose errors are one line that names what was probably meant."""
+    """A parser without colours, whose errors are one line that names what was probably meant."""
+
+    def __init__(self, *args: Any, **more: Any) -> None:
+        super().__init__(*args, **more)
+        # newer versions of Python colour their help
+        self.color = False
 
     def error(self, message: str) -> NoReturn:
         """End with what is wrong, and where the help is."""

@@ -43,7 +43,10 @@ EXAMPLES = (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Entry point; the exit code."""
-    asked, unknown = parser().parse_known_args(arguments)
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    # `clutchwork help run`, as other programs have it
+    words = [*words[1:2], "--help"] if words[:1] == ["help"] else words
+    asked, unknown = parser().parse_known_args(words)
     if unknown:
         asked.parser.unknown(unknown)
     if asked.command is None:
