@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
-from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.errors import near
 from clutchwork.results.ratios import input_and_output
+from clutchwork.results.selection import chosen
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -20,21 +19,17 @@ WHERE = "clutchwork check MODEL --signals lists all"
 def chosen_signals(known: Iterable[str], wanted: Sequence[str]) -> tuple[str, ...]:
     """Names of signals, in the order in which they are asked for.
 
-    Parameters: known, all names; wanted, names or patterns such as "c1.*" and "*.speed", several in one with commas
-    between them. ValueError names all that lead nowhere.
+    Parameters: known, all names; wanted, names or wildcards such as "c1.*" and "*.speed", several in one with commas
+    between them. UnknownName lists all that lead nowhere.
     """
-    names, found, wrong = list(known), dict[str, None](), []
-    for pattern in (part for text in wanted for part in _parts(text, names)):
-        # a name may hold the signs of a pattern
-        matching = [pattern] if pattern in names else [name for name in names if fnmatchcase(name, pattern)]
-        found.update(dict.fromkeys(matching))
-        if not matching:
-            wild = re.search(r"[*?\[]", pattern)
-            told = f"; {WHERE}" if wild else near(pattern, names, WHERE)
-            wrong.append(f"--signals: no signal {'matches' if wild else 'is called'} {pattern!r}{told}")
-    if wrong:
-        raise ValueError("\n".join(wrong))
-    return tuple(found)
+    names = list(known)
+    return chosen([part for text in wanted for part in _parts(text, names)], names, lambda one: _fault(one, names))
+
+
+def _fault(wanted: str, names: Sequence[str]) -> str:
+    wild = "*" in wanted or "?" in wanted
+    told = f"; {WHERE}" if wild else near(wanted, names, WHERE)
+    return f"--signals: no signal {'matches' if wild else 'is called'} {wanted!r}{told}"
 
 
 def _parts(text: str, names: Sequence[str]) -> list[str]:
