@@ -47,7 +47,8 @@ def plot_command(asked: argparse.Namespace) -> int:
     runs = dict(zip(labels(files), _loaded(files), strict=True))
     path.parent.mkdir(parents=True, exist_ok=True)
     if len(files) == 1:
-        runs[labels(files)[0]].plot(*names, path=path)
+        plot: Any = runs[labels(files)[0]].plot
+        plot(*names, path=path)
     else:
         cw.compare(runs, *names, path=path)
     if asked.json:
