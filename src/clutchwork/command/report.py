@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.text import columns, counted
+from clutchwork.results.hints.registry import of_model
 from clutchwork.results.ratios import Gears, Phase, gears
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.results.events import Events
+    from clutchwork.results.hints.hint import Hint, Hints
     from clutchwork.results.trajectory import Trajectory
 
 MOST_LINES = 40
@@ -33,6 +35,7 @@ def run_text(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
     if run.options.work:
         parts.append(str(run.energy))
     parts.append(effort_text(run))
+    parts += hint_text(run.hints)
     return "\n\n".join(parts)
 
 
@@ -71,6 +74,11 @@ def dependent_text(run: Trajectory) -> list[str]:
     return ["locked contacts that depend on each other; they share their load by capacity:\n" + "\n".join(lines)]
 
 
+def hint_text(hints: Hints) -> list[str]:
+    """What may not be meant; nothing where there is none."""
+    return ["\n".join(["hints", *(f"  {hint}" for hint in hints[:MOST_LINES])])] if hints else []
+
+
 def effort_text(run: Trajectory) -> str:
     """Steps and time that the run took."""
     s = run.statistics
@@ -96,6 +104,7 @@ def run_data(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
         "energy": run.energy.as_dict() if run.options.work and len(run) else None,
         "final": {name: float(run[name][-1]) for name in run.names if name.endswith(FINAL) and len(run)},
         "statistics": dict(run.statistics),
+        "hints": [_hint_data(hint) for hint in run.hints],
     }
 
 
@@ -105,15 +114,16 @@ def model_text(system: System, shafts: tuple[str, str] | None) -> str:
     dependent = "; ".join(" ".join(names) for names in system.dependent)
     if dependent:
         parts.append(f"depend on each other when locked together, and share their load by capacity: {dependent}")
+    advice = hint_text(of_model(system))
     if shafts is None:
-        return "\n\n".join(parts)
+        return "\n\n".join([*parts, *advice])
     found = gears(system, shafts)
     lines = [(" ".join(closed) or "-", number(value)) for closed, value in found.ratios]
     if lines:
         parts.append(columns([("closed", f"{shafts[0]}/{shafts[1]}"), *lines], right={1}))
     if found.untried is not None:
         parts.append(f"not tried: {found.untried} or more contacts closed at once, there are too many combinations")
-    return "\n\n".join(parts)
+    return "\n\n".join([*parts, *advice])
 
 
 def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]:
@@ -126,6 +136,7 @@ def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]
         "gears": [{"closed": list(closed), "ratio": value} for closed, value in found.ratios],
         "gears_untried_from": found.untried,
         "dependent": [list(names) for names in system.dependent],
+        "hints": [_hint_data(hint) for hint in of_model(system)],
     }
 
 
@@ -143,6 +154,10 @@ def sizes(system: System) -> dict[str, int]:
         "inputs": len(parts.inputs),
         **{name: len(things) for name, things in more.items() if things},
     }
+
+
+def _hint_data(hint: Hint) -> dict[str, Any]:
+    return hint.as_dict() | {"numbers": _finite(dict(hint.numbers))}
 
 
 def _finite(data: dict[str, Any]) -> dict[str, Any]:

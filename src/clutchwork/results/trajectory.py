@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from clutchwork.results.dependence import DependentPhase
     from clutchwork.results.energy import EnergyBalance
     from clutchwork.results.events import Event
+    from clutchwork.results.hints.hint import Hints
 
 Array = NDArray[np.float64]
 
@@ -50,7 +51,7 @@ class Trajectory:
 
     `run.time` [s] and `run["engine.speed"]` are arrays over the same instants; an instant that appears twice gives
     the left and the right limit at an event. `run.names` lists all signals, `run.units` their units,
-    `run.events`, `run.energy` and `run.statistics` what else is known.
+    `run.events`, `run.energy` and `run.statistics` what else is known, `run.hints` what may not be meant.
     """
 
     system: System
@@ -134,6 +135,16 @@ class Trajectory:
         from clutchwork.results.dependence import dependent_phases
 
         return dependent_phases(self)
+
+    @cached_property
+    def hints(self) -> Hints:
+        """What an expert would say of this run and its model, with numbers and a remedy; print it to read it.
+
+        Looked for when it is first asked for. A run whose output has instants of its own is repeated for that.
+        """
+        from clutchwork.results.hints.registry import of_run
+
+        return of_run(self)
 
     def to_csv(self, path: str | Path, names: Any = None) -> None:
         """Write signals (all by default) as columns `name [unit]` with 17 digits, the time first."""

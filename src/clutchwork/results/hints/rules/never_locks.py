@@ -1,0 +1,84 @@
+"""A clutch that never locks although it is as full as it gets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clutchwork.assembly.wiring import HOUSING
+from clutchwork.results.hints.hint import Hint, shown
+from clutchwork.results.hints.registry import run_rule
+from clutchwork.results.hints.slipping import FullSlip, full_slips, pressed
+
+if TYPE_CHECKING:
+    from clutchwork.results.hints.look import Look
+
+NAME = "never locks"
+# a slip is not on its way to zero where the torque that holds it is this share of the torque that brakes it
+STEADY = 0.98
+# share of the slip that was left where a clutch was let go shortly before it locked
+NEAREST = 0.2
+
+
+@run_rule(NAME)
+def never_locks(look: Look) -> Iterator[Hint]:
+    """A clutch between two shafts that never locks: full to the end, or let go shortly before."""
+    for contact, branch in pressed(look):
+        if HOUSING in branch.direction or np.any(look.locked[:, contact]):
+            continue
+        if any(event.after == "locked" for event in look.events.of(branch.name)):
+            continue
+        found = list(full_slips(look, contact, branch))
+        last = max(found, key=lambda slip: slip.end, default=None)
+        if last is None:
+            continue
+        if last.end == look.end and last.needed >= STEADY * last.kinetic:
+            yield _too_weak(look, last)
+        elif last.end < look.end and last.after < NEAREST * last.before:
+            yield _let_go(last)
+
+
+def _too_weak(look: Look, slip: FullSlip) -> Hint:
+    torque, speed, name = slip.torque_unit, slip.speed_unit, slip.branch.name
+    nearest = float(np.min(np.abs(look.slip[slip.span.first :, slip.contact])))
+    if slip.needed == inf:
+        message = (
+            f"slips to the end and never locks: what drives it prescribes its slip,"
+            f" {shown(slip.after, speed)} at {slip.end:.4g} s"
+        )
+        remedy = "prescribe equal speeds where it shall lock, or drive it by a torque"
+        return Hint(NAME, (name,), message, remedy, {f"slip [{speed}]": slip.after}, slip.begin, slip.end)
+    message = (
+        f"is full from {slip.begin:.4g} s to the end and never locks: it slips with {shown(slip.kinetic, torque)} and takes"
+        f" {shown(slip.needed, torque)} to hold its slip, which is {shown(slip.after, speed)} at {slip.end:.4g} s and"
+        f" nowhere below {shown(nearest, speed)}"
+    )
+    factor = slip.needed / slip.kinetic
+    remedy = f"give it more than {factor:.3g} times the pressure, gain or coefficient, or a lower load"
+    return Hint(NAME, (name,), message, remedy, _numbers(slip), slip.begin, slip.end)
+
+
+def _let_go(slip: FullSlip) -> Hint:
+    torque, speed = slip.torque_unit, slip.speed_unit
+    more = slip.after * (slip.end - slip.begin) / (slip.before - slip.after)
+    message = (
+        f"never locks: it came nearest at {slip.end:.4g} s, with {shown(slip.after, speed)} left of"
+        f" {shown(slip.before, speed)}, where its load fell again; it slips with {shown(slip.kinetic, torque)}"
+    )
+    remedy = f"keep it full for about {more:.3g} s more"
+    return Hint(
+        NAME, (slip.branch.name,), message, remedy, _numbers(slip) | {"missing [s]": more}, slip.begin, slip.end
+    )
+
+
+def _numbers(slip: FullSlip) -> dict[str, float]:
+    torque, speed = slip.torque_unit, slip.speed_unit
+    return {
+        f"needed [{torque}]": slip.needed,
+        f"slipping torque [{torque}]": slip.kinetic,
+        f"capacity [{torque}]": slip.capacity,
+        f"slip [{speed}]": slip.after,
+    }
