@@ -148,15 +148,15 @@ def changed_signals(old: Component, new: Component) -> Iterator[tuple[str, Signa
 
 
 def _differing(component: Component, old: Any, new: Any, path: str) -> Iterator[tuple[str, Signal]]:
-    for names, spec in inputs(type(old)):
+    for names, _ in inputs(type(old)):
         before, after = _given(names, old), _given(names, new)
         was, value = getattr(old, before), getattr(new, after)
         if before == after and was is value:
             continue
-        warming = spec.unit == "K" and old is not component and (value is None or was is None)
-        if before != after or warming or is_reference(value) or is_reference(was):
+        # one that was not given, or no longer is, has no signal in the results
+        if before != after or value is None or was is None or is_reference(value) or is_reference(was):
             raise Unpatched
-        yield f"{path}.{after}", plain_signal(spec.otherwise if value is None else value)
+        yield f"{path}.{after}", plain_signal(value)
 
 
 def _given(names: tuple[str, ...], thing: Any) -> str:

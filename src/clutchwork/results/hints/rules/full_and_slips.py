@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 NAME = "full and slips"
 # a load that is less than this above the torque is a balance, such as of a car that is held back downhill
 PULLED = 1.05
+# growth of the slip, over what it grows to, that is more than a swing
+GROWTH = 0.1
 
 
 @run_rule(NAME)
@@ -35,7 +37,7 @@ def full_and_slips(look: Look) -> Iterator[Hint]:
 
 
 def _pulled(slip: FullSlip) -> bool:
-    return slip.after > slip.before and PULLED * slip.kinetic < slip.needed < np.inf
+    return slip.after - slip.before > GROWTH * slip.after and PULLED * slip.kinetic < slip.needed < np.inf
 
 
 def _hint(slip: FullSlip, times: int) -> Hint:

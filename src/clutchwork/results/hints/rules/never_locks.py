@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 NAME = "never locks"
 # a slip is not on its way to zero where the torque that holds it is this share of the torque that brakes it
-STEADY = 0.98
+STEADY = 0.999
 # share of the slip that was left where a clutch was let go shortly before it locked
 NEAREST = 0.2
 
@@ -56,7 +56,7 @@ def _too_weak(look: Look, slip: FullSlip) -> Hint:
         f" {shown(slip.needed, torque)} to hold its slip, which is {shown(slip.after, speed)} at {slip.end:.4g} s and"
         f" nowhere below {shown(nearest, speed)}"
     )
-    factor = slip.needed / slip.kinetic
+    factor = max(slip.needed / slip.kinetic, 1.0)
     remedy = f"give it more than {factor:.3g} times the pressure, gain or coefficient, or a lower load"
     return Hint(NAME, (name,), message, remedy, _numbers(slip), slip.begin, slip.end)
 
