@@ -109,14 +109,11 @@ class Look:
     @cached_property
     def slip(self) -> Array:
         """Slip of each contact, zero while it is locked."""
-        rates = [self._rate(branch, "speed") for branch in self.contacts]
+        rates = [self.rate(branch) for branch in self.contacts]
         return np.where(self.locked, 0.0, np.column_stack(rates)) if rates else np.zeros(self.mode.shape)
 
-    def slip_acceleration(self, contact: int) -> Array:
-        """How fast the slip of a contact grows."""
-        return self._rate(self.contacts[contact], "acceleration")
-
-    def _rate(self, branch: Branch, part: str) -> Array:
+    def rate(self, branch: Branch, part: str = "speed") -> Array:
+        """Speed or acceleration of what moves less that of its base."""
         of_nodes = self.part(part)
         terms = [factor * of_nodes[:, node] for node, factor in branch.direction.items() if node != HOUSING]
         return np.sum(terms, axis=0)
@@ -139,7 +136,7 @@ class Look:
         ease = np.array([self.motion.ease(contact, locked) for locked in self._sets(rows)])
         if np.any(ease <= 0.0):
             return np.inf
-        torque = self.part("contact_torque")[rows, contact] - self.slip_acceleration(contact)[rows] / ease
+        torque = self.part("contact_torque")[rows, contact] - self.rate(self.contacts[contact], "acceleration")[rows] / ease
         return self.mean(span, -np.sign(self.slip[rows, contact]) * torque)
 
     def _sets(self, rows: slice) -> list[tuple[int, ...]]:

@@ -42,6 +42,11 @@ class Motion:
         made[np.abs(made) < ROUND_OFF * np.max(np.abs(made), initial=0.0)] = 0.0
         return made
 
+    def ease_of_element(self, element: int) -> float:
+        """Rate at which an element speeds up per torque on it, with all contacts open."""
+        rate = self._system.element_rate[element, self._heavy]
+        return float(rate @ np.linalg.solve(self._mass, rate)) if self._heavy.size else 0.0
+
     def _stalls(self, contact: int, closed: frozenset[str]) -> bool:
         """Whether the shafts of a contact stand still when contacts of these names are locked; springs are rigid."""
         left = free_motions(self._system, closed)

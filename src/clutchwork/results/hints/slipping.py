@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from clutchwork.results.channels import SPEED, TORQUE
+from clutchwork.results.ratios import ROUND_OFF
 
 if TYPE_CHECKING:
     from clutchwork.assembly.wiring import Branch
@@ -75,10 +76,15 @@ def full_slips(look: Look, contact: int, branch: Branch) -> Iterator[FullSlip]:
                 begin,
                 end,
                 top,
-                abs(float(slip[span.first])),
-                abs(float(slip[span.last])),
+                _tidy(slip[span.first], slip),
+                _tidy(slip[span.last], slip),
                 look.holding(contact, span),
                 look.mean(span, np.abs(torque[rows])),
                 float(np.min(look.part("contact_capacity")[rows, contact])),
                 float(look.heat[span.last, contact] - look.heat[span.first, contact]),
             )
+
+
+def _tidy(value: float, among: np.ndarray) -> float:
+    """A value without sign; what is round-off beside others is zero."""
+    return abs(float(value)) if abs(value) > ROUND_OFF * np.max(np.abs(among)) else 0.0

@@ -45,8 +45,8 @@ def _hint(slip: FullSlip, times: int) -> Hint:
     more = f"; {times} such stretches, this one the hottest" if times > 1 else ""
     message = (
         f"is full from {slip.begin:.4g} to {slip.end:.4g} s and slips, from {shown(slip.before, speed)} up to"
-        f" {shown(slip.after, speed)}: {shown(slip.needed, torque)} pull at it, it slips with"
-        f" {shown(slip.kinetic, torque)} and breaks away at {shown(slip.capacity, torque)}; it burns"
+        f" {shown(slip.after, speed)}: {shown(slip.needed, torque)} pull at it, it transmits"
+        f" {shown(slip.kinetic, torque)} while it slips and breaks away at {shown(slip.capacity, torque)}; it burns"
         f" {shown(slip.heat, 'J')}{more}"
     )
     remedy = f"give it more than {slip.needed / slip.kinetic:.3g} times the load, gain or coefficient, or less to hold"

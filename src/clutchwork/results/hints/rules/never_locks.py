@@ -43,7 +43,7 @@ def never_locks(look: Look) -> Iterator[Hint]:
 
 def _too_weak(look: Look, slip: FullSlip) -> Hint:
     torque, speed, name = slip.torque_unit, slip.speed_unit, slip.branch.name
-    nearest = float(np.min(np.abs(look.slip[slip.span.first :, slip.contact])))
+    nearest = min(slip.before, float(np.min(np.abs(look.slip[slip.span.first + 1 :, slip.contact]))))
     if slip.needed == inf:
         message = (
             f"slips to the end and never locks: what drives it prescribes its slip,"
@@ -52,9 +52,9 @@ def _too_weak(look: Look, slip: FullSlip) -> Hint:
         remedy = "prescribe equal speeds where it shall lock, or drive it by a torque"
         return Hint(NAME, (name,), message, remedy, {f"slip [{speed}]": slip.after}, slip.begin, slip.end)
     message = (
-        f"is full from {slip.begin:.4g} s to the end and never locks: it slips with {shown(slip.kinetic, torque)} and takes"
-        f" {shown(slip.needed, torque)} to hold its slip, which is {shown(slip.after, speed)} at {slip.end:.4g} s and"
-        f" nowhere below {shown(nearest, speed)}"
+        f"is full from {slip.begin:.4g} s to the end and never locks: it transmits {shown(slip.kinetic, torque)}"
+        f" while it slips, and {shown(slip.needed, torque)} would just keep its slip from growing, which is"
+        f" {shown(slip.after, speed)} at {slip.end:.4g} s and nowhere below {shown(nearest, speed)}"
     )
     factor = max(slip.needed / slip.kinetic, 1.0)
     remedy = f"give it more than {factor:.3g} times the pressure, gain or coefficient, or a lower load"
@@ -66,7 +66,7 @@ def _let_go(slip: FullSlip) -> Hint:
     more = slip.after * (slip.end - slip.begin) / (slip.before - slip.after)
     message = (
         f"never locks: it came nearest at {slip.end:.4g} s, with {shown(slip.after, speed)} left of"
-        f" {shown(slip.before, speed)}, where its load fell again; it slips with {shown(slip.kinetic, torque)}"
+        f" {shown(slip.before, speed)}, where its load fell again; it transmits {shown(slip.kinetic, torque)} while it slips"
     )
     remedy = f"keep it full for about {more:.3g} s more"
     return Hint(
