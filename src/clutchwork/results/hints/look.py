@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import HOUSING, Branch
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import is_reference
 from clutchwork.declare.schema import specs
 from clutchwork.results.channels import LOCKED
 from clutchwork.results.hints.motion import Motion
@@ -149,15 +148,25 @@ class Look:
         return float(np.trapezoid(values, time)) / length if length else float(np.mean(values))
 
     def load(self, contact: int) -> Array | None:
-        """What presses a contact, pressure or force; None where nothing is said to, or a controller decides on it."""
+        """What presses a contact, pressure or force; None where nothing does that is known."""
+        name = self._pressing(contact)
+        return np.asarray(self.fine[name]) if name else None
+
+    def controlled(self, contact: int) -> bool:
+        """Whether a controller decides on what presses a contact."""
+        name = self._pressing(contact)
+        return any(item.name == name and item.signal.sampling() is not None for item in self.system.inputs)
+
+    def actuated(self, contact: int) -> bool:
+        """Whether what presses a contact changes in the run; else it is plain friction."""
+        load = self.load(contact)
+        return load is not None and float(np.ptp(load)) > 0.0
+
+    def _pressing(self, contact: int) -> str:
+        """Name of the signal that presses a contact."""
         part = self.contacts[contact].component
-        for item, spec in specs(type(part), "signal", "alternative"):
-            given = getattr(part, item.name)
-            if given is None or not (spec.presses or spec.gain):
-                continue
-            sampled = not is_reference(given) and hasattr(given, "sampling") and given.sampling() is not None
-            return None if sampled else np.asarray(self.fine[f"{part.name}.{item.name}"])
-        return None
+        pressing = [item.name for item, spec in specs(type(part), "signal", "alternative") if spec.presses or spec.gain]
+        return next((f"{part.name}.{name}" for name in pressing if getattr(part, name) is not None), "")
 
     def spans(self, chosen: Array) -> list[Span]:
         """Stretches of consecutive rows that are chosen and last some time."""

@@ -27,9 +27,7 @@ def full_and_slips(look: Look) -> Iterator[Hint]:
     """A brake or clutch that something actuates, at its largest load, and whose slip grows all the same."""
     told = {name for hint in never_locks(look) for name in hint.elements}
     for contact, branch in pressed(look):
-        load = look.load(contact)
-        # what is always pressed alike is friction, not an actuated element
-        if branch.name in told or load is None or np.ptp(load) == 0.0:
+        if branch.name in told or not look.actuated(contact):
             continue
         found = [slip for slip in full_slips(look, contact, branch) if _pulled(slip)]
         if found:

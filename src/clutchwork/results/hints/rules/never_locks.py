@@ -35,7 +35,8 @@ def never_locks(look: Look) -> Iterator[Hint]:
         last = max(found, key=lambda slip: slip.end, default=None)
         if last is None:
             continue
-        if last.end == look.end and last.needed >= STEADY * last.kinetic:
+        # where its slip is prescribed no torque can change it
+        if last.end == look.end and STEADY * last.kinetic <= last.needed < inf:
             yield _too_weak(look, last)
         elif last.end < look.end and last.after < NEAREST * last.before:
             yield _let_go(last)
@@ -44,13 +45,6 @@ def never_locks(look: Look) -> Iterator[Hint]:
 def _too_weak(look: Look, slip: FullSlip) -> Hint:
     torque, speed, name = slip.torque_unit, slip.speed_unit, slip.branch.name
     nearest = min(slip.before, float(np.min(np.abs(look.slip[slip.span.first + 1 :, slip.contact]))))
-    if slip.needed == inf:
-        message = (
-            f"slips to the end and never locks: what drives it prescribes its slip,"
-            f" {shown(slip.after, speed)} at {slip.end:.4g} s"
-        )
-        remedy = "prescribe equal speeds where it shall lock, or drive it by a torque"
-        return Hint(NAME, (name,), message, remedy, {f"slip [{speed}]": slip.after}, slip.begin, slip.end)
     message = (
         f"is full from {slip.begin:.4g} s to the end and never locks: it transmits {shown(slip.kinetic, torque)}"
         f" while it slips, and {shown(slip.needed, torque)} would just keep its slip from growing, which is"

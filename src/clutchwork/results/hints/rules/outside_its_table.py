@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from clutchwork.results.hints.look import Look
 
 NAME = "outside its table"
-# K beyond the ends that are round-off or make no difference
-SLACK = 1.0
+# share of the range of a table beyond its ends that makes no difference
+SLACK = 0.1
 
 
 @run_rule(NAME)
@@ -29,7 +29,8 @@ def outside_its_table(look: Look) -> Iterator[Hint]:
             continue
         warm = look.fine[name]
         acts = look.closed[:, contact] & ~look.locked[:, contact]
-        beyond = acts & ((warm > known[-1] + SLACK) | (warm < known[0] - SLACK))
+        slack = SLACK * (known[-1] - known[0])
+        beyond = acts & ((warm > known[-1] + slack) | (warm < known[0] - slack))
         if not np.any(beyond):
             continue
         worst = float(warm[beyond][np.argmax(np.abs(warm[beyond] - np.clip(warm[beyond], known[0], known[-1])))])

@@ -24,8 +24,11 @@ FEWEST = 3000
 SHARE = 0.5
 # time constants that a step has where an oscillation holds it down
 RESOLVED = 4.0
+FINER = 0.25
 # rate of a spring over the speeds of its ends, below which a rigid joint gives the same motion
 RIGID = 0.005
+# distance of slipping over the deflection of bristles, from which the deflection is lost in it
+FAR = 1000.0
 
 
 class Ringing(NamedTuple):
@@ -44,7 +47,7 @@ def stiff(look: Look) -> Iterator[Hint]:
         return
     found = sorted([*_springs(look), *_bristles(look)], key=lambda ringing: -ringing.omega)
     for ringing in found:
-        short = _short(look, RESOLVED / ringing.omega)
+        short = _short(look, ringing.omega)
         if short >= SHARE * steps:
             yield _hint(look, ringing, short / steps)
             # what is slower is not what holds the steps down
@@ -71,6 +74,8 @@ def _bristles(look: Look) -> Iterator[Ringing]:
         stiffness, coefficient = getattr(law, "stiffness", None), law.static or law.kinetic
         if law.sticks or not isinstance(stiffness, float | int) or not isinstance(coefficient, float | int):
             continue
+        if _distance(look, contact) < FAR * coefficient / stiffness:
+            continue
         load = float(np.max(look.part("contact_capacity")[:, contact], initial=0.0)) / coefficient
         omega = sqrt(stiffness * load * look.motion.ease(contact, ()))
         if omega > 0.0:
@@ -78,15 +83,25 @@ def _bristles(look: Look) -> Iterator[Ringing]:
             yield Ringing(branch, omega, remedy)
 
 
-def _short(look: Look, step: float) -> float:
-    """How many steps of the solver are shorter than that; where the output has instants of its own, by their mean."""
-    if look.fine is look.run:
-        gaps = np.diff(look.time)
-        # where a step is longer than the output asks for it was cut into several
-        cut = look.duration / look.run.options.points if look.run.options.output == "smooth" else np.inf
-        return float(np.count_nonzero((gaps > 0.0) & (gaps < min(step, 0.99 * cut))))
-    steps = float(look.run.statistics["steps"])
-    return steps if look.duration < step * steps else 0.0
+def _distance(look: Look, contact: int) -> float:
+    """How far apart slipping brings the sides of a contact."""
+    slip = look.slip[:, contact]
+    return float(np.ptp(np.cumsum(0.5 * (slip[1:] + slip[:-1]) * np.diff(look.time)))) if len(slip) > 1 else 0.0
+
+
+def _short(look: Look, omega: float) -> float:
+    """How many steps an oscillation limits; where the output has instants of its own, all or none by their mean.
+
+    Steps that are much shorter are limited by something else; with the tolerance they shrink as those of order five do.
+    """
+    options, steps = look.run.options, float(look.run.statistics["steps"])
+    shortest, longest = FINER * (options.rtol / 1e-6) ** 0.2 / omega, RESOLVED / omega
+    if look.fine is not look.run:
+        return steps if shortest < look.duration / steps < longest else 0.0
+    gaps = np.diff(look.time)
+    # where a step is longer than the output asks for it was cut into several
+    longest = min(longest, 0.99 * look.duration / options.points)
+    return float(np.count_nonzero((gaps > shortest) & (gaps < longest)))
 
 
 def _hint(look: Look, ringing: Ringing, share: float) -> Hint:

@@ -34,7 +34,8 @@ def tie_up(look: Look) -> Iterator[Hint]:
     if total <= 0.0:
         return
     shifts: Shifts = cache(lambda: _in_gears(look.system))
-    for pair in combinations(range(len(look.contacts)), 2):
+    actuated = [contact for contact in range(len(look.contacts)) if look.actuated(contact)]
+    for pair in combinations(actuated, 2):
         lost = _lost(look, pair, shifts)
         if np.any(lost):
             steps = 0.5 * (lost[1:] + lost[:-1]) * np.diff(look.time)

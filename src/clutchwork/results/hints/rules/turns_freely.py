@@ -28,7 +28,8 @@ MOST_NAMED = 5
 def turns_freely(look: Look) -> Iterator[Hint]:
     """Shafts that contacts have driven, and that turn at the end with no torque on them at all."""
     last = tuple(np.flatnonzero(look.closed[-1]).tolist())
-    if len(last) == len(look.contacts):
+    # the shaft of a single contact that opens turns freely because it was opened
+    if len(look.contacts) < 2 or len(last) == len(look.contacts):
         return
     other = np.any(look.closed != look.closed[-1], axis=1)
     if not np.any(other):
