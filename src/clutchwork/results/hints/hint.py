@@ -23,6 +23,9 @@ class Hint:
     begin: float | None = None  # s; None: no matter of time
     end: float | None = None  # s
 
+    def __hash__(self) -> int:
+        return hash((self.rule, self.elements, self.message))
+
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
         return {

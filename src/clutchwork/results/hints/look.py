@@ -136,7 +136,7 @@ class Look:
         if np.any(ease <= 0.0):
             return np.inf
         torque = self.part("contact_torque")[rows, contact] - self.rate(self.contacts[contact], "acceleration")[rows] / ease
-        return self.mean(span, -np.sign(self.slip[rows, contact]) * torque)
+        return self.mean(span, -self.mode[rows, contact] * torque)
 
     def _sets(self, rows: slice) -> list[tuple[int, ...]]:
         return [tuple(np.flatnonzero(row).tolist()) for row in self.locked[rows]]

@@ -53,6 +53,27 @@ class Motion:
         nodes = [node for node in wiring(self._system).contacts[contact].direction if node != HOUSING]
         return bool(np.max(np.abs(left[nodes]), initial=0.0) <= ROUND_OFF * max(1.0, np.max(np.abs(left), initial=0.0)))
 
+    def vibration(self, contact: int, slope: float, locked: tuple[int, ...]) -> complex:
+        """The root [1/s] of the fastest growing vibration where the torque of a contact falls by `slope` per slip.
+
+        Springs and dampers alone act beside it; zero where nothing grows.
+        """
+        left = null_space(self.rates[list(locked)])
+        parts = [(k, part.component.passive()) for k, part in enumerate(wiring(self._system).elements)]
+        found = [(k, passive) for k, passive in parts if passive is not None]
+        rates = self._system.element_rate[[k for k, _ in found]][:, self._heavy] @ left
+        springs = np.array([passive.stiffness for _, passive in found])
+        dampers = np.array([passive.damping for _, passive in found])
+        rate = self.rates[contact] @ left
+        damping = rates.T @ (dampers[:, None] * rates) - slope * np.outer(rate, rate)
+        inverse = np.linalg.inv(left.T @ self._mass @ left)
+        # over the speeds and the torques of the springs
+        above = np.hstack([-inverse @ damping, -inverse @ rates.T])
+        below = np.hstack([springs[:, None] * rates, np.zeros((len(found), len(found)))])
+        roots = np.linalg.eigvals(np.vstack([above, below]))
+        growing = [complex(root) for root in roots if root.imag > root.real > ROUND_OFF * abs(root)]
+        return max(growing, key=lambda root: root.real, default=0j)
+
     def untouched(self, closed: Collection[int]) -> Array:
         """Motions, one per column over the nodes, on which no element and none of these contacts has a torque."""
         acting = [number for number, part in enumerate(wiring(self._system).elements) if not part.hidden]

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from clutchwork.results.hints.look import Look
 
 NAME = "never locks"
-# a slip is not on its way to zero where the torque that holds it is this share of the torque that brakes it
-STEADY = 0.999
+# a slip grows where the torque that would keep it is above the torque of the clutch; what is equal settles, as on a bench
+GROWS = 1.02
 # share of the slip that was left where a clutch was let go shortly before it locked
 NEAREST = 0.2
 
@@ -36,7 +36,7 @@ def never_locks(look: Look) -> Iterator[Hint]:
         if last is None:
             continue
         # where its slip is prescribed no torque can change it
-        if last.end == look.end and STEADY * last.kinetic <= last.needed < inf:
+        if last.end == look.end and GROWS * last.kinetic <= last.needed < inf:
             yield _too_weak(look, last)
         elif last.end < look.end and last.after < NEAREST * last.before:
             yield _let_go(last)
@@ -50,7 +50,7 @@ def _too_weak(look: Look, slip: FullSlip) -> Hint:
         f" while it slips, and {shown(slip.needed, torque)} would just keep its slip from growing, which is"
         f" {shown(slip.after, speed)} at {slip.end:.4g} s and nowhere below {shown(nearest, speed)}"
     )
-    factor = max(slip.needed / slip.kinetic, 1.0)
+    factor = slip.needed / slip.kinetic
     remedy = f"give it more than {factor:.3g} times the pressure, gain or coefficient, or a lower load"
     return Hint(NAME, (name,), message, remedy, _numbers(slip), slip.begin, slip.end)
 

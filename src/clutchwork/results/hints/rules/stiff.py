@@ -28,7 +28,7 @@ FINER = 0.25
 # rate of a spring over the speeds of its ends, below which a rigid joint gives the same motion
 RIGID = 0.005
 # distance of slipping over the deflection of bristles, from which the deflection is lost in it
-FAR = 1000.0
+FAR = 1e4
 
 
 class Ringing(NamedTuple):
