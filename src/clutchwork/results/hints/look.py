@@ -23,6 +23,8 @@ Array = NDArray[Any]
 
 # instants of a run whose own output has others
 INSTANTS = 1000
+# rows of a stretch at which its torques are looked at
+MOST_PLACES = 400
 OPEN = 2
 
 
@@ -131,21 +133,21 @@ class Look:
 
         It is the torque that the contact has, and what its slip acceleration takes beside it.
         """
-        rows = slice(span.first, span.last + 1)
-        ease = np.array([self.motion.ease(contact, locked) for locked in self._sets(rows)])
+        rows = np.unique(np.linspace(span.first, span.last, MOST_PLACES).astype(int))
+        ease = np.array([self.motion.ease(contact, self.locked_at(int(row))) for row in rows])
         if np.any(ease <= 0.0):
             return np.inf
-        torque = self.part("contact_torque")[rows, contact] - self.rate(self.contacts[contact], "acceleration")[rows] / ease
-        return self.mean(span, -self.mode[rows, contact] * torque)
+        torque = self.part("contact_torque")[rows, contact]
+        torque = torque - self.rate(self.contacts[contact], "acceleration")[rows] / ease
+        return _mean(self.time[rows], -self.mode[rows, contact] * torque)
 
-    def _sets(self, rows: slice) -> list[tuple[int, ...]]:
-        return [tuple(np.flatnonzero(row).tolist()) for row in self.locked[rows]]
+    def locked_at(self, row: int) -> tuple[int, ...]:
+        """Contacts that are locked at a row."""
+        return tuple(np.flatnonzero(self.locked[row]).tolist())
 
     def mean(self, span: Span, values: Array) -> float:
         """Mean over the time of a span of values at its rows."""
-        time = self.time[span.first : span.last + 1]
-        length = float(time[-1] - time[0])
-        return float(np.trapezoid(values, time)) / length if length else float(np.mean(values))
+        return _mean(self.time[span.first : span.last + 1], values)
 
     def load(self, contact: int) -> Array | None:
         """What presses a contact, pressure or force; None where nothing does that is known."""
@@ -173,6 +175,11 @@ class Look:
         edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(int)))
         found = [Span(int(first), int(stop) - 1) for first, stop in zip(edges[::2], edges[1::2], strict=True)]
         return [span for span in found if self.time[span.last] > self.time[span.first]]
+
+
+def _mean(time: Array, values: Array) -> float:
+    length = float(time[-1] - time[0])
+    return float(np.trapezoid(values, time)) / length if length else float(np.mean(values))
 
 
 def begins(run: Trajectory) -> float:

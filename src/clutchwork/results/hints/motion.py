@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from functools import lru_cache
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,8 +26,8 @@ class Motion:
         self._heavy = np.flatnonzero(np.asarray(system.massless) == 0)
         self._mass = system.mass[np.ix_(self._heavy, self._heavy)]
         self.rates = system.contact_rate[:, self._heavy]
-        self.eases = lru_cache(maxsize=256)(self._eases)
-        self.stalls = lru_cache(maxsize=4096)(self._stalls)
+        self.eases = cache(self._eases)
+        self.stalls = cache(self._stalls)
 
     def ease(self, contact: int, locked: tuple[int, ...]) -> float:
         """Slip acceleration of a contact per torque on it [rad/s2 per N m], while others are locked."""

@@ -40,4 +40,4 @@ def breaks_away_at_the_start(look: Look) -> Iterator[Hint]:
 
 
 def _moves(look: Look, row: int, contact: int) -> bool:
-    return look.motion.ease(contact, tuple(np.flatnonzero(look.locked[row]).tolist())) > 0.0
+    return look.motion.ease(contact, look.locked_at(row)) > 0.0
