@@ -7,12 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support import random_drivelines
-from support.amount import amount
 
 import clutchwork as cw
 from clutchwork.results.hints import registry
-
+from support import random_drivelines
+from support.amount import amount
 from support.hint_models import CASES, hill, launch, shift
 
 GRIDS = [{"dt": 0.31}, {"dt": 1e-3}, {"times": [0.05]}, {"output": "steps"}, {"work": False}, {"angles": False}]

@@ -8,7 +8,6 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.results.hints.registry import rules
-
 from support.hint_models import CASES, hill, juddering, launch, shift, warm
 
 NAMES = sorted(CASES)

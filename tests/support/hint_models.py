@@ -36,9 +36,7 @@ def launch(
     parts = [
         cw.Torque("drive", shaft=engine, torque=100.0 * sign * size),
         cw.Torque("road", shaft=follower, torque=-80.0 * sign * size),
-        cw.Clutch(
-            "c", base=engine, follower=follower, friction=COULOMB, gain=capacity * size / 0.3, normal_force=load
-        ),
+        cw.Clutch("c", base=engine, follower=follower, friction=COULOMB, gain=capacity * size / 0.3, normal_force=load),
     ]
     for part in parts[::-1] if turned else parts:
         d.add(part)
@@ -120,9 +118,7 @@ def warm(last: float, friction: cw.Law | None = None, capacity: float = 200.0) -
     plates = d.thermal("plates", capacity=capacity, temperature=300.0)
     table = cw.TemperatureTable(static=((300.0, 0.35), (last, 0.35)), kinetic=((300.0, 0.3), (last, 0.3)))
     d.add(
-        cw.Clutch(
-            "c", base=drive, follower=out, friction=friction or table, gain=50.0, normal_force=1.0, heat=plates
-        )
+        cw.Clutch("c", base=drive, follower=out, friction=friction or table, gain=50.0, normal_force=1.0, heat=plates)
     )
     return d
 
@@ -156,9 +152,7 @@ def dog(speed: float) -> cw.Driveline:
     d = cw.Driveline("dog")
     base, follower = d.shaft("base", inertia=1.0, speed=speed), d.shaft("follower", inertia=1.0)
     d.add(
-        cw.DogClutch(
-            "dog", base=base, follower=follower, teeth=24, gap=0.02, stiffness=1e5, command=1.0, engaged=True
-        )
+        cw.DogClutch("dog", base=base, follower=follower, teeth=24, gap=0.02, stiffness=1e5, command=1.0, engaged=True)
     )
     return d
 

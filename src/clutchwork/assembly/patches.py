@@ -142,12 +142,12 @@ def _pool(where: Numbered, offset: int, old: Any, new: Any) -> Iterator[Patch]:
 
 def changed_signals(old: Component, new: Component) -> Iterator[tuple[str, Signal]]:
     """Name and value of each signal of an element and its friction law that is another; Unpatched for a reference."""
-    yield from _differing(old, old, new, old.name)
+    yield from _differing(old, new, old.name)
     if old.friction is not new.friction:
-        yield from _differing(old, old.friction, new.friction, f"{old.name}.friction")
+        yield from _differing(old.friction, new.friction, f"{old.name}.friction")
 
 
-def _differing(component: Component, old: Any, new: Any, path: str) -> Iterator[tuple[str, Signal]]:
+def _differing(old: Any, new: Any, path: str) -> Iterator[tuple[str, Signal]]:
     for names, _ in inputs(type(old)):
         before, after = _given(names, old), _given(names, new)
         was, value = getattr(old, before), getattr(new, after)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -24,6 +25,14 @@ class Recorded(Protocol):
     @property
     def options(self) -> Options:
         """How it was run."""
+
+    @property
+    def t_end(self) -> float:
+        """The end that was asked for [s]."""
+
+    @property
+    def statistics(self) -> Mapping[str, float]:
+        """What the solver did."""
 
     @property
     def time(self) -> NDArray[np.float64]:

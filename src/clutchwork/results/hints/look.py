@@ -17,7 +17,7 @@ from clutchwork.results.hints.motion import Motion
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.results.events import Events
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.results.recorded import Recorded
 
 Array = NDArray[Any]
 
@@ -39,11 +39,11 @@ class Span(NamedTuple):
 class Look:
     """A run that has at least one instant."""
 
-    run: Trajectory  # as it was made
-    fine: Trajectory  # the same with enough instants
+    run: Recorded  # as it was made
+    fine: Recorded  # the same with enough instants
 
     @classmethod
-    def at(cls, run: Trajectory) -> Look:
+    def at(cls, run: Recorded) -> Look:
         """Look at a run; where its output has instants of its own it is repeated, unless it stopped early."""
         own = run.options.dt is not None or run.options.times is not None or run.options.output == "steps"
         return cls(run, run.at(_instants(run)) if own and run.finished else run)
@@ -95,17 +95,20 @@ class Look:
     @cached_property
     def mode(self) -> Array:
         """Mode of each contact."""
-        return self.part("contact_mode").astype(int)
+        made: Array = self.part("contact_mode").astype(int)
+        return made
 
     @cached_property
     def locked(self) -> Array:
         """Whether each contact is locked."""
-        return self.mode == LOCKED
+        made: Array = self.mode == LOCKED
+        return made
 
     @cached_property
     def closed(self) -> Array:
         """Whether each contact takes up a torque: it is locked, or slips with a capacity."""
-        return self.locked | ((self.mode != OPEN) & (self.part("contact_torque") != 0.0))
+        made: Array = self.locked | ((self.mode != OPEN) & (self.part("contact_torque") != 0.0))
+        return made
 
     @cached_property
     def slip(self) -> Array:
@@ -117,7 +120,8 @@ class Look:
         """Speed or acceleration of what moves less that of its base."""
         of_nodes = self.part(part)
         terms = [factor * of_nodes[:, node] for node, factor in branch.direction.items() if node != HOUSING]
-        return np.sum(terms, axis=0)
+        made: Array = np.sum(terms, axis=0)
+        return made
 
     @cached_property
     def heat(self) -> Array:
@@ -182,16 +186,14 @@ def _mean(time: Array, values: Array) -> float:
     return float(np.trapezoid(values, time)) / length if length else float(np.mean(values))
 
 
-def begins(run: Trajectory) -> float:
+def begins(run: Recorded) -> float:
     """When a run began [s], whatever its first output is."""
     return float(getattr(run, "t_start", 0.0))
 
 
-def _instants(run: Trajectory) -> Array:
+def _instants(run: Recorded) -> Array:
     """A grid with both limits at events and at knots of signals."""
     ends = begins(run), run.t_end
     knots = {piece.start for item in run.system.inputs if not item.signal.repeats() for piece in item.signal.segments()}
     inner = np.array([t for t in (*run.events.times, *knots) if ends[0] < t < ends[1]])
     return np.sort(np.concatenate([np.linspace(*ends, INSTANTS + 1), inner, inner]))
-
-

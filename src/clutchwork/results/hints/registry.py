@@ -14,7 +14,7 @@ from clutchwork.results.hints.hint import Hint, Hints
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.results.hints.look import Look
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.results.recorded import Recorded
 
 OfModel: TypeAlias = "Callable[[System], Iterable[Hint]]"
 OfRun: TypeAlias = "Callable[[Look], Iterable[Hint]]"
@@ -59,8 +59,7 @@ def run_rule(name: str) -> Callable[[OfRun], OfRun]:
 @cache
 def rules() -> tuple[Rule, ...]:
     """All rules by the alphabet, those of models first."""
-    from clutchwork.results.hints import rules as folder
-
+    folder = import_module(f"{__name__.rpartition('.')[0]}.rules")
     for module in sorted(module.name for module in iter_modules(folder.__path__)):
         import_module(f"{folder.__name__}.{module}")
     return tuple(sorted(_RULES.values(), key=lambda rule: (rule.of_model is None, rule.name)))
@@ -72,7 +71,7 @@ def of_model(system: System) -> Hints:
     return Hints(hint for rule in rules() if rule.of_model for hint in rule.of_model(system))
 
 
-def of_run(run: Trajectory) -> Hints:
+def of_run(run: Recorded) -> Hints:
     """The hints about a run, after those about its model."""
     from clutchwork.results.hints.look import Look
 

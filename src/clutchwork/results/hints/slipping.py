@@ -51,7 +51,12 @@ def pressed(look: Look) -> Iterator[tuple[int, Branch]]:
     """Contacts with a law that sticks, which something presses; no freewheels, and none that a controller regulates."""
     for contact, branch in enumerate(look.contacts):
         part = branch.component
-        if part.friction.sticks and not part.one_way and look.load(contact) is not None and not look.controlled(contact):
+        if (
+            part.friction.sticks
+            and not part.one_way
+            and look.load(contact) is not None
+            and not look.controlled(contact)
+        ):
             yield contact, branch
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from clutchwork.elements.disk_clutch import DiskClutch
+from clutchwork.declare.schema import specs
 from clutchwork.results.hints.hint import Hint, shown
 from clutchwork.results.hints.registry import model_rule
 
@@ -18,8 +18,10 @@ NAME = "default area"
 @model_rule(NAME)
 def default_area(system: System) -> Iterator[Hint]:
     """A DiskClutch whose pressure, or wear, acts on an area that is the default."""
-    for clutch in system.source.elements if system.source else ():
-        if not isinstance(clutch, DiskClutch) or clutch.area != DiskClutch.area:
+    elements: Any = system.source.elements if system.source else ()
+    for clutch in elements:
+        defaults = {item.name: item.default for item, spec in specs(type(clutch), "param") if spec.unit == "m2"}
+        if "area" not in defaults or clutch.area != defaults["area"]:
             continue
         if clutch.pressure is None and clutch.wear_rate is None:
             continue

@@ -71,9 +71,7 @@ def _falling(look: Look, contact: int, branch: Branch, span: Span) -> Falling:
     return Falling(slip, slope, tuple(locked.tolist()))
 
 
-def _hint(
-    look: Look, contact: int, branch: Branch, when: tuple[float, float], place: Falling, root: complex
-) -> Hint:
+def _hint(look: Look, contact: int, branch: Branch, when: tuple[float, float], place: Falling, root: complex) -> Hint:
     unit, speed = f"{TORQUE[branch.domain]} s/{SPEED[branch.domain].removesuffix('/s')}", SPEED[branch.domain]
     low, high = 0.0, place.slope
     for _ in range(HALVINGS):
@@ -82,9 +80,9 @@ def _hint(
         low, high = (middle, high) if stable else (low, middle)
     frequency, time = root.imag / (2.0 * pi), 1.0 / root.real
     message = (
-        f"judders while it slips from {when[0]:.4g} to {when[1]:.4g} s: at {shown(place.slip, speed)} its torque falls by"
-        f" {shown(place.slope, unit)}, and the damping of the driveline makes up for {shown(low, unit)}; vibrations of"
-        f" {shown(frequency, 'Hz')} grow by a factor e every {shown(time, 's')}"
+        f"judders while it slips from {when[0]:.4g} to {when[1]:.4g} s: at {shown(place.slip, speed)} its torque"
+        f" falls by {shown(place.slope, unit)}, and the damping of the driveline makes up for {shown(low, unit)};"
+        f" vibrations of {shown(frequency, 'Hz')} grow by a factor e every {shown(time, 's')}"
     )
     remedy = "give its springs more damping, or take a coefficient that falls less over the slip"
     numbers = {f"slope [{unit}]": place.slope, f"damped [{unit}]": low, "frequency [Hz]": frequency, "growth [s]": time}

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from clutchwork.results.hints.look import Look
 
 NAME = "never locks"
-# a slip grows where the torque that would keep it is above the torque of the clutch; what is equal settles, as on a bench
+# torque that keeps a slip over that of the clutch, from which it grows; what is equal settles, as on a bench
 GROWS = 1.02
 # share of the slip that was left where a clutch was let go shortly before it locked
 NEAREST = 0.2
@@ -60,7 +60,8 @@ def _let_go(slip: FullSlip) -> Hint:
     more = slip.after * (slip.end - slip.begin) / (slip.before - slip.after)
     message = (
         f"never locks: it came nearest at {slip.end:.4g} s, with {shown(slip.after, speed)} left of"
-        f" {shown(slip.before, speed)}, where its load fell again; it transmits {shown(slip.kinetic, torque)} while it slips"
+        f" {shown(slip.before, speed)}, where its load fell again; it transmits {shown(slip.kinetic, torque)} while it"
+        " slips"
     )
     remedy = f"keep it full for about {more:.3g} s more"
     return Hint(

@@ -37,8 +37,8 @@ def outside_its_table(look: Look) -> Iterator[Hint]:
         begin, end = (float(t) for t in look.time[np.flatnonzero(beyond)[[0, -1]]])
         goes_on = "goes on in a straight line" if law.extrapolation == "linear" else "keeps its value at the end"
         message = (
-            f"slips at up to {shown(worst, 'K')} between {begin:.4g} and {end:.4g} s, but its table of coefficients ends"
-            f" at {shown(known[-1] if worst > known[-1] else known[0], 'K')}, where it {goes_on}"
+            f"slips at up to {shown(worst, 'K')} between {begin:.4g} and {end:.4g} s, but its table of coefficients"
+            f" ends at {shown(known[-1] if worst > known[-1] else known[0], 'K')}, where it {goes_on}"
         )
         remedy = "extend the table to that temperature, or cool the contact"
         numbers = {"temperature [K]": worst, "lowest [K]": known[0], "highest [K]": known[-1]}

@@ -95,8 +95,8 @@ def _hint(look: Look, pair: Pair, spans: list[Span], total: float) -> Hint:
     names = tuple(look.contacts[k].name for k in pair)
     message = (
         f"act against each other from {begin:.4g} to {end:.4g} s: locked together they would hold their shafts still;"
-        f" they burn {shown(heat, 'J')} there, {shown(heat / length, 'W')} on average and {heat / total:.0%} of the heat"
-        " of all contacts"
+        f" they burn {shown(heat, 'J')} there, {shown(heat / length, 'W')} on average and {heat / total:.0%} of the"
+        " heat of all contacts"
     )
     remedy = f"let one open before the other closes: less overlap of {together(names)}"
     numbers = {"heat [J]": heat, "power [W]": heat / length, "share [1]": heat / total, "overlap [s]": length}

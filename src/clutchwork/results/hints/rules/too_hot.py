@@ -32,9 +32,11 @@ def too_hot(look: Look) -> Iterator[Hint]:
         begin, end = (float(t) for t in look.time[np.flatnonzero(warm > SINTERED)[[0, -1]]])
         message = (
             f"reaches {shown(float(warm[top]), 'K')} at {look.time[top]:.4g} s and is above {SINTERED:g} K from"
-            f" {begin:.4g} to {end:.4g} s: sintered metal stands {SINTERED:g} K for a short time, all other linings at most"
-            f" {OTHERS:g} K"
+            f" {begin:.4g} to {end:.4g} s: sintered metal stands {SINTERED:g} K for a short time, all other linings at"
+            f" most {OTHERS:g} K"
         )
-        remedy = f"check the capacity of {path.node.name}, {shown(path.node.capacity, 'J/K')}, and its cooling, or slip less"
+        remedy = (
+            f"check the capacity of {path.node.name}, {shown(path.node.capacity, 'J/K')}, and its cooling, or slip less"
+        )
         numbers = {"temperature [K]": float(warm[top]), "limit [K]": SINTERED}
         yield Hint(NAME, (branch.name,), message, remedy, numbers, begin, end)
