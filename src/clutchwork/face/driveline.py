@@ -151,7 +151,7 @@ class Driveline:
     def hints(self) -> Hints:
         """What an expert would say of the model before it runs, with numbers and a remedy; print it to read it.
 
-        Hints are no mistakes, which `check` lists, and no warnings. Those that a run shows are in `Trajectory.hints`.
+        Hints are neither the mistakes that `check` lists nor warnings. Those that a run shows are in `Trajectory.hints`.
         ModelError lists all mistakes.
         """
         from clutchwork.assembly.system import System

@@ -24,5 +24,5 @@ def joined_to_nothing(system: System) -> Iterator[Hint]:
     touched |= {node for gear in parts.gears for node, _ in gear.ports.values()}
     for number, node in enumerate(parts.nodes) if touched else ():
         if number not in touched:
-            message = "is joined to nothing: no element acts on it, so it keeps its speed for ever"
+            message = "is joined to nothing: no element acts on it, so it never changes its speed"
             yield Hint(NAME, (node.name,), message, "attach an element to it, or remove it")

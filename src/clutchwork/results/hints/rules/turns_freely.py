@@ -64,7 +64,7 @@ def _hint(look: Look, nodes: list[int], begin: float) -> Hint:
     ]
     more = f" and {len(nodes) - MOST_NAMED} more" if len(nodes) > MOST_NAMED else ""
     message = (
-        f"from {begin:.4g} s to the end no element and no closed contact acts on this motion, which goes on for ever:"
+        f"from {begin:.4g} s to the end no element and no closed contact acts on this motion, so nothing slows it down:"
         f" {together(named_speeds[:MOST_NAMED])}{more}"
     )
     remedy = "where it shall slow down give it drag, such as a Damper or BearingFriction, or keep a contact closed"
