@@ -151,8 +151,8 @@ class Driveline:
     def hints(self) -> Hints:
         """What an expert would say of the model before it runs, with numbers and a remedy; print it to read it.
 
-        Hints are neither the mistakes that `check` lists nor warnings. Those that a run shows are in `Trajectory.hints`.
-        ModelError lists all mistakes.
+        Hints are neither the mistakes that `check` lists nor warnings. Those that a run shows are in
+        `Trajectory.hints`. ModelError lists all mistakes.
         """
         from clutchwork.assembly.system import System
         from clutchwork.model.findings import findings
