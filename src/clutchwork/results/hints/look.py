@@ -188,7 +188,7 @@ def _mean(time: Array, values: Array) -> float:
 
 def begins(run: Recorded) -> float:
     """When a run began [s], whatever its first output is."""
-    return float(getattr(run, "t_start", 0.0))
+    return float(getattr(run.options, "t_start", 0.0))
 
 
 def _instants(run: Recorded) -> Array:
