@@ -88,7 +88,7 @@ def test_the_command_line_prints_them(tmp_path: Path, capsys: pytest.CaptureFixt
     assert f"hints\n  {hint}" in capsys.readouterr().out
     assert main(["run", str(tmp_path / "model.toml"), "--json"]) == 0
     (data,) = json.loads(capsys.readouterr().out)["hints"]
-    assert data == hint.as_dict()
+    assert data == hint.to_dict()
 
 
 def test_the_check_prints_those_of_a_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -98,7 +98,7 @@ def test_the_check_prints_those_of_a_model(tmp_path: Path, capsys: pytest.Captur
     assert main(["check", str(tmp_path / "model.toml")]) == 0
     assert f"hints\n  {hint}" in capsys.readouterr().out
     assert main(["check", str(tmp_path / "model.toml"), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["hints"] == [hint.as_dict()]
+    assert json.loads(capsys.readouterr().out)["hints"] == [hint.to_dict()]
 
 
 def test_a_model_without_hints_prints_none(capsys: pytest.CaptureFixture[str]) -> None:

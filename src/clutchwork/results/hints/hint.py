@@ -26,7 +26,7 @@ class Hint:
     def __hash__(self) -> int:
         return hash((self.rule, self.elements, self.message))
 
-    def as_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
         return {
             "rule": self.rule,
