@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import ModelError, ModelFileError, ModelWarning
-from clutchwork.command.progress import Bar
+from clutchwork.command.progress import bar
 from clutchwork.declare.speech import words_of_files
 from clutchwork.run.flags import add_options, given_options
 
@@ -139,11 +139,11 @@ def _simulated(system: System, asked: argparse.Namespace) -> tuple[Trajectory, i
 
     with words_of_files():
         t_end, options = merged(system.settings, given_options(asked))
-    with warnings.catch_warnings(), Bar(hidden=asked.quiet or asked.json) as bar:
+    with warnings.catch_warnings(), bar(t_end, hidden=asked.quiet or asked.json) as told:
         # the exit code and the message report it
         warnings.simplefilter("ignore", StoppedEarly)
         try:
-            run = simulate(system, t_end, options=options, progress=bar.show)
+            run = simulate(system, t_end, options=options, progress=told)
         except Interrupted as stop:
             return stop.trajectory, INTERRUPTED
     return run, DONE if run.finished else STOPPED

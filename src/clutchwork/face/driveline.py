@@ -172,7 +172,7 @@ class Driveline:
         t_end: float | None = None,
         *,
         options: Options | None = None,
-        progress: Progress | None = None,
+        progress: Progress | bool | None = None,
         **changes: Unpack[OptionFields],
     ) -> Trajectory:
         """Assemble and run up to t_end [s]; options as for `clutchwork.simulate`.
