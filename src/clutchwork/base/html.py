@@ -35,7 +35,7 @@ def table(
 
 def _line(tag: str, cells: Sequence[object], right: Collection[int]) -> str:
     made = (
-        f'<{tag} style="text-align:{"right" if column in right else "left"}; white-space:pre">{text(cell)}</{tag}>'
+        f'<{tag} style="text-align:{"right" if column in right else "left"}; white-space:pre-wrap">{text(cell)}</{tag}>'
         for column, cell in enumerate(cells)
     )
     return f"<tr>{''.join(made)}</tr>"

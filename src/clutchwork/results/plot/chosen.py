@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, near
 from clutchwork.base.shown import listed, shown
+from clutchwork.results.plot.panels import busy, driven
 
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
@@ -161,11 +162,11 @@ def _units(runs: Mapping[str, Recorded], unit: Any, call: str) -> set[str]:
 
 
 def usual(run: Recorded) -> Iterator[str]:
-    """What a picture shows where nothing is asked for: speeds, loads and torques of contacts, temperatures."""
-    wiring = run.wiring
-    inputs = [name for name, _ in wiring.inputs]
-    yield from (f"{node.name}.speed" for node in wiring.nodes)
-    for contact in wiring.contacts:
-        yield from (name for name in inputs if name.rpartition(".")[0] == contact.name)
-    yield from (f"{contact.name}.torque" for contact in wiring.contacts)
-    yield from (f"{node.name}.temperature" for node in wiring.thermal)
+    """What is shown where nothing is asked for: speeds, what presses contacts, their torques, temperatures.
+
+    Contacts are those that carry torque, the first ones where there are many, as in the picture without names.
+    """
+    yield from (f"{node.name}.speed" for node in run.wiring.nodes)
+    yield from (signal for group in driven(run) for signal in group.values())
+    yield from (f"{contact}.torque" for contact in busy(run))
+    yield from (f"{node.name}.temperature" for node in run.wiring.thermal)

@@ -21,7 +21,7 @@ HEIGHT, LINE, MOST_LINES = 40.0, 3.9, 18  # mm of a panel, mm of a line of its l
 # four for each dot across the picture: what is left out cannot be seen
 MOST_POINTS = 40_000
 # share of the width that a letter of a word at an event needs
-LETTER = 0.0105
+LETTER = 0.0125
 POINTS: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 2.4, "markeredgewidth": 0.0, "alpha": 0.65}
 
 
@@ -105,7 +105,7 @@ def _words(axes: Axes, view: View) -> None:
     width, taken = view.end - view.begin, 0.0
     for instant in sorted({event.time for _, event in view.marks}):
         found = list(dict.fromkeys(happened(event) for _, event in view.marks if event.time == instant))
-        share, room = (instant - view.begin) / width, LETTER * len(found[0])
+        share, room = (instant - view.begin) / width, LETTER * len(found[0]) + 0.01
         left = min(max(share - 0.5 * room, 0.0), 1.0 - room)
         if len(found) > 1 or left < taken:
             continue

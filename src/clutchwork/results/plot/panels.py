@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
 MOST_CURVES = 24
+# in a zoom; of more only those that the contact joins
+MOST_IN_ZOOM = 10
 MOST_ROWS = 15  # of one column of a legend
 # what presses contacts together where they have different words for it
 SEVERAL = "actuating force"
@@ -55,10 +57,15 @@ def zoom(axes: Axes, run: Recorded, event: Event) -> None:
     part = fine(run, left, right)
     low, high = _meeting(part, event)
     domain = domain_of(run, event)
-    for name, look in member_looks(run, domain).items():
-        speed = part[f"{name}.speed"]
-        if np.max(speed) >= low and np.min(speed) <= high:
-            axes.plot(part.time, speed, label=named(name), **look)
+    # of many members, those that the contact joins may be none of the first
+    first = member_looks(run, domain)
+    styles = first | {name: {"color": "#000000"} for name in _ends(run, event) if name not in first}
+    speeds = {name: part[f"{name}.speed"] for name in styles}
+    seen = [name for name, speed in speeds.items() if np.max(speed) >= low and np.min(speed) <= high]
+    if len(seen) > MOST_IN_ZOOM:
+        seen = [name for name in _ends(run, event) if name in seen]
+    for name in seen:
+        axes.plot(part.time, speeds[name], label=named(name), **styles[name])
     axes.axvline(event.time, **EVENT_LINE)
     axes.annotate(
         f"{event.element} locks at {event.time:.4f} s", (event.time, 1.0), (4, -4), xycoords=("data", "axes fraction"),
@@ -239,10 +246,15 @@ def fine(run: Recorded, left: float, right: float) -> Recorded:
 
 def _meeting(part: Recorded, event: Event) -> tuple[float, float]:
     """Range of speed that holds the members of a contact around its lock-up."""
-    names = [part.wiring.nodes[i].name for i in _branch(part, event.element).direction if i >= 0]
+    names = _ends(part, event)
     values = np.concatenate([part[f"{name}.speed"] for name in names])
     pad = 0.12 * (float(np.ptp(values)) or 1.0)
     return float(np.min(values)) - pad, float(np.max(values)) + pad
+
+
+def _ends(run: Recorded, event: Event) -> list[str]:
+    """Members that the contact of an event joins."""
+    return [run.wiring.nodes[i].name for i in _branch(run, event.element).direction if i >= 0]
 
 
 def domain_of(run: Recorded, event: Event) -> Domain:

@@ -60,21 +60,30 @@ def _panels(run: Recorded, lockup: Event | None) -> list[Panel]:
         count = sum(node.domain is domain for node in run.wiring.nodes)
         if count:
             words = f"speeds of {_all(count)} {members}"
-            chosen.append(Panel(words, _height(count), True, partial(panels.speeds, run=run, domain=domain)))
+            chosen.append(
+                Panel(
+                    words, _height(min(count, panels.MOST_CURVES)), True, partial(panels.speeds, run=run, domain=domain)
+                )
+            )
     if lockup is not None:
         chosen.append(Panel("zoom at lock-up", 42.0, False, partial(panels.zoom, run=run, event=lockup)))
     for group in panels.driven(run):
-        words = f"{panels.pressing(run, group)}s of {_contacts(run)}"
-        chosen.append(Panel(words, 28.0, True, partial(panels.inputs, run=run, names=group)))
+        words = f"{panels.pressing(run, group)}s of {_contacts(run, len(group))}"
+        height = _height(len(group), 28.0)
+        chosen.append(Panel(words, height, True, partial(panels.inputs, run=run, names=group)))
     for contacts in panels.loaded(run):
-        words = f"{panels.carrying(run, contacts)}s of {_contacts(run)}"
-        chosen.append(Panel(words, 46.0, True, partial(panels.torques, run=run, names=contacts)))
+        words = f"{panels.carrying(run, contacts)}s of {_contacts(run, len(contacts))}"
+        # its legend has a title
+        height = _height(len(contacts), 46.0, 5.0)
+        chosen.append(Panel(words, height, True, partial(panels.torques, run=run, names=contacts)))
     if panels.busy(run):
         rows = len(panels.busy(run))
-        chosen.append(Panel(f"states of {_contacts(run)}", 5.0 + 4.0 * rows, True, partial(panels.locks, run=run)))
+        words = f"states of {_contacts(run, rows)}"
+        chosen.append(Panel(words, 5.0 + 4.0 * rows, True, partial(panels.locks, run=run)))
     if run.wiring.thermal:
-        words = f"temperatures of {_all(len(run.wiring.thermal))} thermal nodes"
-        chosen.append(Panel(words, _height(len(run.wiring.thermal), 36.0), True, partial(panels.temperatures, run=run)))
+        count = len(run.wiring.thermal)
+        words, height = f"temperatures of {_all(count)} thermal nodes", _height(min(count, panels.MOST_CURVES), 36.0)
+        chosen.append(Panel(words, height, True, partial(panels.temperatures, run=run)))
     return chosen
 
 
@@ -82,15 +91,16 @@ def _all(count: int) -> str:
     return "all" if count <= panels.MOST_CURVES else f"the first {panels.MOST_CURVES} of {count}"
 
 
-def _height(curves: int, least: float = 52.0) -> float:
+def _height(curves: int, least: float = 52.0, title: float = 0.0) -> float:
     """Tall enough for the legend [mm]."""
-    return max(least, 3.9 * min(curves, panels.MOST_ROWS) + 2.0)
+    rows = -(-curves // -(-curves // panels.MOST_ROWS))
+    return max(least, 3.9 * rows + 2.0 + title)
 
 
-def _contacts(run: Recorded) -> str:
-    """Contacts in words, with how many of those that carry torque are drawn."""
+def _contacts(run: Recorded, drawn: int) -> str:
+    """Contacts in words, with how many are drawn of those that carry torque, where these are many."""
     count = panels.carriers(run)
-    return "clutches and brakes" if count <= panels.MOST_CURVES else f"{_all(count)} clutches and brakes"
+    return "clutches and brakes" if count <= panels.MOST_CURVES else f"{drawn} of {count} clutches and brakes"
 
 
 def _draw(figure: Figure, view: View, lockup: Event | None, chosen: list[Panel]) -> None:
