@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support import random_drivelines
 
 import clutchwork as cw
+from support import random_drivelines
 
 from .conftest import NAMES, chain, example
 

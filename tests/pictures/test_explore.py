@@ -33,7 +33,7 @@ def test_the_curves_are_those_of_the_run(six_speed: cw.Trajectory) -> None:
         np.testing.assert_allclose(trace.y, factor * six_speed[name], rtol=1e-14)
         assert trace.hovertemplate == f"{name}: %{{y:.6g}} {shown}<extra></extra>"
     # panels are linked
-    axes = [axis for axis in figure.select_xaxes()]
+    axes = list(figure.select_xaxes())
     assert len({axis.matches for axis in axes[1:]} | {"x"}) == 1
     assert {tuple(axis.range) for axis in axes} == {(0.0, 4.0)}
 
@@ -113,5 +113,5 @@ def test_the_figure_is_plain_data(discs: cw.Trajectory) -> None:
 def test_mistakes(discs: cw.Trajectory, given: list[Any], named: dict[str, Any], words: str) -> None:
     with pytest.raises(cw.UseError, match=words):
         discs.explore(*given, **named)
-    with pytest.raises(cw.UnknownName, match="did you mean 'c1.torque'"):
+    with pytest.raises(cw.UnknownName, match=r"did you mean 'c1\.torque'"):
         discs.explore("c1.torqe")

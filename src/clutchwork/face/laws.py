@@ -44,10 +44,9 @@ def parts(law: Law) -> tuple[Picture | None, list[str]]:
     """The curve and the parameters; no curve without matplotlib, or of a law whose parameters are wrong."""
     name = type(law).__name__
     tables = [html.heading(name), html.table(("parameter", "value", "unit", "meaning"), _parameters(law))]
-    if law.problems():
-        return None, [*tables, *(html.paragraph(" ".join(problem)) for problem in law.problems())]
     try:
-        return _picture(law, curves(law)), tables
+        wrong = [html.paragraph(" ".join(problem)) for problem in law.problems()]
+        return (None if wrong else _picture(law, curves(law))), [*tables, *wrong]
     except (ImportError, ClutchworkError, ArithmeticError, ValueError, TypeError, LookupError):
         # what a law cannot be asked for is not drawn; a model that has it says why
         return None, tables

@@ -191,7 +191,7 @@ class Sweep:
         lines = zip(*(column[:MOST_SHOWN].tolist() for column in table.values()), strict=True)
         cells = [[f"{cell:.6g}" if isinstance(cell, float) else str(cell) for cell in line] for line in lines]
         more = len(self) - len(cells)
-        words = [html.paragraph(f"... and {counted(more, 'variants')} more")] if more else []
+        words = [html.paragraph(f"... and {counted(more, 'more variants')}")] if more else []
         return html.page(html.heading(repr(self)), html.table(heads, cells, right=range(len(heads) - 1)), *words)
 
     # --------------------------------------------------------------------------------------------------------- tables
