@@ -16,6 +16,7 @@ import clutchwork  # noqa: E402
 import gen_docs  # noqa: E402
 import gen_lists  # noqa: E402
 import parity  # noqa: E402
+import pictures  # noqa: E402
 import sweeps  # noqa: E402
 
 gen_docs.write(HERE / "reference")
@@ -23,6 +24,7 @@ gen_lists.write(HERE / "reference")
 kept.write(experiments.write, HERE / "reference" / "rig")
 kept.write(launches.write, HERE / "reference" / "car")
 kept.write(sweeps.write, HERE / "reference" / "sweeps")
+kept.write(pictures.write, HERE / "reference" / "pictures")
 parity.write(HERE / "reference")
 
 # what is public is documented by its public name, wherever it is defined

@@ -12,7 +12,7 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.shown import shown
 from clutchwork.results.plot.chosen import PAGES, Asked, Chosen, asked, panels, usual
-from clutchwork.results.plot.curves import Array, Curve, Panel, Side, panels_of, thinned
+from clutchwork.results.plot.curves import WORDS, Array, Curve, Panel, Side, panels_of, thinned
 from clutchwork.results.plot.measured import samples, with_samples
 from clutchwork.results.plot.named import curve_looks
 from clutchwork.results.plot.style import DASHES
@@ -123,7 +123,7 @@ def _events(figure: Any, graph: Any, view: View, contacts: Sequence[str], row: i
             trace = graph.Scatter(
                 x=[event.time for event in events], y=[contacts.index(event.element) for event in events],
                 mode="markers", marker={"symbol": symbol, "size": 10, "color": "#404040"}, showlegend=False,
-                text=[_told(event) for event in events], hovertemplate="%{text}<extra></extra>",
+                text=[_told(event, view) for event in events], hovertemplate="%{text}<extra></extra>",
             )  # fmt: skip
             figure.add_trace(trace, row=row, col=1)
     names = [plain(name) or "all" for name in contacts]
@@ -142,10 +142,14 @@ def _events(figure: Any, graph: Any, view: View, contacts: Sequence[str], row: i
     )  # fmt: skip
 
 
-def _told(event: Event) -> str:
-    """What happened, and the torque before and after."""
-    torque = f"torque {event.torque_before:.6g} to {event.torque_after:.6g} N m"
-    return plain(f"{happened(event)} at {event.time:.6f} s: {event.cause}, {torque}")
+def _told(event: Event, view: View) -> str:
+    """What happened, and the torque or force before and after."""
+    words = f"{happened(event)} at {event.time:.6f} s: {event.cause}"
+    run = next(iter(view.runs.values()))
+    if event.element:
+        unit = run.channels[f"{event.element}.torque"].unit
+        words += f", {WORDS[unit]} {event.torque_before:.6g} to {event.torque_after:.6g} {unit}"
+    return plain(words)
 
 
 def _layout(figure: Any, view: View, height: float, rows: int) -> None:

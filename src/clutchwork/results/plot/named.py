@@ -77,7 +77,7 @@ def _legend(axes: Axes, panel: Panel, handles: Sequence[Any]) -> None:
     if len(panel.sides) > 1:
         units = [side.unit or "state" for side in panel.sides for _ in side.curves]
         labels = [f"{label} [{unit}]" for label, unit in zip(labels, units, strict=True)]
-    away = 1.0 if len(panel.sides) == 1 else 1.09
+    away = 1.0 if len(panel.sides) == 1 else 1.11
     axes.legend(
         handles, labels, loc="upper left", bbox_to_anchor=(away, 1.02), borderaxespad=0.3, alignment="left",
         ncols=-(-len(labels) // MOST_LINES), handlelength=2.4, labelspacing=0.3, columnspacing=0.8,

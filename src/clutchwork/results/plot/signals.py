@@ -71,6 +71,8 @@ def curve(signal: Signal) -> tuple[Array, Array] | None:
         pieces = [piece._replace(start=piece.start + number * period) for number in rounds for piece in pieces]
         # until they begin, it rests at the value with which the last piece starts
         pieces = [*([type(pieces[0])(0.0, piece_value(pieces[-1], pieces[-1].start))] if first > 0.0 else []), *pieces]
+    # what begins at the end is not seen
+    pieces = [piece for piece in pieces if piece.start < end] or pieces[:1]
     stops = [*(piece.start for piece in pieces[1:]), end]
     parts = [_piece(piece, max(piece.start, 0.0), min(stop, end)) for piece, stop in zip(pieces, stops, strict=True)]
     return np.concatenate([t for t, _ in parts]), np.concatenate([y for _, y in parts])
