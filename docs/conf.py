@@ -8,6 +8,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures"), str(HERE)]
 
+import drawings  # noqa: E402
 import experiments  # noqa: E402
 import kept  # noqa: E402
 import launches  # noqa: E402
@@ -16,7 +17,6 @@ import clutchwork  # noqa: E402
 import gen_docs  # noqa: E402
 import gen_lists  # noqa: E402
 import parity  # noqa: E402
-import pictures  # noqa: E402
 import sweeps  # noqa: E402
 
 gen_docs.write(HERE / "reference")
@@ -24,7 +24,7 @@ gen_lists.write(HERE / "reference")
 kept.write(experiments.write, HERE / "reference" / "rig")
 kept.write(launches.write, HERE / "reference" / "car")
 kept.write(sweeps.write, HERE / "reference" / "sweeps")
-kept.write(pictures.write, HERE / "reference" / "pictures")
+kept.write(drawings.write, HERE / "reference" / "pictures")
 parity.write(HERE / "reference")
 
 # what is public is documented by its public name, wherever it is defined

@@ -42,7 +42,7 @@ class Asked:
 
 
 def asked(call: str, given: Sequence[Any], path: Any, endings: Collection[str], known: Collection[str]) -> Asked:
-    """Tell names of signals from the path of the picture.
+    """Keep names of signals apart from the path of the picture.
 
     A string is the path where it ends as a picture does and no signal has that name; a `Path` always is. A list or
     tuple of names is a panel of its own.

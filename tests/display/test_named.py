@@ -268,8 +268,8 @@ def test_a_column_in_another_unit_than_the_signal_is_refused(discs: cw.Trajector
         discs.plot(measured={"c1.torque": column})
     figure = discs.plot(measured={"c1.pressure": column})
     assert drawn(figure)["c1.pressure, measured"][2].tolist() == pytest.approx([1e5, 2e5])
-    with pytest.raises(cw.UnknownName, match=r"no signal 'c1\.presure'"):
-        discs.plot(measured={"c1.presure": column})
+    with pytest.raises(cw.UnknownName, match=r"no signal 'c1\.presura'"):
+        discs.plot(measured={"c1.presura": column})
 
 
 def test_a_run_that_stopped_early_is_drawn_as_far_as_it_came() -> None:

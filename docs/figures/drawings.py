@@ -9,7 +9,7 @@ from pathlib import Path
 import matplotlib as mpl
 
 mpl.use("agg")
-import clutchwork as cw  # noqa: E402
+import clutchwork as cw
 
 PAGE = Path(__file__).resolve().parents[1] / "guide" / "pictures.md"
 WRITTEN = ("launch.png", "named.png", "zoom.svg", "compare.png")
