@@ -71,7 +71,7 @@ def test_every_signal_of_random_drivelines(seed: int) -> None:
         assert set(drawn(run.plot(unit=unit))) == set(names)
 
 
-@pytest.mark.parametrize(("name", "ending"), zip(ODD, ["png", "svg", "pdf"] * len(ODD), strict=False))
+@pytest.mark.parametrize(("name", "ending"), list(zip(ODD, ["png", "svg", "pdf"] * 4, strict=False)))
 def test_odd_names_are_drawn_as_they_are(name: str, ending: str, tmp_path: Path) -> None:
     run = two_discs(name).simulate(2.5)
     figure = run.plot(f"{name}.torque", [f"{name}.slip", f"{name}.heat"], f"{name}.state", tmp_path / f"new/p.{ending}")
