@@ -261,6 +261,15 @@ def test_measured_samples_that_cannot_be_used(discs: cw.Trajectory, measured: An
         discs.plot("load.speed", measured=measured)
 
 
+def test_times_of_pandas(discs: cw.Trajectory) -> None:
+    pandas = pytest.importorskip("pandas")
+    durations = pandas.Series([1.0, 2.0], index=pandas.to_timedelta([0.5, 1.5], unit="s"))
+    assert drawn(discs.plot(measured={"load.speed": durations}))["load.speed, measured"][1].tolist() == [0.5, 1.5]
+    dates = pandas.Series([1.0, 2.0], index=pandas.to_datetime(["2020-01-01", "2020-01-02"]))
+    with pytest.raises(cw.UseError, match=r"measured 'load\.speed': is"):
+        discs.plot(measured={"load.speed": dates})
+
+
 def test_a_column_in_another_unit_than_the_signal_is_refused(discs: cw.Trajectory, tmp_path: Path) -> None:
     (tmp_path / "m.csv").write_text("time,p [bar]\n0,1\n1,2\n")
     column = cw.Column(str(tmp_path / "m.csv"), "p")

@@ -52,6 +52,8 @@ def _tables(system: System) -> Iterator[str]:
     if shafts is not None and found is not None and found.ratios:
         lines = [(" ".join(closed) or "-", number(ratio)) for closed, ratio in found.ratios]
         yield html.table(("closed", f"{shafts[0]}/{shafts[1]}"), lines, right={1})
+    if found is not None and found.untried is not None:
+        yield html.paragraph(f"not tried: {found.untried} or more contacts closed at once")
     for names in system.dependent:
         yield html.paragraph(f"when locked together, these depend on each other: {', '.join(names)}")
     for note in system.notes:

@@ -58,6 +58,13 @@ def _unit_faults(data: Any, unit: str) -> Iterator[str]:
             yield str(error)
 
 
+def _seconds(index: NDArray[Any]) -> NDArray[np.float64]:
+    """Times of an index [s]; TypeError for dates, which are not since the start of a run."""
+    if index.dtype.kind == "M":
+        raise TypeError
+    return np.asarray(index / np.timedelta64(1, "s") if index.dtype.kind == "m" else index, dtype=float)
+
+
 def _pair(data: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]] | str:
     """Times and values, or what is wrong."""
     try:
@@ -65,7 +72,7 @@ def _pair(data: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]] | str:
             points = np.asarray(getattr(data, "points", ()), dtype=float)
             times, values = points.reshape(-1, 2).T
         elif hasattr(data, "index") and hasattr(data, "to_numpy"):
-            times, values = np.asarray(data.index, dtype=float), np.asarray(data.to_numpy(), dtype=float)
+            times, values = _seconds(np.asarray(data.index)), np.asarray(data.to_numpy(), dtype=float)
         else:
             times, values = (np.asarray(part, dtype=float) for part in data)
     except FileError as error:
