@@ -218,6 +218,13 @@ def test_unknown_signals_get_near_names_all_at_once(discs: cw.Trajectory) -> Non
         two_discs().simulate(0.1, angles=False).plot("load.angle")
 
 
+def test_an_element_or_a_quantity_alone_gets_a_wildcard(discs: cw.Trajectory) -> None:
+    with pytest.raises(cw.UnknownName, match=r"no signal 'c1'; did you mean 'c1\.\*'\?"):
+        discs.plot("c1")
+    with pytest.raises(cw.UnknownName, match=r"no signal 'torque'; did you mean '\*\.torque'\?"):
+        discs.plot("torque")
+
+
 def test_lockup_is_of_the_picture_without_names(discs: cw.Trajectory) -> None:
     with pytest.raises(cw.UseError, match="lockup is of the picture without names of signals; give zoom"):
         discs.plot("c1.torque", lockup=discs.events[-1])

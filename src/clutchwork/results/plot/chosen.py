@@ -121,9 +121,13 @@ def _matching(runs: Mapping[str, Recorded], word: str) -> tuple[list[str], list[
 
 
 def _fault(run: Recorded, word: str) -> str:
+    """What is wrong with a name; a wildcard where it is that of an element or of a quantity."""
     try:
         run.channels[word]
     except UnknownName as error:
+        for pattern in (f"{word}.*", f"*.{word}"):
+            if any(_pattern(pattern).fullmatch(name) for name in run.channels):
+                return f"no signal {shown(word)}; did you mean {pattern!r}? `names` lists all signals"
         return str(error)
     return ""
 
