@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +10,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, near
 from clutchwork.base.shown import listed, shown
 from clutchwork.results.plot.panels import busy, driven
+from clutchwork.results.selection import meant
 
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
@@ -113,7 +113,7 @@ def _matching(runs: Mapping[str, Recorded], word: str) -> tuple[list[str], list[
         return [word], []
     if ("*" in word or "?" in word) and len(faults) == len(runs):
         known = list(dict.fromkeys(name for run in runs.values() for name in run.channels))
-        matching = [name for name in known if _pattern(word).fullmatch(name)]
+        matching = meant(word, known)
         plain = word.replace("*", "").replace("?", "")
         fault = f"no signal matches {shown(word)}{near(plain, known, '`names` lists all signals')}"
         return (matching, []) if matching else ([], [fault])
@@ -126,15 +126,10 @@ def _fault(run: Recorded, word: str) -> str:
         run.channels[word]
     except UnknownName as error:
         for pattern in (f"{word}.*", f"*.{word}"):
-            if any(_pattern(pattern).fullmatch(name) for name in run.channels):
+            if meant(pattern, run.channels):
                 return f"no signal {shown(word)}; did you mean {pattern!r}? `names` lists all signals"
         return str(error)
     return ""
-
-
-def _pattern(word: str) -> re.Pattern[str]:
-    """Stars and question marks stand for others; brackets, which names may hold, for themselves."""
-    return re.compile("".join(".*" if c == "*" else "." if c == "?" else re.escape(c) for c in word), re.DOTALL)
 
 
 def _readable(names: Iterable[str]) -> list[str]:
