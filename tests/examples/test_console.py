@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import shlex
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -39,8 +38,6 @@ def test_the_guide_shows_what_is_printed(
     for line, shown in lines:
         words = shlex.split(line)
         assert words[0] == "clutchwork"
-        if words[1] == "plot" and find_spec("clutchwork.results.plot.compare") is None:
-            continue
         code = main(words[1:])
         told = capsys.readouterr()
         assert as_shown(shown, told.out + told.err), f"$ {line}\n{told.out}{told.err}"

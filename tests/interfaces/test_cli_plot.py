@@ -13,7 +13,6 @@ from clutchwork.command.plot import labels, split
 from support.two_discs import MODEL
 
 # names of signals in pictures, and several runs in one
-COMPARED = "clutchwork.results.plot.compare"
 
 
 @pytest.fixture
@@ -46,7 +45,6 @@ def test_runs_are_written_by_the_endings_of_the_files(stored: Path) -> None:
 
 
 def test_pictures(stored: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip(COMPARED)
     lines = {
         "a.run": "a.png",
         "runs/b.run c1.torque *.speed --out pictures/b.svg": "pictures/b.svg",
@@ -92,6 +90,5 @@ def test_mistakes(stored: Path, line: str, code: int, words: str, capsys: pytest
     [("plot a.run c1.spil", "did you mean 'c1.slip'?"), ("plot a.run --out a.gif", ".png")],
 )
 def test_mistakes_in_pictures(stored: Path, line: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip(COMPARED)
     assert main(line.split()) == 2
     assert words in capsys.readouterr().err

@@ -77,6 +77,11 @@ class System:
         sizes = {name: self.counts[name] for name in ("nodes", "speeds", "elements", "contacts", "inputs")}
         return f"<System {self.name!r}: {', '.join(f'{size} {name}' for name, size in sizes.items())}>"
 
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from clutchwork.base.rich import bundle
+
+        return bundle(self, "system")
+
     def __getattr__(self, name: str) -> Array:
         try:
             arrays = self.__dict__["arrays"]

@@ -8,13 +8,13 @@ from dataclasses import asdict
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.assembly.wiring import wiring
 from clutchwork.base.shell import paragraphs, width
 from clutchwork.base.shown import LONGEST, shortened
 from clutchwork.base.text import columns, counted
 from clutchwork.model.changes import all_names, targets_of
 from clutchwork.results.channels import channels
 from clutchwork.results.hints.registry import of_model
+from clutchwork.results.overview import number, sizes
 from clutchwork.results.ratios import Gears, Phase, gears
 
 if TYPE_CHECKING:
@@ -188,22 +188,6 @@ def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]
     }
 
 
-def sizes(system: System) -> dict[str, int]:
-    """How much of what a model has."""
-    parts = wiring(system)
-    more = {"thermal nodes": parts.thermal, "heat flows": parts.flows, "processes": parts.processes}
-    return {
-        "shafts and masses": len(parts.nodes),
-        "independent speeds": len(system.massless),
-        "gear rows": len(parts.gears),
-        "torque elements": sum(not branch.hidden for branch in parts.elements),
-        "contacts": len(parts.contacts),
-        "prescribed speeds": len(parts.motions),
-        "inputs": len(parts.inputs),
-        **{name: len(things) for name, things in more.items() if things},
-    }
-
-
 def _hint_data(hint: Hint) -> dict[str, Any]:
     return hint.to_dict() | {"numbers": _finite(dict(hint.numbers))}
 
@@ -211,10 +195,3 @@ def _hint_data(hint: Hint) -> dict[str, Any]:
 def _finite(data: dict[str, Any]) -> dict[str, Any]:
     """JSON has no infinity."""
     return {name: None if isinstance(x, float) and not math.isfinite(x) else x for name, x in data.items()}
-
-
-def number(value: float | None) -> str:
-    """A ratio in words."""
-    if value is None:
-        return "free"
-    return f"{value:.4f}" if math.isfinite(value) else "held"

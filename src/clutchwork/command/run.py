@@ -26,7 +26,7 @@ from clutchwork.base.shell import (
     wrote,
 )
 from clutchwork.command.models import add_set, system_of
-from clutchwork.command.progress import Bar
+from clutchwork.command.progress import bar
 from clutchwork.declare.speech import words_of_files
 from clutchwork.run.flags import add_options, given_options
 
@@ -129,11 +129,11 @@ def _simulated(system: System, t_end: float, options: Options, *, hidden: bool) 
     from clutchwork.run.failure import Interrupted, StoppedEarly
     from clutchwork.run.simulation import simulate
 
-    with warnings.catch_warnings(), Bar(hidden=hidden) as bar:
+    with warnings.catch_warnings(), bar(t_end, hidden=hidden) as told:
         # the exit code and the message report it
         warnings.simplefilter("ignore", StoppedEarly)
         try:
-            run = simulate(system, t_end, options=options, progress=bar.show)
+            run = simulate(system, t_end, options=options, progress=told)
         except Interrupted as stop:
             return stop.trajectory, INTERRUPTED
     return run, DONE if run.finished else STOPPED

@@ -84,15 +84,14 @@ def _problems(
 ) -> Iterator[str]:
     """What does not fit the parameters of a function; nothing where all does."""
     parameters = list(inspect.signature(function).parameters.values())
-    if any(p.kind is p.VAR_POSITIONAL for p in parameters):
-        return
+    any_number = any(p.kind is p.VAR_POSITIONAL for p in parameters)
     by_place = [p.name for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
     known = [p.name for p in parameters if p.name not in OWNERS and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
     open_ended = any(p.kind is p.VAR_KEYWORD for p in parameters)
     unknown = [] if open_ended else [name for name in named if name not in known]
     given = {*by_place[: len(args)], *named}
     meant = {nearest(name, [other for other in known if other not in given]) for name in unknown}
-    spare = args[len(by_place) :]
+    spare = () if any_number else args[len(by_place) :]
     if spare:
         # those that must be given first
         rest = sorted((p for p in parameters if p.name in known), key=lambda p: p.default is not p.empty)
@@ -105,7 +104,8 @@ def _problems(
         said = near(name, known)
         yield f"unknown field {shown(name)}{said or (fields and f'; {fields}')}"
         fields = fields if said else ""
-    for p in parameters[len(args) :]:
+    filled = min(len(args), len(by_place)) if any_number else len(args)
+    for p in parameters[filled:]:
         lacks = p.default is p.empty and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) and p.name not in named
         # values by place are meant for some of them, and so is a name close to theirs
         if lacks and p.name not in meant and not (spare and p.kind is p.KEYWORD_ONLY):

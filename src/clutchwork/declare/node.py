@@ -277,6 +277,11 @@ class Law(Declared):
         """Kinetic coefficient at vanishing slip; None: the compiled core is asked."""
         return None
 
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from clutchwork.base.rich import bundle
+
+        return bundle(self, "law")
+
 
 class Segment(NamedTuple):
     """One piece of a signal.
@@ -348,6 +353,11 @@ class Signal(Declared):
     def sampling(self) -> Sampling | None:
         """The controller that sets it in a run; None: its pieces say all."""
         return None
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from clutchwork.base.rich import bundle
+
+        return bundle(self, "signal")
 
 
 @dataclass(frozen=True)

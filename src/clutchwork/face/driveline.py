@@ -200,7 +200,7 @@ class Driveline:
         t_end: Number | None = None,
         *,
         options: Options | None = None,
-        progress: Progress | None = None,
+        progress: Progress | bool | None = None,
         **changes: Unpack[OptionFields],
     ) -> Trajectory:
         """Assemble and run up to t_end [s], or "500 ms"; options as for `clutchwork.simulate`.

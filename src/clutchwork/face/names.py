@@ -38,6 +38,7 @@ NAMES = {
     "SweepInterrupted": "sweeps.result",
     "at": "sweeps.outputs",
     "break_away": "sweeps.outputs",
+    "compare": "results.plot.compare",
     "integral": "sweeps.outputs",
     "lock": "sweeps.outputs",
     "maximum": "sweeps.outputs",

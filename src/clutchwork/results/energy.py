@@ -91,6 +91,15 @@ class EnergyBalance:
 
     def __str__(self) -> str:
         """A table for reading."""
+        return columns([("energy", "J"), *self._lines()], right={1})
+
+    def _repr_html_(self) -> str:
+        """A table for a notebook."""
+        from clutchwork.base import html
+
+        return html.table(("energy", "J"), self._lines(), right={1}, most=10 * html.MOST_ROWS)
+
+    def _lines(self) -> list[tuple[str, str]]:
         lines = [(f"  {name}", f"{work:z.3f}") for name, work in self.sources.items() if work]
         lines.insert(0, ("work of sources", f"{self.input:z.3f}"))
         lines += [
@@ -106,7 +115,7 @@ class EnergyBalance:
             lines += [("heat not assigned to a thermal node", f"{self.untracked:z.3f}")]
         share = self.residual / self.turnover if self.turnover else 0.0
         lines += [("residual", f"{self.residual:.3e}"), ("residual / turnover", f"{share:.1e}")]
-        return columns([("energy", "J"), *lines], right={1})
+        return lines
 
 
 def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> EnergyBalance:

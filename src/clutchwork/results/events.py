@@ -127,6 +127,15 @@ class Events(Sequence[Event]):
         frame.attrs["units"] = dict(UNITS)
         return frame
 
+    def _repr_html_(self) -> str:
+        """A table for a notebook."""
+        from clutchwork.base import html
+
+        head = ("time, s", "element", "from", "to", "cause", "slip acceleration, rad/s2")
+        torques = ("torque before, N m", "torque after, N m")
+        lines = map(_cells, self)
+        return html.table((*head, *torques), lines, right={0, 5, 6, 7}) if self else html.paragraph("no events")
+
     def to_csv(self, path: str | Path) -> None:
         """Write every field of every event; the head of each column has its unit."""
         import csv

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from fnmatch import translate
 from typing import Any
 
@@ -30,16 +30,17 @@ def chosen(wanted: Any, known: Iterable[str], fault: Callable[[str], str], call:
         raise UseError(call, [f"names: {shown(one)} is not the name of a signal; {remedy}" for one in wrong])
     found, faults = dict[str, None](), list[str]()
     for one in asked:
-        meant = _meant(one, names)
-        found.update(dict.fromkeys(meant))
-        if not meant:
+        matching = meant(one, names)
+        found.update(dict.fromkeys(matching))
+        if not matching:
             faults.append(fault(one))
     if faults:
         raise UnknownName("\n".join(faults))
     return tuple(found)
 
 
-def _meant(wanted: str, names: tuple[str, ...]) -> list[str]:
+def meant(wanted: str, names: Collection[str]) -> list[str]:
+    """Names that a name or a wildcard stands for."""
     if wanted in names or not ("*" in wanted or "?" in wanted):
         return [wanted] if wanted in names else []
     # brackets stand for themselves: they are part of names

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -24,13 +24,12 @@ from clutchwork.results.exchange.exports import Exports
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from matplotlib.figure import Figure
-
     from clutchwork.assembly.system import System
     from clutchwork.results.dependence import DependentPhase
     from clutchwork.results.energy import EnergyBalance
     from clutchwork.results.events import Event
     from clutchwork.results.hints.hint import Hints
+    from clutchwork.results.plot.canvas import Picture
 
 Array = NDArray[np.float64]
 
@@ -160,14 +159,62 @@ class Trajectory(Exports):
         return of_run(self)
 
     @explained("plot")
-    def plot(self, path: str | Path | None = None, *, lockup: Event | None = None) -> Figure:
-        """Picture of speeds, lock-up, inputs and torques; written to `path` when given. Needs matplotlib.
+    def plot(
+        self,
+        *signals: str | Sequence[str] | Path,
+        unit: str | Sequence[str] | None = None,
+        path: str | Path | None = None,
+        zoom: tuple[float, float] | None = None,
+        events: bool | str | Sequence[str] | Events | Event = True,
+        lockup: Event | None = None,
+        measured: Mapping[str, Any] | None = None,
+    ) -> Picture:
+        """Picture of some signals, or of speeds, lock-up, inputs, torques, states and temperatures. Needs matplotlib.
 
-        Parameters: lockup, the event to look at closely, by default the last one in which a contact locks.
+        Parameters: signals, names such as "c1.torque" and wildcards such as "c1.*", drawn with a panel for each unit; a
+        list of names is a panel of its own, with a second axis where it has two units. A string that ends in .png, .svg
+        or .pdf is the path. unit, takes only signals in it ("N m"), of all where none is named; path, where the picture
+        is written: png, svg or pdf by its ending; zoom, (begin, end) [s], computed anew on a fine grid; events, which
+        ones are marked: True for all unless there are more than 30, False, contacts by name, or events of the run;
+        lockup, the event to look at closely where nothing is named, by default the last one in which a contact locks;
+        measured, samples by the name of the signal: (times [s], values in SI), a `Column`, or a pandas Series.
+
+        The figure of matplotlib that it returns shows itself in a notebook. docs/guide/pictures.md
         """
-        from clutchwork.results.plot import picture
+        from clutchwork.results.plot.chosen import Chosen
+        from clutchwork.results.plot.run import plot
 
-        return picture(self, path, lockup=lockup)
+        chosen = Chosen(signals, unit, path, zoom, events, measured)
+        return plot(self, chosen, lockup)
+
+    @explained("explore")
+    def explore(
+        self,
+        *signals: str | Sequence[str] | Path,
+        unit: str | Sequence[str] | None = None,
+        path: str | Path | None = None,
+        zoom: tuple[float, float] | None = None,
+        events: bool | str | Sequence[str] | Events | Event = True,
+        measured: Mapping[str, Any] | None = None,
+        points: int | None = 20_000,
+    ) -> Any:
+        """The same as `plot`, to zoom into and to hover over in a browser or a notebook. Needs plotly.
+
+        Parameters: those of `plot`; path, one html file that needs no network; points, the most of each curve, none of
+        whose peaks is lost, or None for all of them. What is left out stays out when you zoom in;
+        zoom=(begin, end) shows every detail of a stretch.
+
+        Returns a figure of plotly.
+        """
+        from clutchwork.results.plot.chosen import Chosen
+        from clutchwork.results.plot.explore import explore
+
+        return explore(self, Chosen(signals, unit, path, zoom, events, measured), points)
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from clutchwork.base.rich import bundle
+
+        return bundle(self, "trajectory")
 
     def __repr__(self) -> str:
         return (

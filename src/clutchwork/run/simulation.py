@@ -16,6 +16,7 @@ from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, caller
+from clutchwork.base.progress import MEASURED, followed
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.core import core
@@ -29,7 +30,7 @@ from clutchwork.run.effort import refuse_endless
 from clutchwork.run.failure import Interrupted, StoppedEarly, explain, report_faults
 from clutchwork.run.grid import output_grid
 from clutchwork.run.jumps import jump_times
-from clutchwork.run.record import Progress, Recording, record
+from clutchwork.run.record import Progress, Recording, Told, record
 from clutchwork.run.settings import merged
 
 if TYPE_CHECKING:
@@ -67,13 +68,14 @@ def simulate(
     t_end: Number | None = None,
     *,
     options: Options | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     **changes: Unpack[OptionFields],
 ) -> Trajectory:
     """Compute the motion of a Driveline or a System from 0 to t_end.
 
     Parameters: t_end [s], or with a unit, "500 ms"; options, an `Options`, or its fields by name (rtol=, dt=, method=
-    ...); progress, a function of (time reached [s], t_end [s]) that is called now and then.
+    ...); progress, True for a bar of tqdm in a terminal or a notebook, or a function of (time reached [s], t_end [s])
+    that is called now and then.
 
     What is left out is that of the settings of the model, `Driveline.simulation`, which a model file holds in its
     [simulation] table; `options` replaces all of them but t_end.
@@ -92,7 +94,8 @@ def simulate(
     end, chosen = merged(system.settings, given, options)
     refuse_endless(system.inputs, end, chosen.max_steps)
     control = Control(controllers(system.inputs), partial(channels, system))
-    run = _trajectory(Job(system, end, chosen, control), progress)
+    with followed(progress, end, "simulate", "(time, t_end)", bar_format=MEASURED, unit="s") as told:
+        run = _trajectory(Job(system, end, chosen, control), told)
     report_faults(run)
     return run
 
@@ -104,7 +107,7 @@ def _no_model(given: object) -> str:
     return f"{shown(given)} is not a model; {remedy}"
 
 
-def _trajectory(job: Job, progress: Progress | None) -> Trajectory:
+def _trajectory(job: Job, progress: Told | None) -> Trajectory:
     """Run, and report how it ended."""
     started = time.perf_counter()
     recording, failure = _collect(job, progress)
@@ -120,7 +123,7 @@ def _trajectory(job: Job, progress: Progress | None) -> Trajectory:
     return made
 
 
-def _collect(job: Job, progress: Progress | None) -> tuple[Recording, SimulationError | None]:
+def _collect(job: Job, progress: Told | None) -> tuple[Recording, SimulationError | None]:
     """Record a run; smooth output repeats it on a grid that is known to hold every step and event."""
     data, grid = job.system.to_bytes(), output_grid(job.options, job.t_end)
     first, failure = _once(job, data, grid, progress)
@@ -139,9 +142,7 @@ def _collect(job: Job, progress: Progress | None) -> tuple[Recording, Simulation
     return second, failure
 
 
-def _once(
-    job: Job, data: bytes, grid: Array | None, progress: Progress | None
-) -> tuple[Recording, SimulationError | None]:
+def _once(job: Job, data: bytes, grid: Array | None, progress: Told | None) -> tuple[Recording, SimulationError | None]:
     run = new_run(data)
     for name, value in job.options.core_options().items():
         run.set_option(name, value)

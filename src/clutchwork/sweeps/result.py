@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import html
 from clutchwork.base.errors import ModelError, UnknownName, near
 from clutchwork.base.extras import need
 from clutchwork.base.shown import shown
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from clutchwork.sweeps.variants import Variants
 
 Array = NDArray[Any]
+MOST_SHOWN = 12  # lines of the table in a notebook
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +184,17 @@ class Sweep:
         ends = Counter(np.array(NAMES)[self.codes].tolist())
         told_of = ", ".join(f"{count} {name}" for name, count in ends.most_common())
         return f"<Sweep of {counted(len(self), 'variants')}: {told_of}; {', '.join(self.names)}>"
+
+    def _repr_html_(self) -> str:
+        """The first lines of the table for a notebook."""
+        units, table = self.units, dict(self.columns())
+        # the unit of a value at several instants is that of its output
+        heads = [f"{name}, {unit}" if (unit := units.get(name)) else name for name in table]
+        lines = zip(*(column[:MOST_SHOWN].tolist() for column in table.values()), strict=True)
+        cells = [[f"{cell:.6g}" if isinstance(cell, float) else str(cell) for cell in line] for line in lines]
+        more = len(self) - len(cells)
+        words = [html.paragraph(f"... and {counted(more, 'more variants')}")] if more else []
+        return html.page(html.heading(repr(self)), html.table(heads, cells, right=range(len(heads) - 1)), *words)
 
     # --------------------------------------------------------------------------------------------------------- tables
 

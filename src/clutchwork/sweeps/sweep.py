@@ -12,6 +12,7 @@ import numpy as np
 
 from clutchwork.assembly.system import System
 from clutchwork.base.errors import ModelWarning, UseError
+from clutchwork.base.progress import followed
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.node import Signal
@@ -24,7 +25,6 @@ from clutchwork.run.simulation import Assembles
 from clutchwork.sweeps.axes import Plan
 from clutchwork.sweeps.batch import Batch, Wanted, Way
 from clutchwork.sweeps.outputs import Asked, Computed, Output, asked
-from clutchwork.sweeps.progress import Shown, shown_by
 from clutchwork.sweeps.result import Sweep, SweepInterrupted, Swept
 from clutchwork.sweeps.variants import given, in_si
 
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 # options that say which rows a single run has
 ROWS = ("dt", "times", "output", "points")
 Told = Callable[[int, int], None]
+Shown = Callable[[int], None]
 
 
 @explained("sweep")
@@ -78,10 +79,18 @@ def sweep(
     count = _threads(threads)
     _refuse_clashes(wanted)
     swept = Swept(system, variants, wanted, end, plain)
-    with shown_by(progress, len(variants)) as told, warnings.catch_warnings():
+    looks = {"unit": " runs"}
+    with (
+        followed(progress, len(variants), "sweep", "(done, variants)", **looks) as told,
+        warnings.catch_warnings(),
+    ):
         # a value may be rarely wanted; that of a single run is given there
         warnings.simplefilter("ignore", ModelWarning)
-        return _swept(swept, count, told)
+        return _swept(swept, count, told or _silent)
+
+
+def _silent(done: int) -> None:
+    """Nobody asked."""
 
 
 def _refuse_clashes(wanted: Mapping[str, Output]) -> None:
