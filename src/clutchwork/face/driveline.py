@@ -18,8 +18,10 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.declare.options import Options
+    from clutchwork.results.recorded import Recorded
     from clutchwork.results.trajectory import Trajectory
     from clutchwork.run.record import Progress
+    from clutchwork.schematic.picture import Schematic
 
 E = TypeVar("E", bound=Element)
 
@@ -182,6 +184,31 @@ class Driveline:
         from clutchwork.run.simulation import simulate
 
         return simulate(self.assemble(), t_end, options=options, progress=progress, **changes)
+
+    @explained("d.draw")
+    def draw(
+        self,
+        path: str | Path | None = None,
+        *,
+        run: Recorded | None = None,
+        at: float | None = None,
+        values: bool = True,
+        power: bool = False,
+    ) -> Schematic:
+        """Schematic of the driveline, with mistakes or without; notebooks show it. Needs the extra `draw`.
+
+        Parameters: path, SVG, PNG or PDF by its ending, written when given; run, a result whose states, speeds and
+        torques are shown at the time `at` [s], by default its end; values, whether inertias, ratios and the like are
+        shown; power, whether the power [W] of elements is. UseError for a time outside of the run.
+        """
+        from clutchwork.schematic.draw import drawn
+
+        return drawn(self._model, path, run=run, at=at, values=values, power=power)
+
+    def _repr_html_(self) -> str:
+        from clutchwork.schematic.notebook import html
+
+        return html(self._model)
 
     @classmethod
     @explained("cw.Driveline.load")

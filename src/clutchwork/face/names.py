@@ -35,6 +35,7 @@ NAMES = {
     "SweepInterrupted": "sweeps.result",
     "at": "sweeps.outputs",
     "break_away": "sweeps.outputs",
+    "draw": "face.draw",
     "integral": "sweeps.outputs",
     "lock": "sweeps.outputs",
     "maximum": "sweeps.outputs",
