@@ -77,11 +77,8 @@ def _node_cell(thing: Thing, moment: Moment, values: bool) -> Cell:
     half = 7.0
     if thing.what in ("thermal", "ambient"):
         symbol = symbol_of(source) if hasattr(source, "kind") else AMBIENT if thing.what == "ambient" else CAPACITY
+        symbol.draw(pen, Drawn(source, {}, half=symbol.half))
         half = symbol.half
-        symbol.draw(pen, Drawn(source, {"a": LEFT, "b": RIGHT}, half=half))
-        if not hasattr(source, "kind"):
-            for side in (LEFT, RIGHT):
-                pen.line((side * (8.0 if thing.what == "thermal" else 9.0), 0.0), (side * half, 0.0), look=HEAT)
     elif thing.what == "missing":
         half = 9.0
         pen.box(-6.0, -9.0, 6.0, 9.0, look=WRONG)
@@ -155,9 +152,7 @@ def _mirrored(thing: Thing, sides: Mapping[str, int], symbol: Symbol) -> bool:
 
 def _in_order(thing: Thing, ports: list[str]) -> list[str]:
     names = list(getattr(type(thing.source), "__dataclass_fields__", ()))
-    ordered = sorted(ports, key=lambda port: names.index(port) if port in names else 99)
-    # a load is drawn from its shaft, whatever its base
-    return ordered
+    return sorted(ports, key=lambda port: names.index(port) if port in names else len(names))
 
 
 def _flip(sides: Mapping[str, int], mirrored: bool) -> dict[str, int]:

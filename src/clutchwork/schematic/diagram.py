@@ -14,7 +14,7 @@ from clutchwork.model.components import component_problems
 from clutchwork.model.model import Model
 from clutchwork.model.parts import take_apart
 
-LONGEST = 28  # letters of a name
+LONGEST, TITLE = 28, 80  # letters of a name, and of that of the driveline
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,9 +57,9 @@ class Diagram:
         return [thing for thing in self.things if not thing.is_node]
 
 
-def label(name: object) -> str:
+def label(name: object, longest: int = LONGEST) -> str:
     """A name as it is written in the picture."""
-    text = shortened(printable(name if isinstance(name, str) else str(name)), LONGEST)
+    text = shortened(printable(name if isinstance(name, str) else str(name)), longest)
     return text if text.strip() else "?"
 
 
@@ -89,7 +89,7 @@ class _Reader:
         placed = _assisted(elements)
         found = [thing for thing in elements if id(thing) not in placed]
         nodes = [*self._nodes.values(), *self._missing.values()]
-        return Diagram(label(model.name), [*dict.fromkeys(nodes), *found, *self._heats])
+        return Diagram(label(model.name, TITLE), list(dict.fromkeys([*nodes, *found, *self._heats])))
 
     def _thermal(self, node: ThermalNode) -> Thing:
         what = "ambient" if node.capacity is None else "thermal"

@@ -68,7 +68,7 @@ class Instant(Moment):
 
     def parts(self, thing: Thing) -> frozenset[str]:
         """States of the parts of an element, such as "forward:locked"."""
-        sides = {port for port in (*thing.pins, *thing.fixed)}
+        sides = {*thing.pins, *thing.fixed}
         found = self._part_states(thing) if thing.source.role is Role.COMPOSITE else []
         return frozenset(f"{side}:{state}" for side in sides for name, state in found if name.startswith(f"{side}_"))
 

@@ -102,7 +102,7 @@ def _drawn(name: str, time: float | None, sheet: Sheet) -> Iterator[Figure]:
         draw = _Canvas(figure, Box(box.left - MARGIN, low - MARGIN, box.left - MARGIN + wide, high + MARGIN))
         for wire in sheet.wires:
             for line in wire.pieces:
-                draw.mark(Stroke(line, False, wire.look))
+                draw.mark(Stroke(line, False, wire.look), cap="projecting" if wire.look.dash == "solid" else "butt")
             for x, y in wire.dots:
                 pen = Pen()
                 pen.circle(x, y, DOT, look=wire.look._replace(fill=wire.look.colour, width=0.4, dash="solid"))
@@ -149,7 +149,7 @@ class _Canvas:
         self._axes.set_ylim(box.low, box.high)
         self._count = 0
 
-    def mark(self, mark: Mark) -> None:
+    def mark(self, mark: Mark, cap: str = "butt") -> None:
         """One mark over all before it."""
         self._count += 1
         if isinstance(mark, Text):
@@ -177,7 +177,7 @@ class _Canvas:
                 zorder=self._count,
                 clip_on=False,
                 snap=False,
-                capstyle="butt",
+                capstyle=cap,
                 joinstyle="miter",
-            )  # fmt: skip
+            )
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from clutchwork.schematic.layers import End, Layers, Lines, linear_program
 from clutchwork.schematic.pen import Point
 
 TRACK, EDGE, NEAR = 6.5, 7.0, 4.0  # pt between tracks, beside them, and between lines that must not touch
+SMALL = 14.0  # pt, the smallest step of a line
 TRIES = 6
 
 
@@ -49,14 +51,43 @@ def placed(layers: Layers, order: list[list[int]]) -> Places:
 
 
 def _heights(layers: Layers, order: list[list[int]], apart: dict[tuple[End, End], int]) -> list[float]:
-    """Heights with the least weighted steps in lines, where nothing in a layer covers its neighbour."""
-    spots = layers.spots
+    """Heights with the least weighted steps in lines, where nothing in a layer covers its neighbour.
+
+    A step that is so small that it looks like a mistake is taken out where there is room.
+    """
     lines = [(one.trunk, end, one.weight[end]) for one in layers.lines for end in one.others]
-    count = len(spots)
+    straight: list[tuple[End, End]] = []
+    y = _solved(layers, order, apart, lines, straight)
+    refused = set[tuple[End, End]]()
+    while y is not None:
+        steps = [(abs(y[a.spot] + a.height - y[b.spot] - b.height), a, b) for a, b, _ in lines]
+        small = [(step, a, b) for step, a, b in steps if 1e-3 < step < SMALL and (a, b) not in refused]
+        if not small:
+            return [round(value, 3) for value in y]
+        _, one, two = min(small, key=lambda found: (found[0], found[1].spot, found[2].spot))
+        better = _solved(layers, order, apart, lines, [*straight, (one, two)])
+        if better is None:
+            refused.add((one, two))
+        else:
+            straight.append((one, two))
+            y = better
+    # nothing fits what keeps lines apart: without it
+    return _heights(layers, order, {}) if apart else [0.0] * len(layers.spots)
+
+
+def _solved(
+    layers: Layers,
+    order: list[list[int]],
+    apart: dict[tuple[End, End], int],
+    lines: list[tuple[End, End, float]],
+    straight: list[tuple[End, End]],
+) -> list[float] | None:
+    """The linear program behind the heights; None where no heights fit."""
+    spots, count = layers.spots, len(layers.spots)
     cost = np.concatenate([np.zeros(count), [weight for _, _, weight in lines]])
     rows: list[tuple[dict[int, float], float]] = []
     for column in order:
-        for high, low in zip(column, column[1:], strict=False):
+        for high, low in pairwise(column):
             rows.append(({high: -1.0, low: 1.0}, -(spots[high].down + spots[low].up)))
     for number, (one, two, _) in enumerate(lines):
         for sign in (1.0, -1.0):
@@ -65,15 +96,16 @@ def _heights(layers: Layers, order: list[list[int]], apart: dict[tuple[End, End]
     for (one, two), sign in apart.items():
         # `one` above `two` where the sign is positive
         rows.append(({one.spot: -float(sign), two.spot: float(sign)}, sign * (one.height - two.height) - 2.0 * NEAR))
+    if not rows:
+        return [0.0] * count
+    kept = {(one, two) for one, two in straight}
     values = [value for row, _ in rows for value in row.values()]
     places = [number for number, (row, _) in enumerate(rows) for _ in row]
     columns = [column for row, _ in rows for column in row]
-    if not rows:
-        return [0.0] * count
-    limits = [(None, None)] * count + [(0.0, None)] * len(lines)
-    found: Any = linear_program(cost, (values, (places, columns)), [bound for _, bound in rows], limits)
-    # round off what the solver leaves of straight lines
-    return [round(float(value), 3) for value in found[:count]]
+    limits: list[tuple[float | None, float | None]] = [(None, None)] * count
+    limits += [(0.0, 0.0 if (one, two) in kept else None) for one, two, _ in lines]
+    found = linear_program(cost, (values, (places, columns)), [bound for _, bound in rows], limits)
+    return None if found is None else [float(value) for value in found[:count]]
 
 
 def _columns(layers: Layers, tracks: list[_Tracks]) -> tuple[list[float], list[tuple[float, float]]]:

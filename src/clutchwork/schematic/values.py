@@ -59,7 +59,7 @@ def element_values(thing: Thing) -> list[str]:
     translates = any(node.what == "mass" for node in thing.pins.values()) and element.role is not Role.GEAR
     known = {item.name: spec for item, spec in specs(cls)}
     given = {item.name: _or_none(item, element) for item, _ in specs(cls, "param", "curve")}
-    lines = []
+    lines, ports = list[str](), tuple(item.name for item, _ in specs(cls, "port"))
     if given.get("teeth_sun") and given.get("teeth_ring"):
         lines.append(f"{_count(given.pop('teeth_ring'))}:{_count(given.pop('teeth_sun'))} teeth")
     elif given.get("teeth_input") and given.get("teeth_output"):
@@ -67,7 +67,7 @@ def element_values(thing: Thing) -> list[str]:
     for name in FIRST:
         value = given.get(name)
         if isinstance(value, Real) and not isinstance(value, bool) and name not in ("teeth_sun", "teeth_ring"):
-            lines.append(_line(name, float(value), _unit(element, known[name], translates)))
+            lines.append(_line(name, float(value), _unit(element, known[name], translates), element.role, ports))
     drive = _driven(thing, translates)
     return [*lines[: MOST - bool(drive)], *drive]
 
@@ -78,9 +78,9 @@ def _or_none(item: Any, element: Any) -> Any:
     return None if item.default is not MISSING and value == item.default else value
 
 
-def _line(name: str, value: float, unit: str) -> str:
-    if name == "ratio":
-        return f"i = {number(value, '1')}"
+def _line(name: str, value: float, unit: str, role: Role, ports: tuple[str, ...]) -> str:
+    if name == "ratio" and role is Role.GEAR:
+        return f"{'R/S' if 'sun' in ports else 'i'} = {number(value, '1')}"
     if name in PLAIN:
         return number(value, unit)
     return f"{name.replace('_', ' ')} {number(value, unit)}"
@@ -108,7 +108,10 @@ def _driven(thing: Thing, translates: bool) -> list[str]:
             if value is None or any(held is helper for helper in helpers):
                 continue
             shown = {item.name: one for item, one in specs(type(thing.source))}[name]
-            text = _given(value, _unit(thing.source, shown, translates), name)
+            unit = _unit(thing.source, shown, translates)
+            text = _given(value, unit, name)
+            if unit == "1" and isinstance(value, Real):
+                text = f"{name.replace('_', ' ')} {text}"
             if text and (spec.otherwise is None or value != spec.otherwise):
                 return [text]
     return []

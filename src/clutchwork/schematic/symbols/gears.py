@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from contextlib import suppress
 from math import isfinite
 from typing import Any
@@ -64,11 +63,6 @@ def _members(pen: Pen, shown: Drawn, axle: float) -> None:
     out(pen, shown, "ring", 0.0, "R")
     out(pen, shown, "carrier", axle, "C")
     out(pen, shown, "sun", 0.0, "S")
-
-
-def pair_heights(gear: Any) -> Mapping[str, float]:
-    """Heights of the shafts of a pair of wheels; an external pair steps down."""
-    return {"input": PITCH / 2, "output": -PITCH / 2, "support": 0.0}
 
 
 def ratio_of(gear: Any) -> float | None:
@@ -154,10 +148,11 @@ def synchroniser(pen: Pen, shown: Drawn) -> None:
     out(pen, shown, "hub", 3.0)
 
 
+PAIR = {"input": PITCH / 2, "output": -PITCH / 2, "support": 0.0}
 SETS = {"ring": RING, "carrier": CARRIER, "sun": SUN}
 
 GEARS = {
-    "gear": Symbol(pair, 16.0, 33.0, 33.0, pair_heights),
+    "gear": Symbol(pair, 16.0, 33.0, 33.0, PAIR),
     "planetary": Symbol(planetary, 20.0, 22.0, 22.0, SETS),
     "double_planetary": Symbol(double_planetary, 22.0, 22.0, 22.0, SETS),
     "rolling_wheel": Symbol(wheel, 18.0, 16.0, 17.0, {"support": 16.0}),

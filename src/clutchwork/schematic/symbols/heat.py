@@ -129,7 +129,7 @@ FLOWS = {
     "conduction": Symbol(conduction, 12.0, 8.0, 8.0),
     "convection": Symbol(convection, 13.0, 8.0, 8.0),
     "oil_flow": Symbol(oil, 12.0, 9.0, 9.0),
-    "thermal_plate": Symbol(plate, 13.0, 10.0, 10.0),
+    "thermal_plate": Symbol(plate, 9.0, 10.0, 10.0),
 }
 PROCESSES = {
     "pressure_actuator": Symbol(piston, 13.0, 7.0, 7.0),
@@ -138,4 +138,4 @@ PROCESSES = {
     "wear": Symbol(wear, 12.0, 9.0, 9.0),
 }
 FLOW, PROCESS = Symbol(flow, 12.0, 8.0, 8.0), Symbol(process, 12.0, 9.0, 9.0)
-CAPACITY, AMBIENT, SOURCE = Symbol(capacity, 12.0, 10.0, 10.0), Symbol(ambient, 12.0, 9.0, 8.0), Symbol(source, 10.0)
+CAPACITY, AMBIENT, SOURCE = Symbol(capacity, 8.0, 10.0, 10.0), Symbol(ambient, 9.4, 9.0, 8.0), Symbol(source, 10.0)
