@@ -23,6 +23,7 @@ def draw(
     at: float | None = None,
     values: bool = True,
     power: bool = False,
+    width: float = 310.0,
 ) -> Schematic:
     """Schematic of a driveline, of a System, or of a run at an instant; notebooks show it. Needs the extra `draw`.
 
@@ -30,17 +31,18 @@ def draw(
 
     Parameters: thing, a Driveline, a System or a Trajectory, which is its own `run`; path, SVG, PNG or PDF by its
     ending, written when given; run and at [s], a result and the time whose states, speeds and torques are shown;
-    values, whether inertias, ratios and the like are shown; power, whether the power [W] of elements is.
+    values, whether inertias, ratios and the like are shown; power, whether the power [W] of elements is; width [mm],
+    from which on a long driveline is folded into rows. UseError for what does not fit.
     """
     from clutchwork.face.driveline import Driveline
     from clutchwork.schematic.draw import drawn
 
     if isinstance(thing, Driveline):
-        return thing.draw(path, run=run, at=at, values=values, power=power)
+        return thing.draw(path, run=run, at=at, values=values, power=power, width=width)
     if hasattr(thing, "events") and hasattr(thing, "system"):
         run, thing = thing, thing.system
     source = getattr(thing, "source", None)
     if source is None:
         known = "give a Driveline, a System that was made of one, or a Trajectory"
         raise UseError("cw.draw", [f"{shown(thing)} holds no driveline: {known}"])
-    return drawn(source, path, run=run, at=at, values=values, power=power)
+    return drawn(source, path, run=run, at=at, values=values, power=power, width=width)

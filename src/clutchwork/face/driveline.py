@@ -194,16 +194,18 @@ class Driveline:
         at: float | None = None,
         values: bool = True,
         power: bool = False,
+        width: float = 310.0,
     ) -> Schematic:
         """Schematic of the driveline, with mistakes or without; notebooks show it. Needs the extra `draw`.
 
         Parameters: path, SVG, PNG or PDF by its ending, written when given; run, a result whose states, speeds and
         torques are shown at the time `at` [s], by default its end; values, whether inertias, ratios and the like are
-        shown; power, whether the power [W] of elements is. UseError for a time outside of the run.
+        shown; power, whether the power [W] of elements is; width [mm], from which on a long driveline is folded into
+        rows. UseError for what does not fit, such as a time outside of the run.
         """
         from clutchwork.schematic.draw import drawn
 
-        return drawn(self._model, path, run=run, at=at, values=values, power=power)
+        return drawn(self._model, path, run=run, at=at, values=values, power=power, width=width)
 
     def _repr_html_(self) -> str:
         from clutchwork.schematic.notebook import html

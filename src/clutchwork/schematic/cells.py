@@ -134,8 +134,10 @@ def _element_piece(
         thing.source, sides, thing.fixed, moment.state(thing), line, moment.parts(thing), symbol.half, heights
     )
     symbol.draw(pen, shown)
-    lines = element_values(thing) if values else []
-    return _labelled(thing, pen.marks, lines, moment.element_lines(thing), GREY, below=bool(thing.helpers))
+    now = moment.element_lines(thing)
+    # of a run its numbers are enough
+    lines = element_values(thing) if values and not now else []
+    return _labelled(thing, pen.marks, lines, now, GREY, below=bool(thing.helpers))
 
 
 def _mirrored(thing: Thing, sides: Mapping[str, int], symbol: Symbol) -> bool:
@@ -193,8 +195,8 @@ def _helper_piece(helper: Thing, moment: Moment, values: bool) -> Piece:
     """A process with all its text above it."""
     symbol, pen = symbol_of(helper.source), Pen()
     symbol.draw(pen, Drawn(helper.source, {}, half=symbol.half))
-    lines = element_values(helper) if values else []
     now = moment.element_lines(helper)
+    lines = element_values(helper) if values and not now else []
     texts, y = list[Text](), around(pen.marks).high + GAP + 0.24 * VALUE
     for line in reversed([*lines, *now]):
         texts.append(Text(0.0, y, line, VALUE, NOW if line in now else GREY, False))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import inf, isfinite
 from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,9 @@ from clutchwork.schematic.diagram import diagram
 from clutchwork.schematic.moment import Moment, instant
 from clutchwork.schematic.picture import Schematic, kind_of
 from clutchwork.schematic.sheet import sheet
+
+POINTS = 72.0 / 25.4  # in a millimetre
+MILLIMETRES = 310.0  # the width from which on a schematic is folded
 
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
@@ -27,19 +30,25 @@ def drawn(
     at: float | None = None,
     values: bool = True,
     power: bool = False,
+    width: float = MILLIMETRES,
 ) -> Schematic:
     """The schematic of a model; with a run, of its state at an instant [s]; UseError for what does not fit."""
-    problems = list(_problems(model, path, run, at))
+    problems = [*_problems(model, path, run, at), *_width_problems(width)]
     if problems:
         raise UseError("draw", problems)
     found = diagram(model)
     moment = Moment()
     if run is not None:
         moment = instant(run, float(run.time[-1]) if at is None else float(at), power=power)
-    made = Schematic(found.name, sheet(found, moment, values=values), moment.time)
+    made = Schematic(found.name, sheet(found, moment, values=values, width=width * POINTS), moment.time)
     if path is not None:
         made.save(path)
     return made
+
+
+def _width_problems(width: Any) -> Any:
+    if not isinstance(width, Real) or isinstance(width, bool) or not 20.0 <= float(width) < inf:
+        yield f"width is {shown(width)}: give a number of at least 20 mm"
 
 
 def _problems(model: Model, path: Any, run: Any, at: Any) -> Any:

@@ -17,6 +17,8 @@ from clutchwork.schematic.values import number
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
+NOTHING = 1e-9  # in SI units: what rounding leaves of zero
+
 
 class Moment:
     """Nothing is known of a run: no states and no values."""
@@ -110,12 +112,14 @@ class Instant(Moment):
             ]
         for signal in ("torque", "slip", *(("power",) if self.power else ())):
             value = self._value(f"{name}.{signal}")
-            if value is not None and (signal != "slip" or value):
+            # an open contact has its slip alone
+            if value is not None and (value or (signal == "torque" and self.state(thing) != OPEN)):
                 lines.append(("slip " if signal == "slip" else "") + self._shown(f"{name}.{signal}", value))
-        flow = self._value(f"{name}.flow") if thing.source.role is Role.FLOW else None
-        return [*lines, *([self._shown(f"{name}.flow", flow)] if flow is not None else [])]
+        flow = self._value(f"{name}.heat_flow") if thing.source.role is Role.FLOW else None
+        return [*lines, *([self._shown(f"{name}.heat_flow", flow)] if flow is not None else [])]
 
     def _shown(self, signal: str, value: float) -> str:
+        value = value if abs(value) > NOTHING else 0.0
         return number(
             float(np.format_float_positional(value, 4, fractional=False)) if value else 0.0, self.run.units[signal]
         )

@@ -11,7 +11,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.schematic.layers import End, Layers, Lines, linear_program
 from clutchwork.schematic.pen import Point
 
-TRACK, EDGE, NEAR = 6.5, 7.0, 4.0  # pt between tracks, beside them, and between lines that must not touch
+TRACK, EDGE, NEAR = 6.5, 8.0, 4.0  # pt between tracks, beside them, and between lines that must not touch
 SMALL = 14.0  # pt, the smallest step of a line
 TRIES = 6
 

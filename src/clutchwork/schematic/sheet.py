@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import field
+from itertools import pairwise
 
 from clutchwork.base.classes import dataclass
 from clutchwork.schematic.cells import Piece, cell_of, line_of
 from clutchwork.schematic.diagram import Diagram, Thing
 from clutchwork.schematic.flow import flow
-from clutchwork.schematic.layers import layered
+from clutchwork.schematic.folds import WIDE, folds
+from clutchwork.schematic.layers import Layers, layered
 from clutchwork.schematic.look import Look
 from clutchwork.schematic.moment import Moment
 from clutchwork.schematic.order import ordered
 from clutchwork.schematic.pen import Box, Mark, Point, Stroke, around
-from clutchwork.schematic.places import placed
+from clutchwork.schematic.places import Places, placed
 
-APART, WIDEST = 20.0, 520.0  # pt between parts, and of a row of small ones
+APART, WIDEST, BEND = 20.0, 520.0, 10.0  # pt between parts, and of a row of small ones
 DOT = 1.7
 
 
@@ -75,9 +77,9 @@ class Sheet:
         self.links.extend(other.links)
 
 
-def sheet(diagram: Diagram, moment: Moment, *, values: bool = True) -> Sheet:
-    """Lay out a diagram."""
-    parts = [_part(things, moment, values) for things in _connected(diagram)]
+def sheet(diagram: Diagram, moment: Moment, *, values: bool = True, width: float = WIDE) -> Sheet:
+    """Lay out a diagram; what is wider than `width` [pt] is folded where it can be."""
+    parts = [_part(things, moment, values, width) for things in _connected(diagram)]
     made, top = Sheet(), 0.0
     for row in _rows(parts):
         left, low = 0.0, top
@@ -121,7 +123,7 @@ def _connected(diagram: Diagram) -> list[list[Thing]]:
     return sorted(found, key=lambda things: min(kinds.get(thing.what, 2) for thing in things))
 
 
-def _part(things: list[Thing], moment: Moment, values: bool) -> Sheet:
+def _part(things: list[Thing], moment: Moment, values: bool, width: float) -> Sheet:
     nodes = [thing for thing in things if thing.is_node]
     elements = [thing for thing in things if not thing.is_node]
     way = flow(nodes, elements) if nodes else None
@@ -134,14 +136,51 @@ def _part(things: list[Thing], moment: Moment, values: bool) -> Sheet:
         return made
     layers = layered(cells, way)
     places = placed(layers, ordered(layers))
+    cuts = folds(layers, places, width)
+    rows = [_row(layers, places, first, last) for first, last in zip([0, *cuts], [*cuts, layers.count], strict=True)]
+    return _stacked(rows, [_crossing(places, cut) for cut in cuts])
+
+
+def _row(layers: Layers, places: Places, first: int, last: int) -> Sheet:
+    """The layers from `first` up to `last`, without the lines to those behind."""
+    made = Sheet()
     for spot in layers.spots:
-        if spot.cell is not None:
+        if spot.cell is not None and first <= spot.layer < last:
             x, y = places.x[spot.layer], places.y[spot.number]
             made.pieces.extend(_moved(piece, x + a, y + b) for piece, a, b in spot.cell.pieces)
             made.links.extend(mark.moved(x, y) for mark in spot.cell.links)
     made.wires.extend(
-        Wired(wire.lines.node.name, line_of(wire.lines.node), wire.pieces, wire.dots) for wire in places.wires
+        Wired(wire.lines.node.name, line_of(wire.lines.node), wire.pieces, wire.dots)
+        for wire in places.wires
+        if first <= wire.lines.layer < last - 1
     )
+    return made
+
+
+def _crossing(places: Places, cut: int) -> tuple[Thing, Point, Point]:
+    """The only line behind a layer: its node, where it leaves and where it goes on."""
+    wire = next(wire for wire in places.wires if wire.lines.layer == cut - 1)
+    left, right = wire.pieces[0][0], wire.pieces[1][0]
+    return wire.lines.node, left, right
+
+
+def _stacked(rows: list[Sheet], crossings: list[tuple[Thing, Point, Point]]) -> Sheet:
+    """Rows one below the other, each joined to the next by a line around its end."""
+    made, shift = Sheet(), [(0.0, 0.0)]
+    edge = max((row.box.right - row.box.left for row in rows), default=0.0) + BEND
+    for number, row in enumerate(rows):
+        box = row.box
+        if number:
+            before = rows[number - 1].box.low + shift[-1][1]
+            shift.append((rows[0].box.left - box.left, before - 2.0 * BEND - box.high))
+        made.add(row.moved(*shift[-1]))
+    for number, (node, leaves, goes_on) in enumerate(crossings):
+        (a, b), (c, d) = shift[number], shift[number + 1]
+        start, end = (leaves[0] + a, leaves[1] + b), (goes_on[0] + c, goes_on[1] + d)
+        right, left = rows[0].box.left + edge, rows[0].box.left - BEND
+        between = rows[number].box.low + b - BEND
+        way = [start, (right, start[1]), (right, between), (left, between), (left, end[1]), end]
+        made.wires.append(Wired(node.name, line_of(node), list(pairwise(way)), []))
     return made
 
 
