@@ -23,6 +23,7 @@ class Wire:
     lines: Lines
     pieces: list[tuple[Point, Point]]
     dots: list[Point]
+    pins: list[Point]  # what it joins, those on the left first
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,20 +192,21 @@ class _Tracks:
         number = self.lines.index(lines)
         wide = TRACK * max(self.count - 1, 0)
         middle = 0.5 * (left + right) - 0.5 * wide + TRACK * self.track.get(number, 0)
-        pieces, heights = list[tuple[Point, Point]](), list[float]()
-        for ends, side in ((lines.left, 1.0), (lines.right, -1.0)):
-            for end in ends:
-                spot = layers.spots[end.spot]
-                start = x[spot.layer] + side * (spot.cell.half if spot.cell is not None else 0.0)
-                height = y[end.spot] + end.height
-                pieces.append(((start, height), (middle, height)))
-                heights.append(height)
+        pins = [(self._pin(end, side, layers, x), y[end.spot] + end.height)
+                for ends, side in ((lines.left, 1.0), (lines.right, -1.0)) for end in ends]  # fmt: skip
+        heights = [height for _, height in pins]
         low, high = min(heights), max(heights)
-        if high > low:
-            # corners are closed by half the width of a line in the look of shafts
-            pieces.append(((middle, low), (middle, high)))
+        if number not in self.track:
+            return Wire(lines, [((min(pins)[0], low), (max(pins)[0], low))], [], pins)
+        pieces = [((start, height), (middle, height)) for start, height in pins]
+        pieces.append(((middle, low), (middle, high)))
         dots = [(middle, h) for h in sorted(set(heights)) if self._meets(heights, h, low, high) > 2]
-        return Wire(lines, pieces, dots)
+        return Wire(lines, pieces, dots, pins)
+
+    @staticmethod
+    def _pin(end: End, side: float, layers: Layers, x: list[float]) -> float:
+        spot = layers.spots[end.spot]
+        return x[spot.layer] + side * (spot.cell.half if spot.cell is not None else 0.0)
 
     @staticmethod
     def _meets(heights: list[float], at: float, low: float, high: float) -> int:

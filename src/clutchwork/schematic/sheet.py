@@ -160,8 +160,7 @@ def _row(layers: Layers, places: Places, first: int, last: int) -> Sheet:
 def _crossing(places: Places, cut: int) -> tuple[Thing, Point, Point]:
     """The only line behind a layer: its node, where it leaves and where it goes on."""
     wire = next(wire for wire in places.wires if wire.lines.layer == cut - 1)
-    left, right = wire.pieces[0][0], wire.pieces[1][0]
-    return wire.lines.node, left, right
+    return wire.lines.node, wire.pins[0], wire.pins[-1]
 
 
 def _stacked(rows: list[Sheet], crossings: list[tuple[Thing, Point, Point]]) -> Sheet:
