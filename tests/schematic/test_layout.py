@@ -14,8 +14,8 @@ from clutchwork.schematic.moment import Moment
 from clutchwork.schematic.picture import Schematic
 from clutchwork.schematic.sheet import sheet
 from support import cases, random_drivelines, random_large, schematics, six_speed
-from support.msl.model import translate
 from support.msl.elements import missing
+from support.msl.model import translate
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*/model.toml"))
@@ -140,7 +140,8 @@ def _middle(piece) -> float:
 
 @pytest.mark.parametrize(("name", "way"), [
     ("launch", ["combustion", "engine", "clutch", "gearbox", "halfshaft", "vehicle", "road"]),
-    ("engine_clutch_vehicle", ["combustion", "engine", "clutch", "gearbox", "gears", "wheels", "tyres", "vehicle", "road"]),
+    ("engine_clutch_vehicle", ["combustion", "engine", "clutch", "gearbox", "gears", "wheels", "tyres",
+                               "vehicle", "road"]),
     ("car_launch", ["combustion", "engine", "clutch", "gearbox", "first_gear", "pinion", "final_drive", "differential",
                     "half_shafts", "wheels", "tyres", "car", "slope"]),
     ("six_speed", ["engine", "w1", "F1", "w2", "shaft", "w4", "row1", "w6", "row3", "w8", "load"]),

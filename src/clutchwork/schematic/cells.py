@@ -142,7 +142,7 @@ def _element_piece(
 
 def _mirrored(thing: Thing, sides: Mapping[str, int], symbol: Symbol) -> bool:
     """Whether the first port, which a symbol has on its left, is on the right."""
-    if symbol.pins and len(thing.pins) > 2:
+    if symbol.pins:
         return False
     ports = [*thing.pins, *thing.fixed] if len(thing.pins) == 1 else list(thing.pins)
     declared = _in_order(thing, ports)

@@ -15,8 +15,9 @@ def html(model: Model) -> str:
     """Schematic and tables; the tables alone where a package for the schematic is missing."""
     found = diagram(model)
     try:
-        picture = f'<div style="overflow-x:auto">{drawn(model)._repr_svg_()}</div>'
-        picture = picture.replace('<?xml version="1.0" encoding="utf-8" standalone="no"?>', "")
+        svg = drawn(model)._repr_svg_()
+        # HTML has no heads of XML
+        picture = f'<div style="overflow-x:auto">{svg[svg.index("<svg") :]}</div>'
     except ImportError:
         picture = ""
     return picture + tables(found)

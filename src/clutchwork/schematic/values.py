@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import MISSING
 from math import floor, isfinite, log10
 from numbers import Real
 from typing import Any
 
-from clutchwork.declare.node import Signal
+from clutchwork.declare.node import Component, Signal
 from clutchwork.declare.schema import Role, Spec, inputs, specs
 from clutchwork.schematic.diagram import Thing, referred
+from clutchwork.signals.bases.extremes import extremes
 
 MOST = 2  # lines of an element
 # what tells most about an element, before what else it has
@@ -91,11 +93,21 @@ def _unit(element: Any, spec: Spec, translates: bool) -> str:
     if "m3" in (spec.unit, *spec.units) and hasattr(element, "pressure"):
         if getattr(element, "pressure", None) is not None:
             return "m2" if translates else "m3"
-        force = getattr(element, "normal_force", None)
-        share = isinstance(force, Real) and 0.0 <= float(force) <= 1.0
+        share = _is_share(getattr(element, "normal_force", None))
         return ("N" if share else "1") if translates else ("N m" if share else "m")
     alike = {"N m": "N", "N m/rad": "N/m", "N m s/rad": "N s/m", "rad/s": "m/s"}
     return alike.get(spec.unit, spec.unit) if translates else spec.unit
+
+
+def _is_share(force: Any) -> bool:
+    """Whether what presses is a share of the force, 0 to 1, and not a force in N."""
+    if isinstance(force, Signal):
+        with suppress(Exception):
+            reached = [at.value for at in extremes(force)]
+            return bool(reached) and max(reached) <= 1.0
+    if isinstance(force, Component):
+        return bool(type(force).states) and type(force).states[0].unit == "1"
+    return isinstance(force, Real) and float(force) <= 1.0
 
 
 def _driven(thing: Thing, translates: bool) -> list[str]:
@@ -109,7 +121,7 @@ def _driven(thing: Thing, translates: bool) -> list[str]:
                 continue
             shown = {item.name: one for item, one in specs(type(thing.source))}[name]
             unit = _unit(thing.source, shown, translates)
-            text = _given(value, unit, name)
+            text = _given(value, unit, "force" if translates and name == "torque" else name)
             if unit == "1" and isinstance(value, Real):
                 text = f"{name.replace('_', ' ')} {text}"
             if text and (spec.otherwise is None or value != spec.otherwise):

@@ -90,7 +90,7 @@ def pair(pen: Pen, shown: Drawn) -> None:
             pen.line((0.0, y), (side * shown.half, y), look=shown.line)
     if "support" in shown.sides:
         side = shown.sides["support"]
-        pen.line((0.0, 0.0), (side * shown.half, 0.0), look=shown.line._replace(dash="dash"))
+        pen.line((0.0, 0.0), (side * shown.half, 0.0), look=shown.line)
         pen.circle(0.0, 0.0, 1.5, look=INK._replace(fill=INK.colour))
 
 
