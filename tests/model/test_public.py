@@ -25,7 +25,7 @@ PUBLIC = [
     *("HeatFlow", "Interrupted", "Law"),
     *("ModelError", "ModelWarning", "Node", "OptionError", "Options", "Problem", "Rate", "Signal", "SimulationError"),
     *("StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
-    *("export_c", "fit", "rig", "simulate"),
+    *("draw", "export_c", "fit", "rig", "simulate"),
     *("Sweep", "SweepInterrupted", "at", "break_away", "integral", "lock", "maximum", "minimum", "peak"),
     *("sweep", "variants"),
 ]

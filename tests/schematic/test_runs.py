@@ -104,7 +104,7 @@ def test_a_dog_clutch_and_a_synchroniser_are_locked_while_they_mesh() -> None:
     made = d.draw(run=run, at=1.0)
     # that of gears 1 and 2 is shifted, the other one stays in neutral
     for name, is_locked in (("sleeve 1/2", True), ("sleeve 3/4", False)):
-        assert (run[f"{name}.forward_dog.sleeve"][-1] > 0.5) is is_locked
+        assert bool(run[f"{name}.forward_dog.sleeve"][-1] > 0.5) is is_locked
         piece = next(piece for piece in made.sheet.pieces if piece.name == name)
         assert (STATE["locked"].colour in {mark.look.colour for mark in piece.marks}) is is_locked
 

@@ -136,7 +136,7 @@ def _element_piece(
     symbol.draw(pen, shown)
     now = moment.element_lines(thing)
     # of a run its numbers are enough
-    lines = element_values(thing) if values and not now else []
+    lines = element_values(thing) if values and not now and not shown.state else []
     return _labelled(thing, pen.marks, lines, now, GREY, below=bool(thing.helpers))
 
 

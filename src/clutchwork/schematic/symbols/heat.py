@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi, sin
+from math import cos, pi, sin
 
 from clutchwork.schematic.look import HEAT, PAPER, SIGNAL_BODY, WARM, Look
 from clutchwork.schematic.pen import Pen
@@ -37,9 +37,10 @@ def convection(pen: Pen, shown: Drawn) -> None:
 
 def oil(pen: Pen, shown: Drawn) -> None:
     """A drop."""
-    drop = [(4.4 * sin(t), -2.5 - 4.4 * (1.0 - 2.0 * abs(t) / pi)) for t in (0.1 * pi * k for k in range(-10, 11))]
     pen.box(-7.5, -8.5, 7.5, 8.5, look=FILLED)
-    pen.area((0.0, 7.0), *((x, y) for x, y in reversed(drop)), look=WARM._replace(fill=LIGHT))
+    angles = [0.16 * pi - 0.066 * pi * k for k in range(21)]
+    drop = [(4.2 * cos(angle), 4.2 * sin(angle) - 2.4) for angle in angles]
+    pen.area((0.0, 7.0), *drop, look=WARM._replace(fill=LIGHT))
     _ends(pen, shown, 7.5)
 
 

@@ -115,7 +115,7 @@ def _table(element: Any) -> list[Point]:
         found = [(float(x), float(y)) for x, y in element.torque]
         if len(found) > 1:
             return found
-    return [(-1.0, 0.5), (1.0, 0.5)]
+    return [(0.0, 0.6), (0.4, 1.0), (1.0, 0.5)]
 
 
 def _sign(element: Any) -> float:
