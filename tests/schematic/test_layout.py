@@ -45,6 +45,8 @@ MODELS = {
     **{f"random {seed}": random_drivelines.describe(seed).driveline() for seed in range(12)},
     **{f"large {seed}": random_large.driveline(seed) for seed in range(5)},
     "eight-speed": schematics.eight_speed(),
+    # seed 1 needs lines that are kept apart in a second pass
+    **{f"tangle {seed}": schematics.tangle(seed) for seed in range(8)},
     **references(),
 }
 
@@ -167,7 +169,8 @@ def test_a_chain_is_one_straight_line() -> None:
 
 def test_steps_of_lines_are_none_or_to_be_seen() -> None:
     # a step of less than 4 pt looks like a mistake of the drawing
-    for name in MODELS:
+    # in a tangle, which is no driveline, there may be no room to avoid one
+    for name in (name for name in MODELS if not name.startswith("tangle")):
         steps = [abs(a[1] - b[1]) for w in picture(name).sheet.wires for a, b in w.pieces if a[0] == b[0]]
         assert all(step > 4.0 for step in steps), name
 

@@ -143,7 +143,7 @@ def test_what_does_not_fit_is_said_at_once(tmp_path: Path) -> None:
         cw.draw(3)
     with pytest.raises(cw.UseError, match="give one time"):
         d.draw(run=run, at=[0.1, 0.2])
-    with pytest.raises(cw.UseError, match="unknown field 'vlues'"):
-        d.draw(vlues=False)
+    with pytest.raises(cw.UseError, match="unknown field 'value'"):
+        d.draw(value=False)
     with pytest.raises(cw.UseError, match=r"\.svg, \.png or \.pdf"):
         d.draw().save(tmp_path / "picture")

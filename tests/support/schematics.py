@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 
+import numpy as np
+
 import clutchwork as cw
 from clutchwork.schematic.pen import Box, Stroke, Text, around
 from clutchwork.schematic.sheet import Sheet
@@ -107,6 +109,22 @@ def eight_speed() -> cw.Driveline:
         d.add(cw.Clutch(name, base=w[base], follower=w[follower], **pressed))
     d.add(cw.Torque("turbine", shaft=w["input"], torque=200.0))
     d.add(cw.ResistingTorque("road", shaft=w["output"], torque=100.0, speed=1.0))
+    return d
+
+
+def tangle(seed: int) -> cw.Driveline:
+    """Shafts that clutches and planetary sets join at random, in one part or several."""
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline(f"tangle {seed}")
+    n = [d.shaft(f"s{k}", inertia=0.1) for k in range(int(rng.integers(4, 13)))]
+    d.add(cw.Torque("drive", shaft=n[0], torque=1.0))
+    d.add(cw.ResistingTorque("load", shaft=n[-1], torque=1.0, speed=1.0))
+    for k in range(int(rng.integers(6, 22))):
+        a, b, c = (n[int(place)] for place in rng.choice(len(n), 3, replace=False))
+        if rng.random() < 0.4:
+            d.add(cw.Planetary(f"p{k}", sun=a, ring=b, carrier=c, ratio=2.0))
+        else:
+            d.add(cw.Clutch(f"c{k}", base=a, follower=b, friction=LINING, gain=1.0, pressure=1.0))
     return d
 
 

@@ -68,6 +68,9 @@ def flow(nodes: list[Thing], elements: list[Thing]) -> Flow:
         made.sides[id(element)] = _sides(element, key)
         for port, node in element.pins.items():
             made.weight[id(element), port] = abs(level[place[id(node)]] - level[place[id(element)]])
+    most = max(made.weight.values(), default=0.0) or 1.0
+    for line in made.weight:
+        made.weight[line] /= most
     driving = {id(node) for node in sources}
     for element in single:
         node = element.nodes[0]

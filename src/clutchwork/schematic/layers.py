@@ -118,7 +118,9 @@ def _lines(
         for port, (side, height) in other.pins.items():
             if other.thing.pins[port] is node:
                 number = place[id(other.thing)]
-                weight = 1.0 + 6.0 * flow.weight.get((id(other.thing), port), 0.0)
+                # what has two ports is drawn straight before a set of gears beside it
+                plain = 0.5 * (len(other.thing.pins) == 2)
+                weight = 1.0 + plain + 6.0 * flow.weight.get((id(other.thing), port), 0.0)
                 ends[-side].setdefault(layer[number], []).append((End(number, height), weight))
     for way, by_layer in ends.items():
         if not by_layer:

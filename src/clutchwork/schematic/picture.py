@@ -71,9 +71,6 @@ class Schematic:
     def _repr_svg_(self) -> str:
         return self._bytes("svg").decode("utf-8")
 
-    def _repr_png_(self) -> bytes:
-        return self._bytes("png")
-
 
 def kind_of(path: str | Path) -> str:
     """The format that the ending of a path asks for; empty for any other."""
