@@ -17,6 +17,8 @@ from clutchwork.schematic.diagram import Thing
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT
 from clutchwork.signals.bases.extremes import extremes
 
+TRUNK, BRANCH = 0.2, 0.8  # what being on the way from source to load weighs, and what the current at most
+
 
 @dataclass(frozen=True, eq=False)
 class Flow:
@@ -69,8 +71,11 @@ def flow(nodes: list[Thing], elements: list[Thing]) -> Flow:
         for port, node in element.pins.items():
             made.weight[id(element), port] = abs(level[place[id(node)]] - level[place[id(element)]])
     most = max(made.weight.values(), default=0.0) or 1.0
-    for line in made.weight:
-        made.weight[line] /= most
+    trunk = {(id(one), id(two)) for one, two in network.trunk(loads, distance)}
+    for element in joins:
+        for port, node in element.pins.items():
+            on_trunk = (id(element), id(node)) in trunk
+            made.weight[id(element), port] = TRUNK * on_trunk + BRANCH * made.weight[id(element), port] / most
     driving = {id(node) for node in sources}
     for element in single:
         node = element.nodes[0]
@@ -121,6 +126,9 @@ class _Network:
         starts = [place[id(node)] for node in sources]
         distance = self._distances(starts)
         stops = [place[id(node)] for node in loads]
+        # a generator near the engine is not what the driveline is for
+        most = max((distance[k] for k in stops), default=0)
+        stops = [k for k in stops if 2 * distance[k] >= most]
         if not stops:
             # the far end, nodes before elements
             far = max(range(len(self.things)), key=lambda k: (self.things[k].is_node, distance[k], k))
@@ -129,6 +137,20 @@ class _Network:
         if stops:
             level = self._potential(starts, stops)
         return [float(value) for value in level], distance
+
+    def trunk(self, loads: list[Thing], distance: list[int]) -> list[tuple[Thing, Thing]]:
+        """The shortest way from the sources to the load that is farthest, as pairs of an element and a node."""
+        place = {id(thing): k for k, thing in enumerate(self.things)}
+        ends = [place[id(node)] for node in loads] or [k for k, thing in enumerate(self.things) if thing.is_node]
+        here, found = max(ends, key=lambda k: (distance[k], -k)), list[tuple[Thing, Thing]]()
+        while distance[here] > 0:
+            nearer = [k for k in self.next[here] if distance[k] == distance[here] - 1]
+            # a clutch before a set of gears beside it
+            before = min(nearer, key=lambda k: (not self.things[k].is_node and len(self.next[k]) > 2, k))
+            pair = (self.things[here], self.things[before])
+            found.append(pair if pair[1].is_node else pair[::-1])
+            here = before
+        return found
 
     def _distances(self, starts: list[int]) -> list[int]:
         found = [-1] * len(self.things)
