@@ -82,6 +82,13 @@ def test_without_a_time_it_is_the_end() -> None:
     assert d.draw(run=run).time == run.time[-1]
 
 
+def test_a_time_may_have_a_unit() -> None:
+    d, run = model("launch")
+    assert d.draw(run=run, at="400 ms")._repr_svg_() == d.draw(run=run, at=0.4)._repr_svg_()
+    with pytest.raises(cw.UseError, match="at is '3 m'"):
+        d.draw(run=run, at="3 m")
+
+
 def test_power_is_shown_when_asked() -> None:
     d, run = model("launch")
     plain, full = d.draw(run=run, at=0.4), d.draw(run=run, at=0.4, power=True)

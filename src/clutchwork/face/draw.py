@@ -10,6 +10,7 @@ from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 
 if TYPE_CHECKING:
+    from clutchwork.declare.node import Number
     from clutchwork.results.recorded import Recorded
     from clutchwork.schematic.picture import Schematic
 
@@ -20,7 +21,7 @@ def draw(
     path: str | Path | None = None,
     *,
     run: Recorded | None = None,
-    at: float | None = None,
+    at: Number | None = None,
     values: bool = True,
     power: bool = False,
     width: float = 310.0,
@@ -30,7 +31,7 @@ def draw(
     Use it where a `Driveline` is not at hand; `d.draw(...)` is the same.
 
     Parameters: thing, a Driveline, a System or a Trajectory, which is its own `run`; path, SVG, PNG or PDF by its
-    ending, written when given; run and at [s], a result and the time whose states, speeds and torques are shown;
+    ending, written when given; run and at [s, or with a unit], a result and the time whose states, speeds and torques are shown;
     values, whether inertias, ratios and the like are shown; power, whether the power [W] of elements is; width [mm],
     from which on a long driveline is folded into rows. UseError for what does not fit.
     """

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
+from clutchwork.declare.quantity import QuantityError, in_si
 from clutchwork.model.model import Model
 from clutchwork.schematic.diagram import diagram
 from clutchwork.schematic.moment import Moment, instant
@@ -19,6 +20,7 @@ POINTS = 72.0 / 25.4  # in a millimetre
 MILLIMETRES = 310.0  # the width from which on a schematic is folded
 
 if TYPE_CHECKING:
+    from clutchwork.declare.node import Number
     from clutchwork.results.recorded import Recorded
 
 
@@ -27,12 +29,13 @@ def drawn(
     path: str | Path | None = None,
     *,
     run: Recorded | None = None,
-    at: float | None = None,
+    at: Number | None = None,
     values: bool = True,
     power: bool = False,
     width: float = MILLIMETRES,
 ) -> Schematic:
     """The schematic of a model; with a run, of its state at an instant [s]; UseError for what does not fit."""
+    at = _seconds(at)
     problems = [*_problems(model, path, run, at), *_width_problems(width)]
     if problems:
         raise UseError("draw", problems)
@@ -44,6 +47,14 @@ def drawn(
     if path is not None:
         made.save(path)
     return made
+
+
+def _seconds(at: Any) -> Any:
+    """A time in s where it has a unit."""
+    try:
+        return in_si(at, "s")
+    except QuantityError as error:
+        raise UseError("draw", [f"at is {error}"]) from None
 
 
 def _width_problems(width: Any) -> Any:
