@@ -31,9 +31,9 @@ def draw(
     Use it where a `Driveline` is not at hand; `d.draw(...)` is the same.
 
     Parameters: thing, a Driveline, a System or a Trajectory, which is its own `run`; path, SVG, PNG or PDF by its
-    ending, written when given; run and at [s, or with a unit], a result and the time whose states, speeds and torques are shown;
-    values, whether inertias, ratios and the like are shown; power, whether the power [W] of elements is; width [mm],
-    from which on a long driveline is folded into rows. UseError for what does not fit.
+    ending, written when given; run and at [s, or with a unit], a result and the time whose states, speeds and torques
+    are shown; values, whether inertias, ratios and the like are shown; power, whether the power [W] of elements is;
+    width [mm], from which on a long driveline is folded into rows. UseError for what does not fit.
     """
     from clutchwork.face.driveline import Driveline
     from clutchwork.schematic.draw import drawn

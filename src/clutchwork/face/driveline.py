@@ -206,9 +206,9 @@ class Driveline:
         """Schematic of the driveline, with mistakes or without; notebooks show it. Needs the extra `draw`.
 
         Parameters: path, SVG, PNG or PDF by its ending, written when given; run, a result whose states, speeds and
-        torques are shown at the time `at` [s, or with a unit], by default its end; values, whether inertias, ratios and the like are
-        shown; power, whether the power [W] of elements is; width [mm], from which on a long driveline is folded into
-        rows. UseError for what does not fit, such as a time outside of the run.
+        torques are shown at the time `at` [s, or with a unit], by default its end; values, whether inertias, ratios
+        and the like are shown; power, whether the power [W] of elements is; width [mm], from which on a long driveline
+        is folded into rows. UseError for what does not fit, such as a time outside of the run.
         """
         from clutchwork.schematic.draw import drawn
 

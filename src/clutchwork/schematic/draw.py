@@ -35,14 +35,14 @@ def drawn(
     width: float = MILLIMETRES,
 ) -> Schematic:
     """The schematic of a model; with a run, of its state at an instant [s]; UseError for what does not fit."""
-    at = _seconds(at)
-    problems = [*_problems(model, path, run, at), *_width_problems(width)]
+    time = _seconds(at)
+    problems = [*_problems(model, path, run, time), *_width_problems(width)]
     if problems:
         raise UseError("draw", problems)
     found = diagram(model)
     moment = Moment()
     if run is not None:
-        moment = instant(run, float(run.time[-1]) if at is None else float(at), power=power)
+        moment = instant(run, float(run.time[-1]) if time is None else float(time), power=power)
     made = Schematic(found.name, sheet(found, moment, values=values, width=width * POINTS), moment.time)
     if path is not None:
         made.save(path)
