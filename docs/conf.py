@@ -12,6 +12,7 @@ import drawings  # noqa: E402
 import experiments  # noqa: E402
 import kept  # noqa: E402
 import launches  # noqa: E402
+import schematics  # noqa: E402
 
 import clutchwork  # noqa: E402
 import gen_docs  # noqa: E402
@@ -25,6 +26,7 @@ kept.write(experiments.write, HERE / "reference" / "rig")
 kept.write(launches.write, HERE / "reference" / "car")
 kept.write(sweeps.write, HERE / "reference" / "sweeps")
 kept.write(drawings.write, HERE / "reference" / "pictures")
+kept.write(schematics.write, HERE / "reference" / "schematics")
 parity.write(HERE / "reference")
 
 # what is public is documented by its public name, wherever it is defined

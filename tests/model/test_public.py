@@ -25,7 +25,7 @@ PUBLIC = [
     *("HeatFlow", "Hint", "Hints", "Interrupted", "Law"),
     *("ModelError", "ModelWarning", "Node", "OptionError", "Options", "Problem", "Rate", "Signal", "SimulationError"),
     *("StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
-    *("compare", "export_c", "fit", "rig", "simulate"),
+    *("compare", "draw", "export_c", "fit", "rig", "simulate"),
     *("Sweep", "SweepInterrupted", "at", "break_away", "integral", "lock", "maximum", "minimum", "peak"),
     *("sweep", "variants"),
     *("load_run", "read_columns"),

@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.declare.options import Options
     from clutchwork.results.hints.hint import Hints
+    from clutchwork.results.recorded import Recorded
     from clutchwork.results.trajectory import Trajectory
     from clutchwork.run.record import Progress
+    from clutchwork.schematic.picture import Schematic
 
 E = TypeVar("E", bound=Element)
 
@@ -210,6 +212,33 @@ class Driveline:
         from clutchwork.run.simulation import simulate
 
         return simulate(self.assemble(), t_end, options=options, progress=progress, **changes)
+
+    @explained("d.draw")
+    def draw(
+        self,
+        path: str | Path | None = None,
+        *,
+        run: Recorded | None = None,
+        at: Number | None = None,
+        values: bool = True,
+        power: bool = False,
+        width: float = 310.0,
+    ) -> Schematic:
+        """Schematic of the driveline, with mistakes or without; notebooks show it. Needs the extra `draw`.
+
+        Parameters: path, SVG, PNG or PDF by its ending, written when given; run, a result whose states, speeds and
+        torques are shown at the time `at` [s, or with a unit], by default its end; values, whether inertias, ratios
+        and the like are shown; power, whether the power [W] of elements is; width [mm], from which on a long driveline
+        is folded into rows. UseError for what does not fit, such as a time outside of the run.
+        """
+        from clutchwork.schematic.draw import drawn
+
+        return drawn(self._model, path, run=run, at=at, values=values, power=power, width=width)
+
+    def _repr_html_(self) -> str:
+        from clutchwork.schematic.notebook import html
+
+        return html(self._model)
 
     @classmethod
     @explained("cw.Driveline.load")

@@ -39,6 +39,7 @@ NAMES = {
     "at": "sweeps.outputs",
     "break_away": "sweeps.outputs",
     "compare": "results.plot.compare",
+    "draw": "face.draw",
     "integral": "sweeps.outputs",
     "lock": "sweeps.outputs",
     "maximum": "sweeps.outputs",
