@@ -1,0 +1,128 @@
+"""A model at one instant: where it stands, and the derivatives of all its components there."""
+
+from __future__ import annotations
+
+import math
+import os
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.system import System
+from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UseError
+from clutchwork.base.shown import shown
+from clutchwork.declare.options import DEFAULTS, Options
+from clutchwork.declare.status import DONE
+from clutchwork.results.channels import channels
+from clutchwork.results.trajectory import SimulationError, Trajectory
+from clutchwork.run.control import Control, controllers
+from clutchwork.run.failure import StoppedEarly
+from clutchwork.run.record import Recording, record
+from clutchwork.run.simulation import Job, new_run, simulate, told
+
+if TYPE_CHECKING:
+    from clutchwork.results.events import Event
+
+Array = NDArray[np.float64]
+
+CALL = "linearise"
+
+
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """The right limit at one instant: the row of output, and the derivatives of the components with modes held."""
+
+    system: System
+    time: float  # s
+    row: Array
+    local: Array  # cw_local of c_api.h
+    events: tuple[Event, ...] = ()  # at this very instant
+
+    @property
+    def wiring(self) -> Wiring:
+        """Who is joined to what."""
+        return wiring(self.system)
+
+    def part(self, name: str) -> Array:
+        """A part of the row, by its name in layout.ROW."""
+        return self.row[self.wiring.columns[name]]
+
+    @property
+    def modes(self) -> NDArray[np.intp]:
+        """Mode of each contact, a number of layout.MODES."""
+        return self.part("contact_mode").astype(int)
+
+
+def instant_of(model: Any, at: Any) -> Instant:
+    """A model at its start or at a time [s], or a run at a time [s]; UseError for anything else."""
+    problems = list(_problems(model, at))
+    if problems:
+        raise UseError(CALL, problems)
+    if isinstance(model, Trajectory):
+        return _of_run(model, float(at))
+    system = model if isinstance(model, System) else model.assemble()
+    if at is None or float(at) == 0.0:
+        return _start(system)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", StoppedEarly)
+        return _of_run(simulate(system, float(at)), float(at))
+
+
+def _problems(model: Any, at: Any) -> Any:
+    if isinstance(model, str | os.PathLike):
+        yield f"{shown(model)} is not a model; load a file with cw.Driveline.load({os.fspath(model)!r})"
+    elif not isinstance(model, System | Trajectory) and not hasattr(model, "assemble"):
+        yield f"{shown(model)} is not a model; give a Driveline, a System, or a run with at=..."
+    if at is None:
+        if isinstance(model, Trajectory):
+            yield "at is missing; give the time of the run in s, such as at=1.2"
+        return
+    if isinstance(at, bool) or not isinstance(at, int | float | np.number) or not math.isfinite(at) or at < 0.0:
+        yield f"at = {shown(at)}: must be a time in s, zero or later"
+    elif isinstance(model, Trajectory) and len(model) and at > _reached(model):
+        yield f"at = {at:g} s is after the end of the run at {_reached(model):g} s; give an instant before it"
+
+
+def _reached(run: Trajectory) -> float:
+    """How far a run came [s]."""
+    return run.t_end if run.finished else float(run.time[-1])
+
+
+def _start(system: System) -> Instant:
+    run = new_run(system.to_bytes())
+    for name, value in DEFAULTS.core_options().items():
+        run.set_option(name, value)
+    return _read(system, run, ())
+
+
+def _of_run(trajectory: Trajectory, at: float) -> Instant:
+    """A run at an instant: it is repeated up to there, bit for bit, and what controllers decided is replayed."""
+    trajectory.raise_for_status() if at > _reached(trajectory) else None
+    system, made = trajectory.system, getattr(trajectory.repeat, "__self__", None)
+    control = made.control if isinstance(made, Job) else Control(controllers(system.inputs), lambda: channels(system))
+    run = new_run(system.to_bytes())
+    options: Options = trajectory.options
+    for name, value in options.core_options().items():
+        run.set_option(name, value)
+    recording = Recording(run, run.row_size)
+    record(recording, at, np.array([at]), control, None)
+    if recording.status != DONE:
+        raise SimulationError(_why(system, recording.status, run), trajectory)
+    here = tuple(event for event in trajectory.events if abs(event.time - at) <= 1e-12 * max(1.0, at))
+    return _read(system, run, here)
+
+
+def _read(system: System, run: Any, events: tuple[Event, ...]) -> Instant:
+    status, row, local = run.local()
+    if status != DONE:
+        raise SimulationError(_why(system, status, run))
+    return Instant(system, float(run.time), np.asarray(row), np.asarray(local), events)
+
+
+def _why(system: System, status: int, run: Any) -> str:
+    index, time, value, column = run.detail()
+    return told(system, status, index, time, value, max(column, 0))
