@@ -1,4 +1,4 @@
-"""The command line: run | check | demo | sweep | rig | fit | export | --version."""
+"""The command line: run | check | demo | sweep | linearise | rig | fit | export | --version."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def parser() -> argparse.ArgumentParser:
     _run_parser(commands.add_parser("run", help="compute the motion of a model", epilog=_codes()))
     _check_parser(commands.add_parser("check", help="check a model and list its ratios, without running it"))
     _demo_parser(commands.add_parser("demo", help="launch and 3-4 shift of a six-speed planetary gearbox"))
-    for module in ("sweeps", "rig", "fit", "codegen"):
+    for module in ("sweeps", "linear", "rig", "fit", "codegen"):
         import_module(f"clutchwork.{module}.command").add_command(commands)
     return top
 
