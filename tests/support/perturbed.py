@@ -73,10 +73,13 @@ def differences(standing: Standing, step: float = 1e-5) -> tuple[np.ndarray, np.
     n = len(linear.states)
     sizes = push_sizes(standing, step)
     rates, rows, valid = [], [], []
+    kinks = _at_kinks(standing)
     for column, size in enumerate(sizes):
         change = linear.row[:, column] * size
         up, down = standing.pushed(change), standing.pushed(-change)
-        valid.append(bool((up.modes == base.modes).all() and (down.modes == base.modes).all()))
+        same = bool((up.modes == base.modes).all() and (down.modes == base.modes).all())
+        same = same and all(len(equations(Motion(there), standing.given, [], []).states) == n for there in (up, down))
+        valid.append(same and not kinks[column])
         if not valid[-1]:
             rates.append(np.zeros(n)), rows.append(np.zeros(len(base.row)))
             continue
@@ -92,6 +95,15 @@ def _sizes_of_parts(standing: Standing) -> np.ndarray:
     for part in standing.instant.wiring.columns.values():
         made[part] = np.max(np.abs(row[part]), initial=0.0)
     return made
+
+
+def _at_kinks(standing: Standing) -> np.ndarray:
+    """Columns along which the load of a contact leaves zero, which it does to one side alone."""
+    linear, motion = standing.linear, standing.motion
+    columns = standing.instant.wiring.columns["contact_capacity"]
+    empty = motion.local.capacity[:, -1] == 0.0
+    count = len(linear.states) + len(standing.given)
+    return (linear.row[columns][empty][:, :count] != 0.0).any(axis=0)
 
 
 def mismatch(standing: Standing, step: float = 1e-5) -> float:

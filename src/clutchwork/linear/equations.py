@@ -125,9 +125,8 @@ def _holding(motion: Motion, base: Array) -> Holding:
     return Holding(
         motion.system.contact_rate[held],
         (instant.part("contact_torque") - branches)[held],
-        instant.part("contact_capacity")[held],
-        (motion.follow(motion.local.capacity) @ base)[held],
-        np.array([motion.system.contacts[k].one_way for k in held], dtype=bool),
+        motion.local.bound[held, -1],
+        (motion.follow(motion.local.bound) @ base)[held],
     )
 
 

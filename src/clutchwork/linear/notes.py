@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 # a torque within this part of the capacity is at it
 AT_CAPACITY = 1e-9
+# N m
+IDLE = 1e-9
 
 
 def notes(motion: Motion) -> Iterator[str]:
@@ -29,6 +31,7 @@ def notes(motion: Motion) -> Iterator[str]:
             yield f"{name} has a knot at this instant: what comes after it is taken"
     yield from _slips_at_rest(motion)
     yield from _at_capacity(motion)
+    yield from _without_load(motion)
 
 
 def _is_knot(signal: object, time: float) -> bool:
@@ -66,7 +69,18 @@ def _at_capacity(motion: Motion) -> Iterator[str]:
     for number, number_shared in zip(motion.held, shared, strict=True):
         contact = motion.system.contacts[number]
         torque, capacity = (float(instant.part(part)[number]) for part in ("contact_torque", "contact_capacity"))
-        if contact.one_way or number_shared or instant.modes[number] != LOCKED:
+        if contact.one_way and abs(torque) <= IDLE:
+            yield f"{contact.name} is locked and holds nothing: it is taken as locked, though it overruns the other way"
+        if contact.one_way or number_shared:
             continue
         if abs(torque) >= (1.0 - AT_CAPACITY) * capacity:
             yield f"{contact.name} holds all that it can, {capacity:g} N m: it is taken as locked"
+
+
+def _without_load(motion: Motion) -> Iterator[str]:
+    instant = motion.instant
+    for number, contact in enumerate(motion.system.contacts):
+        *_, value = (part[number] for part in motion.local.split(motion.local.capacity))
+        pressed = motion.local.capacity[number, :-1].any() and value == 0.0
+        if MODES[int(instant.modes[number])] == "open" and pressed:
+            yield f"{contact.name} is open, its load exactly zero: it is taken as open, though any load would close it"

@@ -18,9 +18,8 @@ class Holding:
 
     B: Array  # their directions over the speeds, one per row
     torque: Array  # N m
-    capacity: Array  # N m
-    capacity_change: Array  # its derivative, one row each
-    one_way: NDArray[np.bool_]
+    bound: Array  # N m, what each holds at most, may be infinite
+    bound_change: Array  # its derivative, one row each
 
 
 def torque_change(held: Holding, load_change: Array) -> Array:
@@ -75,17 +74,15 @@ def _sets(B: Array) -> list[NDArray[np.intp]]:
 
 
 def _shares(held: Holding, members: NDArray[np.intp]) -> tuple[Array, Array]:
-    """Stiffness of each contact of a set in its share of the load, and what its torque gains with its capacity."""
-    capacity, change = held.capacity[members].copy(), held.capacity_change[members].copy()
-    torque, one_way = held.torque[members], held.one_way[members]
-    bounded = ~one_way
-    if bounded.any() and one_way.any():
-        # a freewheel has no bound: it counts with the largest capacity of the set
-        largest = members[bounded][np.argmax(capacity[bounded])]
-        capacity[one_way], change[one_way] = held.capacity[largest], held.capacity_change[largest]
-    capacity[one_way & ~bounded.any()] = 1.0
-    size = np.where(capacity > 0.0, capacity, 1.0)
-    at_bound = ~one_way & (np.abs(torque) >= (1.0 - 1e-12) * capacity)
-    idle = one_way & (torque <= 0.0)
-    weight = np.where(at_bound | idle, 0.0, capacity)
-    return weight, np.where(idle[:, None], 0.0, (torque / size)[:, None] * change)
+    """Stiffness of each contact of a set in its share of the load, and what its torque gains with its bound."""
+    bound, change, torque = held.bound[members].copy(), held.bound_change[members].copy(), held.torque[members]
+    finite = np.isfinite(bound)
+    if not finite.all():
+        # one without a bound counts with the largest of the set
+        largest = int(np.argmax(np.where(finite, bound, -1.0)))
+        known = bool(finite[largest]) and bound[largest] > 0.0
+        change[~finite], bound[~finite] = (change[largest], bound[largest]) if known else (0.0, 1.0)
+    size = np.where(bound > 0.0, bound, 1.0)
+    at_bound = finite & (np.abs(torque) >= (1.0 - 1e-12) * bound)
+    stiffness = np.where(at_bound, 0.0, bound) / (bound.max() or 1.0)
+    return stiffness, (torque / size)[:, None] * change
