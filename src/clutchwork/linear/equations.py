@@ -122,11 +122,12 @@ def _holding(motion: Motion, base: Array) -> Holding:
     """The locked contacts, and how the capacity of each changes."""
     instant, held = motion.instant, motion.held
     branches = motion.local.torque[motion.system.counts["elements"] :, -1]
+    most, least = motion.local.most[held], motion.local.least[held]
     return Holding(
         motion.system.contact_rate[held],
         (instant.part("contact_torque") - branches)[held],
-        motion.local.bound[held, -1],
-        (motion.follow(motion.local.bound) @ base)[held],
+        np.stack([most[:, -1], -least[:, -1]]),
+        np.stack([motion.follow(most) @ base, -(motion.follow(least) @ base)]),
     )
 
 

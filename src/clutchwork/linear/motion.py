@@ -26,8 +26,8 @@ class Local:
         counts, matrix = instant.system.counts, instant.local
         nd, ns, nc = counts["elements"] + counts["contacts"], counts["states"], counts["contacts"]
         self.directions, self.states = nd, ns
-        ends = np.cumsum([nd, ns, nc, nc])
-        self.torque, self.rate, self.capacity, self.bound, self.flow = np.split(matrix, ends, axis=0)
+        ends = np.cumsum([nd, ns, nc, nc, nc])
+        self.torque, self.rate, self.capacity, self.most, self.least, self.flow = np.split(matrix, ends, axis=0)
 
     def split(self, part: Array) -> tuple[Array, Array, Array, Array]:
         """Derivatives by rates, by states, by signals, and the value."""

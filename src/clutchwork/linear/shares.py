@@ -18,8 +18,8 @@ class Holding:
 
     B: Array  # their directions over the speeds, one per row
     torque: Array  # N m
-    bound: Array  # N m, what each holds at most, may be infinite
-    bound_change: Array  # its derivative, one row each
+    bound: Array  # N m, largest torque of each forward, then backward; may be infinite
+    bound_change: Array  # its derivative
 
 
 def torque_change(held: Holding, load_change: Array) -> Array:
@@ -75,14 +75,18 @@ def _sets(B: Array) -> list[NDArray[np.intp]]:
 
 def _shares(held: Holding, members: NDArray[np.intp]) -> tuple[Array, Array]:
     """Stiffness of each contact of a set in its share of the load, and what its torque gains with its bound."""
-    bound, change, torque = held.bound[members].copy(), held.bound_change[members].copy(), held.torque[members]
+    bounds, changes, torque = held.bound[:, members], held.bound_change[:, members], held.torque[members]
+    way, every = np.where(torque > 0.0, 0, 1), np.arange(len(members))
+    bound, change = bounds[way, every], changes[way, every]
     finite = np.isfinite(bound)
-    if not finite.all():
-        # one without a bound counts with the largest of the set
-        largest = int(np.argmax(np.where(finite, bound, -1.0)))
-        known = bool(finite[largest]) and bound[largest] > 0.0
-        change[~finite], bound[~finite] = (change[largest], bound[largest]) if known else (0.0, 1.0)
+    # one without a bound counts with the largest of the set
+    known = np.where(np.isfinite(bounds), bounds, 0.0)
+    largest = np.unravel_index(int(np.argmax(known)), known.shape)
+    free, free_change = (known[largest], changes[largest]) if known[largest] > 0.0 else (1.0, 0.0)
+    bound, change = np.where(finite, bound, free), np.where(finite[:, None], change, free_change)
     size = np.where(bound > 0.0, bound, 1.0)
     at_bound = finite & (np.abs(torque) >= (1.0 - 1e-12) * bound)
-    stiffness = np.where(at_bound, 0.0, bound) / (bound.max() or 1.0)
+    stiffness = np.where(at_bound, 0.0, bound)
+    # freewheels that hold nothing have no share that could change
+    stiffness = stiffness / stiffness.max() if stiffness.any() else np.ones(len(members))
     return stiffness, (torque / size)[:, None] * change

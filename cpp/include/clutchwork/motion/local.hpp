@@ -10,7 +10,7 @@
 namespace clutchwork {
 
 /// Sizes of the matrix of derivatives. Rows: torque of each direction, rate of each state, static torque of each
-/// contact, what each contact holds at most, value of each flow. Columns: rate of each direction, each state, each signal, then the value itself.
+/// contact, most torque of each contact, then least one, value of each flow. Columns: rate of each direction, each state, each signal, then the value itself.
 struct LocalSizes {
   std::int64_t directions, states, contacts, signals;
   std::int64_t rows, columns;
@@ -20,7 +20,7 @@ struct LocalSizes {
         states(s.states),
         contacts(s.contacts),
         signals(s.inputs),
-        rows(directions + states + 2 * contacts + s.flows),
+        rows(directions + states + 3 * contacts + s.flows),
         columns(directions + states + signals + 1) {}
 };
 
@@ -59,7 +59,7 @@ class LocalDerivatives {
     for (int h = 0; h < sys_.heats; ++h) fill_heat(h);
     for (int f = 0; f < sys_.flows; ++f) fill_flow(f);
     for (int i = 0; i < sys_.processes; ++i) fill_process(i);
-    for (int c = 0; c < sys_.contacts; ++c) fill_capacity(c), fill_bound(c);
+    for (int c = 0; c < sys_.contacts; ++c) fill_bounds(c);
   }
 
  private:
@@ -76,8 +76,9 @@ class LocalDerivatives {
   double* row_of_state(std::int64_t i) { return out_ + (n_.directions + i) * n_.columns; }
   double* row_of_shared(int j) { return row_of_state(n_.states - sys_.shared + j); }
   double* row_of_capacity(int c) { return out_ + (n_.directions + n_.states + c) * n_.columns; }
-  double* row_of_bound(int c) { return row_of_capacity(int(n_.contacts) + c); }
-  double* row_of_flow(int f) { return row_of_capacity(int(2 * n_.contacts) + f); }
+  double* row_of_most(int c) { return row_of_capacity(int(n_.contacts) + c); }
+  double* row_of_least(int c) { return row_of_capacity(int(2 * n_.contacts) + c); }
+  double* row_of_flow(int f) { return row_of_capacity(int(3 * n_.contacts) + f); }
   double& value_in(double* row) { return row[n_.columns - 1]; }
 
   /// A branch at the present point, over its rate, its own states and its inputs.
@@ -209,11 +210,28 @@ class LocalDerivatives {
     });
   }
 
-  /// Static torque against the slip that the present torque resists.
-  void fill_capacity(int c) {
+  /// Static torque against the slip that the present torque resists, and what the contact holds either way: a freewheel
+  /// what it was made for, one that cannot let go anything.
+  void fill_bounds(int c) {
     if (ws_.contact.fault[c] == cannot_transmit) return;
+    const bool stuck = ws_.contact.fault[c] == cannot_unlock;
+    const int resisted = value(ws_.out.torque[sys_.elements + c]) > 0 ? backward : forward;
+    add_static(row_of_capacity(c), c, resisted, 1);
+    if (stuck) {
+      value_in(row_of_most(c)) = infinity, value_in(row_of_least(c)) = -infinity;
+      return;
+    }
+    add_static(row_of_least(c), c, forward, -1);
+    if (contact_one_way(ws_, c)) {
+      value_in(row_of_most(c)) = value(freewheel_limit(ws_, c));
+    } else {
+      add_static(row_of_most(c), c, backward, 1);
+    }
+  }
+
+  /// row += sign * static torque against slip in a direction.
+  void add_static(double* row, int c, int resisted, int sign) {
     const Branch<T> b = make_branch(ws_, int(sys_.elements) + c, 0);
-    const int resisted = value(ws_.out.torque[b.direction]) > 0 ? backward : forward;
     Point at;
     place(at, b, T(0));
     const S hold = visit_law(b.law, [&](auto tag) {
@@ -235,19 +253,7 @@ class LocalDerivatives {
     // own states have no part in it
     Branch<T> stateless = b;
     stateless.states = 0;
-    add(row_of_capacity(c), T(1), limit, stateless);
-  }
-
-  /// What it holds at most with its present torque: a freewheel what it was made for, one that cannot let go anything.
-  void fill_bound(int c) {
-    double *row = row_of_bound(c), *capacity = row_of_capacity(c);
-    if (ws_.contact.fault[c] == cannot_unlock) {
-      value_in(row) = infinity;
-    } else if (contact_one_way(ws_, c) && value(ws_.out.torque[sys_.elements + c]) > 0) {
-      value_in(row) = value(freewheel_limit(ws_, c));
-    } else {
-      for (std::int64_t i = 0; i < n_.columns; ++i) row[i] = capacity[i];
-    }
+    add(row, T(sign), limit, stateless);
   }
 };
 
