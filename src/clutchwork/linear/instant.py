@@ -15,6 +15,7 @@ from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
+from clutchwork.declare.layout import MODES
 from clutchwork.declare.options import DEFAULTS, Options
 from clutchwork.declare.status import DONE
 from clutchwork.results.channels import channels
@@ -25,11 +26,18 @@ from clutchwork.run.record import Recording, record
 from clutchwork.run.simulation import Job, new_run, simulate, told
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from clutchwork.results.events import Event
 
 Array = NDArray[np.float64]
 
 CALL = "linearise"
+
+# an event within this part of the time, or of a second, is at the instant
+BESIDE = 1e-12
+# how far past such an event a run may have to go
+PAST_EVENT = (1e-15, 1e-13, 1e-11, 1e-9)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +77,8 @@ def instant_of(model: Any, at: Any) -> Instant:
         return _start(system)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StoppedEarly)
-        return _of_run(simulate(system, float(at)), float(at))
+        run = simulate(system, float(at))
+    return _of_run(run.raise_for_status(), float(at))
 
 
 def _problems(model: Any, at: Any) -> Any:
@@ -93,27 +102,47 @@ def _reached(run: Trajectory) -> float:
 
 
 def _start(system: System) -> Instant:
-    run = new_run(system.to_bytes())
-    for name, value in DEFAULTS.core_options().items():
-        run.set_option(name, value)
-    return _read(system, run, ())
+    run = _brought(system, DEFAULTS, Control(controllers(system.inputs), lambda: channels(system)), 0.0)
+    return _read(system, run.run, ())
 
 
 def _of_run(trajectory: Trajectory, at: float) -> Instant:
     """A run at an instant: it is repeated up to there, bit for bit, and what controllers decided is replayed."""
-    trajectory.raise_for_status() if at > _reached(trajectory) else None
     system, made = trajectory.system, getattr(trajectory.repeat, "__self__", None)
     control = made.control if isinstance(made, Job) else Control(controllers(system.inputs), lambda: channels(system))
-    run = new_run(system.to_bytes())
-    options: Options = trajectory.options
+    recording = _brought(system, trajectory.options, control, at)
+    run = recording.run
+    near = BESIDE * max(1.0, at)
+    # those of the start are how the contacts were told apart
+    events = [event for event in trajectory.events.changes() if 0.0 < event.time and abs(event.time - at) <= near]
+    instant = _read(system, run, tuple(events))
+    # a run that ends at an event may stop right before it
+    for step in PAST_EVENT:
+        if all(MODES[int(instant.modes[n])] == mode for n, mode in _after(system, events).items()):
+            break
+        record(recording, at + step * max(1.0, at), np.array([]), control, None)
+        instant = _read(system, run, tuple(events))
+    return instant
+
+
+def _brought(system: System, options: Options, control: Control, at: float) -> Recording:
+    """A run of the core that has reached a time [s]."""
+    recording = Recording(new_run(system.to_bytes()), 0)
+    recording.row_size = recording.run.row_size
     for name, value in options.core_options().items():
-        run.set_option(name, value)
-    recording = Recording(run, run.row_size)
+        recording.run.set_option(name, value)
     record(recording, at, np.array([at]), control, None)
+    if recording.raised is not None:
+        raise recording.raised
     if recording.status != DONE:
-        raise SimulationError(_why(system, recording.status, run), trajectory)
-    here = tuple(event for event in trajectory.events if abs(event.time - at) <= 1e-12 * max(1.0, at))
-    return _read(system, run, here)
+        raise SimulationError(_why(system, recording.status, recording.run))
+    return recording
+
+
+def _after(system: System, events: Sequence[Event]) -> dict[int, str]:
+    """How contacts are after events, by their numbers."""
+    names = [contact.name for contact in system.contacts]
+    return {names.index(event.element): event.after for event in events}
 
 
 def _read(system: System, run: Any, events: tuple[Event, ...]) -> Instant:
