@@ -20,8 +20,8 @@ def along(run: Any, at: float) -> float | None:
     """The largest part of a rate or slope that a linear system misses; None where a mode or a piece changes nearby."""
     outputs = [name for name in run.names if name.endswith((".speed", ".torque", ".slip", ".twist", ".capacity"))]
     outputs += [name for name in run.names if name.endswith((".power", ".temperature"))]
-    lins = [cw.linearise(run, at=t, outputs=outputs) for t in (at - H, at, at + H)]
-    before, here, after = lins
+    systems = [cw.linearise(run, at=t, outputs=outputs) for t in (at - H, at, at + H)]
+    before, here, after = systems
     if before.contacts != after.contacts or before.states != after.states or here.states != after.states:
         return None
     if np.abs(before.A - after.A).max(initial=0.0) > 1e-2 * np.abs(here.A).max(initial=1.0):
@@ -50,7 +50,7 @@ CLOSE = 2e-3
 
 
 def rubbing(law: cw.Law) -> cw.Driveline:
-    """A disc on a spring that is driven to and fro against a brake with a law."""
+    """A disc on a spring that is driven in both directions against a brake with a law."""
     d = cw.Driveline(type(law).__name__)
     a, b = d.shaft("a", inertia=0.05), d.shaft("b", inertia=0.4)
     d.add(cw.Torque("drive", shaft=a, torque=cw.Sine(amplitude=6.0, frequency=2.0)))
@@ -69,7 +69,7 @@ CLIMBING = [cls for cls in samples.declared(Role.LAW) if cls is not cw.NaiveSign
 
 
 @pytest.mark.parametrize("cls", CLIMBING, ids=lambda cls: cls.__name__)
-def test_every_law_to_and_fro(cls):
+def test_every_law_in_both_directions(cls):
     missed = [along(run_of(cls), at) for at in np.linspace(0.031, 0.577, 9)]
     told = [part for part in missed if part is not None]
     assert len(told) >= 6

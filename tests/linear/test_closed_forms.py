@@ -183,7 +183,7 @@ def test_shaft_without_inertia_between_spring_and_damper():
     lin = cw.linearise(d)
     assert lin.states == ("a.speed", "b.speed", "k.twist")
     # the shaft m turns with b, plus what the spring torque moves the damper
-    assert lin.A == pytest.approx(np.array([[0, 0, 400.0], [0, 0, -200.0], [-1.0, 1.0, -400.0 / 5.0]]), rel=EXACT)
+    assert pytest.approx(np.array([[0, 0, 400.0], [0, 0, -200.0], [-1.0, 1.0, -400.0 / 5.0]]), rel=EXACT) == lin.A
     assert lin.C[lin.outputs.index("m.speed")] == pytest.approx([0.0, 1.0, -80.0], rel=EXACT)
 
 
@@ -223,10 +223,10 @@ def test_prescribed_speed_by_value_and_by_acceleration_give_one_response():
 
 
 def test_torque_that_needs_the_slope_of_a_prescribed_speed_says_so():
-    with pytest.raises(cw.UseError, match="give the input 'motor.acceleration' in place of 'motor.speed'"):
+    with pytest.raises(cw.UseError, match=r"give the input 'motor.acceleration' in place of 'motor.speed'"):
         cw.linearise(driven(), inputs="motor.speed", outputs="motor.torque")
     lin = cw.linearise(driven(), inputs="motor.acceleration", outputs="motor.torque")
-    # w_ring = (3 w_carrier - w_sun) / 2: with twist and speeds held the motor moves its ring, and carrier and sun with it
+    # w_ring = (3 w_carrier - w_sun) / 2: the motor moves its ring, and carrier and sun with it
     M = np.array([[0.02 + 0.1 / 4.0, -0.1 * 3.0 / 4.0], [-0.1 * 3.0 / 4.0, 0.3 + 0.1 * 9.0 / 4.0]])
     toward_ring = np.array([-0.5, 1.5])
     felt = 1.0 / (toward_ring @ np.linalg.solve(M, toward_ring))
@@ -245,7 +245,7 @@ def test_contact_locked_to_a_prescribed_shaft_follows_it():
     assert frequencies(lin) == pytest.approx([math.sqrt(200.0)], rel=EXACT)
     assert lin.D[lin.outputs.index("load.speed"), lin.inputs.index("source.speed")] == 1.0
     lin = cw.linearise(d, inputs=["source.acceleration"], outputs=["c1.torque"])
-    assert lin.D == pytest.approx(np.array([[2.0]]), rel=EXACT)
+    assert pytest.approx(np.array([[2.0]]), rel=EXACT) == lin.D
 
 
 def test_brake_on_a_prescribed_shaft_holds_the_input():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -42,7 +44,10 @@ def after(standing: Standing, change: np.ndarray) -> np.ndarray:
     row = standing.instant.row + change
     columns = standing.instant.wiring.columns
     system = started(
-        standing.instant.system, row[columns["speed"]][standing.independent], row[columns["state"]], row[columns["input"]]
+        standing.instant.system,
+        row[columns["speed"]][standing.independent],
+        row[columns["state"]],
+        row[columns["input"]],
     )
     run = system_run(system)
     states = [run[state.name][-1] for state in standing.linear.states]
@@ -67,7 +72,7 @@ def test_what_a_push_leaves_is_that_of_the_linear_system_to_second_order(steady)
             missed.append(np.linalg.norm((found - carried[:, column] * push) / sizes))
         # half of the push leaves a quarter of the error, up to third order and the tolerance of the solver
         assert missed[2] < 0.05 * 0.25
-        for large, small in zip(missed, missed[1:], strict=False):
+        for large, small in pairwise(missed):
             assert large / small == pytest.approx(4.0, rel=0.25) or small < 1e-8
 
 

@@ -28,6 +28,7 @@ PUBLIC = [
     *("export_c", "fit", "rig", "simulate"),
     *("Sweep", "SweepInterrupted", "at", "break_away", "integral", "lock", "maximum", "minimum", "peak"),
     *("sweep", "variants"),
+    *("Linear", "linearise", "linearize"),
 ]
 
 

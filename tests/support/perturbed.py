@@ -59,7 +59,17 @@ class Standing:
 
 def push_sizes(standing: Standing, step: float) -> np.ndarray:
     """A push for each state and input: a small part of its size, or of what is usual for its unit."""
-    usual = {"rad/s": 10.0, "m/s": 10.0, "Pa": 1e5, "K": 30.0, "N m": 10.0, "N": 10.0, "rad": 0.01, "m": 1e-3, "J": 100.0}
+    usual = {
+        "rad/s": 10.0,
+        "m/s": 10.0,
+        "Pa": 1e5,
+        "K": 30.0,
+        "N m": 10.0,
+        "N": 10.0,
+        "rad": 0.01,
+        "m": 1e-3,
+        "J": 100.0,
+    }
     names = [*((s.unit, s.value) for s in standing.linear.states)]
     columns = standing.instant.wiring.columns
     values = standing.instant.row[columns["input"]]
@@ -85,7 +95,11 @@ def differences(standing: Standing, step: float = 1e-5) -> tuple[np.ndarray, np.
             continue
         rates.append((standing.rates(up) - standing.rates(down)) / (2 * size))
         rows.append((up.row - down.row) / (2 * size))
-    return np.array(rates).T.reshape(n, len(sizes)), np.array(rows).T.reshape(len(base.row), len(sizes)), np.array(valid)
+    return (
+        np.array(rates).T.reshape(n, len(sizes)),
+        np.array(rows).T.reshape(len(base.row), len(sizes)),
+        np.array(valid),
+    )
 
 
 def _sizes_of_parts(standing: Standing) -> np.ndarray:

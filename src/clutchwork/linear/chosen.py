@@ -10,8 +10,8 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.shown import shown
-from clutchwork.results.channels import ACCELERATION, channels
 from clutchwork.linear.forms import columns_of
+from clutchwork.results.channels import ACCELERATION, channels
 from clutchwork.results.forms import Mode
 
 if TYPE_CHECKING:
@@ -58,13 +58,15 @@ def chosen_inputs(system: System, wanted: Any, problems: list[str]) -> list[Give
     if wanted is None:
         return [given for given in known.values() if not given.accelerates]
     # a signal is also known by the name that it has in a result
-    aliases = {f"{name}_signal": name for name in known if f"{name}_signal" in channels(system)}
+    aliases = {f"{name}_signal": name for name in known if f"{name}_signal" in channels(system, True, True)}
     names = _matching("inputs", wanted, [*known, *aliases], problems)
     found = {aliases.get(name, name): known[aliases.get(name, name)] for name in names}
     twice = {given.signal: given.name for given in found.values()}
-    for given in found.values():
-        if twice[given.signal] != given.name:
-            problems.append(f"inputs {given.name!r} and {twice[given.signal]!r} are one motion; give one of them")
+    problems.extend(
+        f"inputs {given.name!r} and {twice[given.signal]!r} are one motion; give one of them"
+        for given in found.values()
+        if twice[given.signal] != given.name
+    )
     return list(found.values())
 
 
@@ -72,7 +74,7 @@ def chosen_outputs(system: System, wanted: Any, default: Iterable[str], problems
     """The outputs that were asked for; by default those given."""
     if wanted is None:
         return list(dict.fromkeys(default))
-    known = channels(system)
+    known = channels(system, True, True)
     names = _matching("outputs", wanted, list(known), problems)
     usable, integrals = [], _integrals(system)
     for name in names:
@@ -110,7 +112,7 @@ def _matching(what: str, wanted: Any, known: Sequence[str], problems: list[str])
     names: dict[str, None] = {}
     for name in asked:
         if not isinstance(name, str):
-            problems.append(f"{what}: {shown(name)} is not a name; write it as text, such as '*.speed'")
+            problems.append(f"{what}: {shown(name)} is not a name; give names as strings, such as '*.speed'")
         elif name in known:
             names[name] = None
         elif WILD & set(name):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.linear.own_states import OwnState, followers, own_states, wound_up
+from clutchwork.linear.own_states import followers, own_states, wound_up
 from clutchwork.results.channels import ANGLE, PLACE, SPEED
 
 if TYPE_CHECKING:
@@ -66,9 +66,9 @@ def columns(motion: Motion, given: Sequence[Given], angles: Sequence[int], heats
     s[own, [place_of[int(k)] for k in own]] = 1.0
     angle_of = {int(k): len(speeds) + len(own) + place for place, k in enumerate(nodes)}
     turned = [place_of[int(wound[k])] if k < len(wound) else angle_of[angles[k - len(wound)]] for k in kept]
-    s[np.ix_(wound, turned)] = over[: len(wound)]
+    s[np.ix_(wound, np.array(turned, dtype=int))] = over[: len(wound)]
     turning = np.zeros((len(wiring.nodes), n + len(given)))
-    turning[np.ix_(np.asarray(angles, dtype=int), turned)] = over[len(wound) :]
+    turning[np.ix_(np.asarray(angles, dtype=int), np.array(turned, dtype=int))] = over[len(wound) :]
     for place, one in enumerate(given):
         column = n - len(driven) + driven.index(place) if one.accelerates else n + place
         i[one.signal, column] = 1.0

@@ -30,7 +30,9 @@ def add_command(subparsers: Any) -> None:
     )
     parser.set_defaults(command=linearise_command)
     parser.add_argument("model", type=Path, help="model file, TOML or JSON")
-    parser.add_argument("--at", type=float, metavar="T", default=0.0, help="instant [s] up to which it runs; default: 0")
+    parser.add_argument(
+        "--at", type=float, metavar="T", default=0.0, help="instant [s] up to which it runs; default: 0"
+    )
     parser.add_argument("--inputs", metavar="A,B", help="signals or wildcards; default: all signals of the model")
     parser.add_argument("--outputs", metavar="A,B", help="signals or wildcards; default: speeds and other states")
     parser.add_argument("--plot", type=Path, metavar="FILE", help="write a picture of the modes (png, svg or pdf)")

@@ -16,7 +16,6 @@ from clutchwork.linear.shares import Holding, torque_change
 
 if TYPE_CHECKING:
     from clutchwork.linear.chosen import Given
-    from clutchwork.linear.instant import Instant
 
 Array = NDArray[np.float64]
 
@@ -60,7 +59,7 @@ def equations(motion: Motion, given: Sequence[Given], angles: Sequence[int], hea
 
 
 def _rates(motion: Motion, made: Columns, over: Array) -> tuple[Array, Array]:
-    """Rates of the states over states and inputs, linearisation (7), and their values at the instant."""
+    """Rates of the states over states and inputs, docs/theory/linearisation.md (7), and their values at the instant."""
     instant, local = motion.instant, motion.local
     kept, accelerations = made.speeds, motion.prescribed_accelerations
     directions = (motion.D @ motion.free.Z)[:, kept]
@@ -89,7 +88,7 @@ def _rates(motion: Motion, made: Columns, over: Array) -> tuple[Array, Array]:
 
 
 def _row(motion: Motion, made: Columns, over: Array, rates: Array) -> Array:
-    """Derivatives of the output row over states, inputs and slopes of inputs: linearisation (8) to (10)."""
+    """Derivatives of the output row over states, inputs and slopes of inputs: docs/theory/linearisation.md (9)."""
     system, local, n = motion.system, motion.local, made.n
     count = len(made.given)
     base = np.hstack([over, np.zeros((len(over), count))])

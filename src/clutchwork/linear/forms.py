@@ -30,9 +30,11 @@ def columns_of(form: Any) -> tuple[int, ...]:
 def derivative(form: Form, row: Array, change: Array) -> Array:
     """Derivative of a signal at a row, from those of the numbers of the row, one line each."""
     if isinstance(form, Column):
-        return change[form.index]
+        line: Array = change[form.index]
+        return line
     if isinstance(form, Affine):
-        return form.scale * change[form.index]
+        scaled: Array = form.scale * change[form.index]
+        return scaled
     if isinstance(form, Total):
         total: Array = change[list(form.indices)].sum(axis=0)
         return -total if form.negative else total

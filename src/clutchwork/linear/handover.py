@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.extras import need
 
 if TYPE_CHECKING:
+    from clutchwork.linear.described import Described
     from clutchwork.linear.modes import NaturalMode
-    from clutchwork.linear.result import Linear
+    from clutchwork.linear.quantity import Quantity
 
 
-def to_control(lin: Linear) -> Any:
+def to_control(lin: Described) -> Any:
     """As a `control.StateSpace` with names of states, inputs and outputs."""
     control = need("control", "control", "to_control()")
-    named = {what: list(map(plain, getattr(lin, what))) for what in ("states", "inputs", "outputs")}
-    return control.ss(lin.A, lin.B, lin.C, lin.D, name=plain(lin.model) or "driveline", **named)
+    parts = {"states": lin.state_quantities, "inputs": lin.input_quantities, "outputs": lin.output_quantities}
+    named = {what: [plain(quantity.name) for quantity in part] for what, part in parts.items()}
+    return control.ss(*lin.matrices, name=plain(lin.model) or "driveline", **named)
 
 
 def plain(name: str) -> str:
@@ -25,13 +27,13 @@ def plain(name: str) -> str:
     return re.sub(r"\W", "_", name)
 
 
-def to_scipy(lin: Linear) -> Any:
+def to_scipy(lin: Described) -> Any:
     """As a `scipy.signal.StateSpace`."""
     signal = need("scipy.signal", "fit", "to_scipy()")
-    return signal.StateSpace(lin.A, lin.B, lin.C, lin.D)
+    return signal.StateSpace(*lin.matrices)
 
 
-def to_dict(lin: Linear) -> dict[str, Any]:
+def to_dict(lin: Described) -> dict[str, Any]:
     """As numbers, texts and lists."""
     return {
         "model": lin.model,
@@ -40,14 +42,14 @@ def to_dict(lin: Linear) -> dict[str, Any]:
         "states": [_of(q) | {"rate": q.rate} for q in lin.state_quantities],
         "inputs": [_of(q) for q in lin.input_quantities],
         "outputs": [_of(q) for q in lin.output_quantities],
-        **{name: getattr(lin, name).tolist() for name in "ABCD"},
+        **{name: matrix.tolist() for name, matrix in zip("ABCD", lin.matrices, strict=True)},
         "eigenvalues": [[value.real, value.imag] for value in lin.eigenvalues.tolist()],
         "modes": [_mode(mode) for mode in lin.modes],
         "notes": list(lin.notes),
     }
 
 
-def _of(quantity: Any) -> dict[str, Any]:
+def _of(quantity: Quantity) -> dict[str, Any]:
     return {"name": quantity.name, "unit": quantity.unit, "value": quantity.value}
 
 

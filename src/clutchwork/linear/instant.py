@@ -102,19 +102,27 @@ def _reached(run: Trajectory) -> float:
 
 
 def _start(system: System) -> Instant:
-    run = _brought(system, DEFAULTS, Control(controllers(system.inputs), lambda: channels(system)), 0.0)
+    run = _brought(system, DEFAULTS, _control(system), 0.0)
     return _read(system, run.run, ())
+
+
+def _control(system: System) -> Control:
+    return Control(controllers(system.inputs), lambda: channels(system, True, True))
 
 
 def _of_run(trajectory: Trajectory, at: float) -> Instant:
     """A run at an instant: it is repeated up to there, bit for bit, and what controllers decided is replayed."""
     system, made = trajectory.system, getattr(trajectory.repeat, "__self__", None)
-    control = made.control if isinstance(made, Job) else Control(controllers(system.inputs), lambda: channels(system))
+    control = (
+        made.control
+        if isinstance(made, Job)
+        else Control(controllers(system.inputs), lambda: channels(system, True, True))
+    )
     recording = _brought(system, trajectory.options, control, at)
     run = recording.run
     near = BESIDE * max(1.0, at)
     # those of the start are how the contacts were told apart
-    events = [event for event in trajectory.events.changes() if 0.0 < event.time and abs(event.time - at) <= near]
+    events = [event for event in trajectory.events.changes() if event.time > 0.0 and abs(event.time - at) <= near]
     instant = _read(system, run, tuple(events))
     # a run that ends at an event may stop right before it
     for step in PAST_EVENT:

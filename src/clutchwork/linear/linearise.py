@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,8 @@ from clutchwork.linear.instant import CALL, Instant, instant_of
 from clutchwork.linear.motion import Motion
 from clutchwork.linear.notes import notes
 from clutchwork.linear.own_states import own_states
-from clutchwork.linear.result import Linear, Quantity
+from clutchwork.linear.quantity import Quantity
+from clutchwork.linear.result import Linear
 from clutchwork.results.channels import channels
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def linearise(
 
 def _made(motion: Motion, given: list[Given], names: list[str], left_out: list[str]) -> Linear:
     """The result, unless an output needs the slope of an input."""
-    instant, known = motion.instant, channels(motion.system)
+    instant, known = motion.instant, channels(motion.system, True, True)
     found = equations(motion, given, *_wanted(instant, names))
     n, m = len(found.states), len(given)
     lines = np.array([derivative(known[name].evaluate, instant.row, found.row) for name in names])
@@ -74,9 +75,7 @@ def _made(motion: Motion, given: list[Given], names: list[str], left_out: list[s
     problems = list(_improper(names, given, lines, n))
     if problems:
         raise UseError(CALL, problems)
-    outputs = [
-        Quantity(name, known[name].unit, float(known[name].evaluate(instant.row[None, :])[0])) for name in names
-    ]
+    outputs = [Quantity(name, known[name].unit, float(known[name].evaluate(instant.row[None, :])[0])) for name in names]
     values = [float(instant.part("input")[one.signal]) for one in given]
     for place, one in enumerate(given):
         if one.accelerates:
@@ -109,7 +108,7 @@ def _free_inputs(
     for one in given:
         if one.motion in tied:
             reason = f"{one.name} cannot change by itself: locked contacts hold that motion"
-            left_out.append(f"{reason}; it is no input") if default else problems.append(f"inputs: {reason}")
+            left_out.append(f"{reason}; it is left out") if default else problems.append(f"inputs: {reason}")
     return kept
 
 
@@ -120,7 +119,7 @@ def _default_outputs(instant: Instant) -> list[str]:
 
 def _wanted(instant: Instant, names: Sequence[str]) -> tuple[list[int], list[int]]:
     """Nodes whose angles, and states of ambients, that the outputs follow from."""
-    known, columns = channels(instant.system), instant.wiring.columns
+    known, columns = channels(instant.system, True, True), instant.wiring.columns
     used = {column for name in names for column in columns_of(known[name].evaluate)}
     angles = [k for k, column in enumerate(range(columns["angle"].start, columns["angle"].stop)) if column in used]
     states = own_states(instant.wiring)

@@ -13,7 +13,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.text import columns
 
 if TYPE_CHECKING:
-    from clutchwork.linear.result import Linear
+    from clutchwork.linear.quantity import Quantity
 
 Array = NDArray[Any]
 
@@ -102,9 +102,12 @@ def eigenvalues(A: Array) -> Array:
     return np.array(sorted(values, key=lambda value: (round(abs(value), 12), value.real, value.imag)), dtype=complex)
 
 
-def natural_modes(lin: Linear) -> NaturalModes:
-    """The modes of a linear system."""
-    values, vectors = _eigen(lin.A)
+def natural_modes(A: Array, shafts: Sequence[str], shaft_speeds: Array, states: Sequence[Quantity]) -> NaturalModes:
+    """The modes of a matrix.
+
+    Parameters: shafts, and their speeds over the states, of which shapes are made.
+    """
+    values, vectors = _eigen(A)
     scale = np.abs(values).max(initial=0.0)
     made = []
     for value, vector in zip(values, vectors.T, strict=True):
@@ -112,7 +115,7 @@ def natural_modes(lin: Linear) -> NaturalModes:
         if abs(found.imag) <= ROUND_OFF * abs(found):
             found = complex(found.real)
         if found.imag >= 0.0:
-            made.append(NaturalMode(found, _shape(lin, vector), _states(lin, vector)))
+            made.append(NaturalMode(found, _shape(shafts, shaft_speeds, vector), _states(states, vector)))
     return NaturalModes(sorted(made, key=lambda mode: (abs(mode.eigenvalue), mode.eigenvalue.real)))
 
 
@@ -140,26 +143,26 @@ def _balance(A: Array) -> Array:
     return scale
 
 
-def _shape(lin: Linear, vector: Array) -> dict[str, complex]:
+def _shape(shafts: Sequence[str], shaft_speeds: Array, vector: Array) -> dict[str, complex]:
     """Speeds of the shafts, the largest as 1."""
-    speeds = lin.shaft_speeds @ vector
+    speeds = shaft_speeds @ vector
     size = np.abs(speeds).max(initial=0.0)
     # a mode of temperatures leaves the shafts alone
-    if size <= LEAST_PART * np.abs(vector).max(initial=0.0) * max(1.0, np.abs(lin.shaft_speeds).max(initial=0.0)):
+    if size <= LEAST_PART * np.abs(vector).max(initial=0.0) * max(1.0, np.abs(shaft_speeds).max(initial=0.0)):
         return {}
     speeds = speeds / speeds[int(np.argmax(np.abs(speeds) > (1.0 - 1e-9) * size))]
-    return dict(zip(lin.shafts, map(_clean, speeds), strict=True))
+    return dict(zip(shafts, map(_clean, speeds), strict=True))
 
 
-def _states(lin: Linear, vector: Array) -> dict[str, complex]:
+def _states(states: Sequence[Quantity], vector: Array) -> dict[str, complex]:
     """Parts of the states, each beside the largest one of its unit."""
-    units = np.array([quantity.unit for quantity in lin.state_quantities])
+    units = np.array([quantity.unit for quantity in states])
     made = np.zeros(len(vector), dtype=complex)
     for unit in set(units):
         own = units == unit
         size = np.abs(vector[own]).max()
         made[own] = vector[own] / size if size > 0.0 else 0.0
-    return dict(zip(lin.states, map(_clean, made), strict=True))
+    return dict(zip((quantity.name for quantity in states), map(_clean, made), strict=True))
 
 
 def _clean(value: complex) -> complex:

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 
 class Local:
-    """The matrix of local derivatives in its parts: linearisation (2)."""
+    """The matrix of local derivatives in its parts: docs/theory/linearisation.md (2)."""
 
     def __init__(self, instant: Instant) -> None:
         counts, matrix = instant.system.counts, instant.local
@@ -81,7 +81,7 @@ class Motion:
         return by_rate @ self.rates + by_state @ self.s + by_signal @ self.i
 
     def solved(self) -> Array:
-        """Base columns with the algebraic speeds over the others: linearisation (6)."""
+        """Base columns with the algebraic speeds over the others: docs/theory/linearisation.md (6)."""
         push = (self.D @ self.free.Z).T @ self.follow(self.local.torque)
         columns = np.flatnonzero(self.algebraic)
         made = np.eye(push.shape[1])
@@ -91,7 +91,10 @@ class Motion:
         return made
 
     def momentum_shift(self) -> Array:
-        """What a prescribed speed takes off the speeds that stay, so that no slope of it is left: (5)."""
+        """What a prescribed speed takes off the speeds that stay, so that no slope of it is left.
+
+        docs/theory/linearisation.md (5)
+        """
         shift = np.zeros((self.nx, self.np))
         kept = np.flatnonzero(self.inertial)
         if kept.size and self.np:

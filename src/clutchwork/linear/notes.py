@@ -9,7 +9,6 @@ import numpy as np
 
 from clutchwork.declare.layout import MODES
 from clutchwork.linear.shares import dependent
-from clutchwork.results.forms import LOCKED
 
 if TYPE_CHECKING:
     from clutchwork.linear.motion import Motion
@@ -53,7 +52,12 @@ def _slips_at_rest(motion: Motion) -> Iterator[str]:
         mode = MODES[int(instant.modes[number])]
         slip = sum(factor * speed[node] for node, factor in branch.direction.items() if node >= 0)
         acts = motion.local.torque[first + number].any()
-        if mode in ("forward", "backward") and acts and abs(slip) <= tolerance and branch.component.friction is not None:
+        if (
+            mode in ("forward", "backward")
+            and acts
+            and abs(slip) <= tolerance
+            and branch.component.friction is not None
+        ):
             law = branch.component.friction
             if law.sticks:
                 yield f"{branch.name} has no slip but is not locked: it is taken as slipping {mode}"

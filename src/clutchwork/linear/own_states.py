@@ -76,7 +76,10 @@ class Followers:
 
 
 def followers(rates: Array) -> Followers:
-    """Keep the first independent ones of rows; a row that is a combination of those before follows them for ever."""
+    """Keep the first independent ones of rows; a row that is a combination of those before follows them from then on.
+
+    docs/theory/linearisation.md (8)
+    """
     kept, basis = list[int](), np.zeros((0, rates.shape[1]))
     for number, row in enumerate(rates):
         size = float(np.linalg.norm(row))
@@ -89,9 +92,9 @@ def followers(rates: Array) -> Followers:
     if not kept:
         return Followers(np.zeros(0, dtype=int), np.zeros((len(rates), 0)))
     over, *_ = np.linalg.lstsq(rates[kept].T, rates.T, rcond=None)
-    over = np.where(np.abs(over.T) > ROUND_OFF, over.T, 0.0)
-    over[kept] = np.eye(len(kept))
-    return Followers(np.array(kept), over)
+    cleaned: Array = np.where(np.abs(over.T) > ROUND_OFF, over.T, 0.0).astype(np.float64)
+    cleaned[kept] = np.eye(len(kept))
+    return Followers(np.array(kept), cleaned)
 
 
 def preference(instant: Instant) -> Sequence[int]:

@@ -15,6 +15,7 @@ from clutchwork.base.shown import shown
 from clutchwork.base.text import columns, counted
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES
+from clutchwork.linear.quantity import Quantity, per_second
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -26,21 +27,6 @@ if TYPE_CHECKING:
 Array = NDArray[Any]
 
 MOST_SHOWN = 20
-
-
-def per_second(unit: str) -> str:
-    """Unit of the rate of a quantity."""
-    return {"rad/s": "rad/s2", "m/s": "m/s2", "1": "1/s"}.get(unit, f"{unit}/s")
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A state, an input or an output: name, unit, value at the instant, and for a state its rate per second."""
-
-    name: str
-    unit: str
-    value: float
-    rate: float = 0.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -64,6 +50,11 @@ class Linear:
     notes: tuple[str, ...]  # what was undecided, and which side was taken
     shafts: tuple[str, ...]
     shaft_speeds: Array  # speeds of all shafts over the states
+
+    @property
+    def matrices(self) -> tuple[Array, Array, Array, Array]:
+        """A, B, C and D."""
+        return self.A, self.B, self.C, self.D
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -123,7 +114,7 @@ class Linear:
         """Natural modes: frequency, damping, time constant and shape of each; `print` shows a table."""
         from clutchwork.linear.modes import natural_modes
 
-        return natural_modes(self)
+        return natural_modes(self.A, self.shafts, self.shaft_speeds, self.state_quantities)
 
     @explained("frequency_response")
     def frequency_response(self, frequencies: Any) -> Array:
@@ -175,7 +166,9 @@ class Linear:
         return to_dict(self)
 
     def __str__(self) -> str:
-        sizes = (counted(len(part), name) for part, name in zip(self._parts, ("states", "inputs", "outputs"), strict=True))
+        sizes = (
+            counted(len(part), name) for part, name in zip(self._parts, ("states", "inputs", "outputs"), strict=True)
+        )
         head = f"{self.model} at {self.time:g} s: {', '.join(sizes)}"
         words = {"locked": [], "slipping forward": [], "slipping backward": [], "open": []}  # type: dict[str, list[str]]
         for name, how in self.contacts.items():
@@ -185,7 +178,9 @@ class Linear:
         return "\n".join([*lines, *(["", *self.notes] if self.notes else [])])
 
     def __repr__(self) -> str:
-        sizes = (counted(len(part), name) for part, name in zip(self._parts, ("states", "inputs", "outputs"), strict=True))
+        sizes = (
+            counted(len(part), name) for part, name in zip(self._parts, ("states", "inputs", "outputs"), strict=True)
+        )
         return f"<Linear {shown(self.model)} at {self.time:g} s: {', '.join(sizes)}>"
 
     @property
@@ -196,7 +191,11 @@ class Linear:
         lines = [("", "", "value", "rate of change")]
         for word, part in zip(("state", "input", "output"), self._parts, strict=True):
             for place, quantity in enumerate(part[:MOST_SHOWN]):
-                rate = f"{quantity.rate:.4g} {per_second(quantity.unit)}" if word == "state" and abs(quantity.rate) > 0.0 else ""
+                rate = (
+                    f"{quantity.rate:.4g} {per_second(quantity.unit)}"
+                    if word == "state" and abs(quantity.rate) > 0.0
+                    else ""
+                )
                 lines.append((word if place == 0 else "", quantity.name, f"{quantity.value:.6g} {quantity.unit}", rate))
             if len(part) > MOST_SHOWN:
                 lines.append(("", f"and {len(part) - MOST_SHOWN} more", "", ""))

@@ -10,7 +10,8 @@
 namespace clutchwork {
 
 /// Sizes of the matrix of derivatives. Rows: torque of each direction, rate of each state, static torque of each
-/// contact, most torque of each contact, then least one, value of each flow. Columns: rate of each direction, each state, each signal, then the value itself.
+/// contact, most torque of each contact, then least one, value of each flow. Columns: rate of each direction, each
+/// state, each signal, then the value itself.
 struct LocalSizes {
   std::int64_t directions, states, contacts, signals;
   std::int64_t rows, columns;
@@ -89,8 +90,7 @@ class LocalDerivatives {
     at.rate = S::variable(rate, 0);
     for (int i = 0; i < b.states; ++i) at.own[i] = S::variable(ws_.state[b.state + i], 1 + i);
     for (int i = 0; i < b.inputs; ++i) at.input[i] = S::variable(b.input[i], first_input + i);
-    for (int i = 0; i < b.law_inputs; ++i)
-      at.law_input[i] = S::variable(b.law_input[i], first_input + most_inputs + i);
+    for (int i = 0; i < b.law_inputs; ++i) at.law_input[i] = S::variable(b.law_input[i], first_input + most_inputs + i);
   }
 
   /// row += factor * derivatives of f, and its value.
@@ -126,17 +126,20 @@ class LocalDerivatives {
     const Branch<T>& b = ws_.branch[k];
     const T rate = ws_.seen.rate[k], torque = ws_.seen.torque[k];
     const double before = value_in(row);
-    const bool own = b.law < 0 && visit_torque(b.kind, [&](auto tag) {
-      using E = typename decltype(tag)::type;
-      if constexpr (HeatingElement<E>) {
-        Point at;
-        place(at, b, rate);
-        const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-        add(row, factor, E::heat(p, At<S>{at.rate, at.own, at.input, b.piece, ws_.sys.points}), b);
-        return true;
-      }
-      return false;
-    });
+    const bool own =
+        b.law < 0 && visit_torque(
+                         b.kind,
+                         [&](auto tag) {
+                           using E = typename decltype(tag)::type;
+                           if constexpr (HeatingElement<E>) {
+                             Point at;
+                             place(at, b, rate);
+                             const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+                             add(row, factor, E::heat(p, At<S>{at.rate, at.own, at.input, b.piece, ws_.sys.points}), b);
+                             return true;
+                           }
+                           return false;
+                         });
     if (!own) {
       const double* own_torque = row_of_torque(b.direction);
       for (std::int64_t i = 0; i + 1 < n_.columns; ++i) row[i] -= value(factor * rate) * own_torque[i];
