@@ -29,6 +29,7 @@ PUBLIC = [
     *("Sweep", "SweepInterrupted", "at", "break_away", "integral", "lock", "maximum", "minimum", "peak"),
     *("sweep", "variants"),
     *("Linear", "linearise", "linearize"),
+    *("load_run", "read_columns"),
 ]
 
 
