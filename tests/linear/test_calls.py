@@ -168,3 +168,38 @@ def test_a_run_that_stops_before_the_instant_says_why():
     d.add(cw.Torque("t", shaft=a, torque=50.0))
     with pytest.raises(cw.SimulationError, match="a table is left"):
         cw.linearise(d, at=5.0)
+
+
+class Saved:
+    """What a saved state has: the bytes of the core, and a model that it belongs to."""
+
+    def __init__(self, system: cw.System, core: bytes) -> None:
+        self.system, self.core = system, core
+
+    def fits(self, system: cw.System) -> None:
+        assert system is self.system
+
+
+def test_a_saved_state_is_an_instant(run):
+    from clutchwork.linear.reached import reached
+
+    core = reached(run, 0.6)
+    lin = cw.linearise(run.system, at=Saved(run.system, core.save()))
+    there = cw.linearise(run, at=0.6)
+    assert np.array_equal(lin.A, there.A)
+    assert lin.state == there.state
+    assert lin.time == 0.6
+    with pytest.raises(cw.UseError, match="at is a saved state; give the model"):
+        cw.linearise(run, at=Saved(run.system, core.save()))
+
+
+def test_a_run_from_a_file_is_repeated_and_one_with_controllers_says_that_it_cannot_be(run, tmp_path):
+    run.save(tmp_path / "run.cw")
+    assert np.array_equal(cw.linearise(cw.load_run(tmp_path / "run.cw"), at=0.6).A, cw.linearise(run, at=0.6).A)
+    d = cw.Driveline("controlled")
+    a = d.shaft("a", inertia=1.0)
+    d.add(cw.Torque("t", shaft=a, torque=cw.Sampled(lambda time, readings: 2.0, 0.01)))
+    assert cw.linearise(d).input == {"t.torque": 2.0}
+    d.simulate(0.1).save(tmp_path / "other.cw")
+    with pytest.raises(cw.ClutchworkError, match="cannot be repeated"):
+        cw.linearise(cw.load_run(tmp_path / "other.cw"), at=0.05)

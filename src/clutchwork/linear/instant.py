@@ -16,17 +16,13 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.layout import MODES
-from clutchwork.declare.options import DEFAULTS, Options
-from clutchwork.declare.status import DONE
-from clutchwork.results.channels import channels
-from clutchwork.results.trajectory import SimulationError, Trajectory
-from clutchwork.run.control import Control, controllers
+from clutchwork.linear.reached import reached, refuse_stopped, resumed, started, step_over
+from clutchwork.results.trajectory import Trajectory
 from clutchwork.run.failure import StoppedEarly
-from clutchwork.run.record import Recording, record
-from clutchwork.run.simulation import Job, new_run, simulate, told
+from clutchwork.run.simulation import simulate
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from clutchwork.results.events import Event
 
@@ -66,22 +62,28 @@ class Instant:
 
 
 def instant_of(model: Any, at: Any) -> Instant:
-    """A model at its start or at a time [s], or a run at a time [s]; UseError for anything else."""
+    """A model at its start, at a time [s] or at a saved state, or a run at a time [s]; UseError for anything else."""
     problems = list(_problems(model, at))
     if problems:
         raise UseError(CALL, problems)
     if isinstance(model, Trajectory):
         return _of_run(model, float(at))
     system = model if isinstance(model, System) else model.assemble()
+    if _is_state(at):
+        return _read(system, resumed(system, at), ())
     if at is None or float(at) == 0.0:
-        return _start(system)
+        return _read(system, started(system), ())
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StoppedEarly)
         run = simulate(system, float(at))
     return _of_run(run.raise_for_status(), float(at))
 
 
-def _problems(model: Any, at: Any) -> Any:
+def _is_state(at: Any) -> bool:
+    return hasattr(at, "fits") and hasattr(at, "core")
+
+
+def _problems(model: Any, at: Any) -> Iterator[str]:
     if isinstance(model, str | os.PathLike):
         yield f"{shown(model)} is not a model; load a file with cw.Driveline.load({os.fspath(model)!r})"
     elif not isinstance(model, System | Trajectory) and not hasattr(model, "assemble"):
@@ -89,38 +91,22 @@ def _problems(model: Any, at: Any) -> Any:
     if at is None:
         if isinstance(model, Trajectory):
             yield "at is missing; give the time of the run in s, such as at=1.2"
-        return
-    if isinstance(at, bool) or not isinstance(at, int | float | np.number) or not math.isfinite(at) or at < 0.0:
+    elif _is_state(at):
+        if isinstance(model, Trajectory):
+            yield "at is a saved state; give the model that it is of in place of the run"
+    elif isinstance(at, bool) or not isinstance(at, int | float | np.number) or not math.isfinite(at) or at < 0.0:
         yield f"at = {shown(at)}: must be a time in s, zero or later"
-    elif isinstance(model, Trajectory) and len(model) and at > _reached(model):
-        yield f"at = {at:g} s is after the end of the run at {_reached(model):g} s; give an instant before it"
+    elif isinstance(model, Trajectory) and len(model) and at > _end(model):
+        yield f"at = {at:g} s is after the end of the run at {_end(model):g} s; give an instant before it"
 
 
-def _reached(run: Trajectory) -> float:
+def _end(run: Trajectory) -> float:
     """How far a run came [s]."""
     return run.t_end if run.finished else float(run.time[-1])
 
 
-def _start(system: System) -> Instant:
-    run = _brought(system, DEFAULTS, _control(system), 0.0)
-    return _read(system, run.run, ())
-
-
-def _control(system: System) -> Control:
-    return Control(controllers(system.inputs), lambda: channels(system, True, True))
-
-
 def _of_run(trajectory: Trajectory, at: float) -> Instant:
-    """A run at an instant: it is repeated up to there, bit for bit, and what controllers decided is replayed."""
-    system, made = trajectory.system, getattr(trajectory.repeat, "__self__", None)
-    control = (
-        made.control
-        if isinstance(made, Job)
-        else Control(controllers(system.inputs), lambda: channels(system, True, True))
-    )
-    recording = _brought(system, trajectory.options, control, at)
-    run = recording.run
-    near = BESIDE * max(1.0, at)
+    run, system, near = reached(trajectory, at), trajectory.system, BESIDE * max(1.0, at)
     # those of the start are how the contacts were told apart
     events = [event for event in trajectory.events.changes() if event.time > 0.0 and abs(event.time - at) <= near]
     instant = _read(system, run, tuple(events))
@@ -128,23 +114,9 @@ def _of_run(trajectory: Trajectory, at: float) -> Instant:
     for step in PAST_EVENT:
         if all(MODES[int(instant.modes[n])] == mode for n, mode in _after(system, events).items()):
             break
-        record(recording, at + step * max(1.0, at), np.array([]), control, None)
+        step_over(run, at + step * max(1.0, at))
         instant = _read(system, run, tuple(events))
     return instant
-
-
-def _brought(system: System, options: Options, control: Control, at: float) -> Recording:
-    """A run of the core that has reached a time [s]."""
-    recording = Recording(new_run(system.to_bytes()), 0)
-    recording.row_size = recording.run.row_size
-    for name, value in options.core_options().items():
-        recording.run.set_option(name, value)
-    record(recording, at, np.array([at]), control, None)
-    if recording.raised is not None:
-        raise recording.raised
-    if recording.status != DONE:
-        raise SimulationError(_why(system, recording.status, recording.run))
-    return recording
 
 
 def _after(system: System, events: Sequence[Event]) -> dict[int, str]:
@@ -155,11 +127,5 @@ def _after(system: System, events: Sequence[Event]) -> dict[int, str]:
 
 def _read(system: System, run: Any, events: tuple[Event, ...]) -> Instant:
     status, row, local = run.local()
-    if status != DONE:
-        raise SimulationError(_why(system, status, run))
+    refuse_stopped(system, run, status)
     return Instant(system, float(run.time), np.asarray(row), np.asarray(local), events)
-
-
-def _why(system: System, status: int, run: Any) -> str:
-    index, time, value, column = run.detail()
-    return told(system, status, index, time, value, max(column, 0))

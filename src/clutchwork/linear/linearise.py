@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +36,7 @@ ROUND_OFF = 1e-9
 def linearise(
     model: Assembles | System | Trajectory,
     *,
-    at: float | None = None,
+    at: Any = None,
     inputs: str | Sequence[str] | None = None,
     outputs: str | Sequence[str] | None = None,
 ) -> Linear:
@@ -46,10 +46,10 @@ def linearise(
     constraints: what they hold is gone from the system. Slipping ones contribute the slopes of their friction laws over
     slip, load and temperature.
 
-    Parameters: model, a Driveline, a System, or a run; at [s], the instant, needed with a run, which a model is run up
-    to; inputs and outputs, names of signals or wildcards such as "*.speed". Inputs are all signals of the model by
-    default, outputs all speeds and the other states. A prescribed speed "motor.speed" may also be given by its
-    acceleration, as the input "motor.acceleration".
+    Parameters: model, a Driveline, a System, or a run; at, the instant [s], needed with a run, which a model is run up
+    to, or a saved state of a model; inputs and outputs, names of signals or wildcards such as "*.speed". Inputs are all
+    signals of the model by default, outputs all speeds and the other states. A prescribed speed "motor.speed" may also
+    be given by its acceleration, as the input "motor.acceleration".
 
     UseError names all that is wrong with the call; ModelError all mistakes of the model; SimulationError says why the
     instant was not reached.
