@@ -31,6 +31,7 @@ import json
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -130,6 +131,8 @@ def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines
         problems = reader.problems + findings(model, reader.incomplete).problems
     if problems:
         placed = [lines.placed(problem, data) for problem in problems] if lines else problems
+        # those without a line come last, sorting keeps the order of equals
+        placed.sort(key=lambda problem: problem.line or inf)
         raise ModelError(placed, source or model.name)
     model.from_file = True
     return model

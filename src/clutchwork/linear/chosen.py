@@ -17,7 +17,7 @@ from clutchwork.results.forms import Mode
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
-WILD = frozenset("*?[")
+WILD = frozenset("*?")
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,8 @@ def _matching(what: str, wanted: Any, known: Sequence[str], problems: list[str])
         elif name in known:
             names[name] = None
         elif WILD & set(name):
-            found = [other for other in known if fnmatchcase(other, name)]
+            # brackets stand for themselves: they are part of names
+            found = [other for other in known if fnmatchcase(other, name.replace("[", "[[]"))]
             if not found:
                 problems.append(f"{what}: no signal fits {shown(name)}; `{what}` may be {_some(known)}")
             names.update(dict.fromkeys(found))

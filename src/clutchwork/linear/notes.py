@@ -82,9 +82,13 @@ def _at_capacity(motion: Motion) -> Iterator[str]:
 
 
 def _without_load(motion: Motion) -> Iterator[str]:
-    instant = motion.instant
-    for number, contact in enumerate(motion.system.contacts):
-        *_, value = (part[number] for part in motion.local.split(motion.local.capacity))
-        pressed = motion.local.capacity[number, :-1].any() and value == 0.0
-        if MODES[int(instant.modes[number])] == "open" and pressed:
-            yield f"{contact.name} is open, its load exactly zero: it is taken as open, though any load would close it"
+    instant, capacity = motion.instant, motion.local.capacity
+    names = [
+        contact.name
+        for number, contact in enumerate(motion.system.contacts)
+        if MODES[int(instant.modes[number])] == "open" and capacity[number, -1] == 0.0 and capacity[number, :-1].any()
+    ]
+    if len(names) == 1:
+        yield f"{names[0]} is open, its load exactly zero: it is taken as open, though any load would close it"
+    elif names:
+        yield f"{', '.join(names)} are open, their loads exactly zero: any load would close one, they are taken as open"

@@ -18,3 +18,8 @@ class Quantity:
     unit: str
     value: float
     rate: float = 0.0
+
+
+def amount(value: float, unit: str) -> str:
+    """A value with its unit."""
+    return f"{value:.6g}" if unit in ("1", "") else f"{value:.6g} {unit}"

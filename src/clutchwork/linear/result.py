@@ -15,7 +15,7 @@ from clutchwork.base.shown import shown
 from clutchwork.base.text import columns, counted
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES
-from clutchwork.linear.quantity import Quantity, per_second
+from clutchwork.linear.quantity import Quantity, amount, per_second
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -196,7 +196,7 @@ class Linear:
                     if word == "state" and abs(quantity.rate) > 0.0
                     else ""
                 )
-                lines.append((word if place == 0 else "", quantity.name, f"{quantity.value:.6g} {quantity.unit}", rate))
+                lines.append((word if place == 0 else "", quantity.name, amount(quantity.value, quantity.unit), rate))
             if len(part) > MOST_SHOWN:
                 lines.append(("", f"and {len(part) - MOST_SHOWN} more", "", ""))
         return columns(lines, right=(2, 3))

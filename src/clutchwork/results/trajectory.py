@@ -100,6 +100,18 @@ class Trajectory(Exports):
         """A signal over `time`; KeyError with near names when there is none of that name."""
         return self.channels[name].evaluate(self.rows)
 
+    def in_units(self, name: str, unit: str) -> NDArray[Any]:
+        """A signal over `time` in another unit: `run.in_units("engine.speed", "rpm")`.
+
+        UseError, a TypeError, where the unit is not one of the signal, with those that are; KeyError with near names
+        where there is no such signal.
+        """
+        from clutchwork.results.units import converter
+
+        self.channels[name]
+        found: NDArray[Any] = converter(self, {name: unit}).values(self, name)
+        return found
+
     def __contains__(self, name: object) -> bool:
         return name in self.channels
 

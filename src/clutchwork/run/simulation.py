@@ -19,7 +19,7 @@ from clutchwork.base.errors import UseError, caller
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.core import core
-from clutchwork.declare.options import Options
+from clutchwork.declare.options import Options, instants
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES, NOT_FINITE
 from clutchwork.results.channels import channels
 from clutchwork.results.events import from_rows
@@ -33,6 +33,7 @@ from clutchwork.run.record import Progress, Recording, record
 from clutchwork.run.settings import merged
 
 if TYPE_CHECKING:
+    from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
 
 Array = NDArray[np.float64]
@@ -56,14 +57,14 @@ class Job:
 
     def again(self, times: Any) -> Trajectory:
         """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
-        instants = np.sort(np.atleast_1d(np.asarray(times, dtype=float)))
-        return _trajectory(replace(self, options=self.options.changed({"times": instants, "dt": None})), None)
+        wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
+        return _trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
 
 
 @explained("simulate")
 def simulate(
     model: Assembles | System,
-    t_end: float | None = None,
+    t_end: Number | None = None,
     *,
     options: Options | None = None,
     progress: Progress | None = None,
@@ -71,8 +72,8 @@ def simulate(
 ) -> Trajectory:
     """Compute the motion of a Driveline or a System from 0 to t_end.
 
-    Parameters: t_end [s]; options, an `Options`, or its fields by name (rtol=, dt=, method= ...); progress, a
-    function of (time reached [s], t_end [s]) that is called now and then.
+    Parameters: t_end [s], or with a unit, "500 ms"; options, an `Options`, or its fields by name (rtol=, dt=, method=
+    ...); progress, a function of (time reached [s], t_end [s]) that is called now and then.
 
     What is left out is that of the settings of the model, `Driveline.simulation`, which a model file holds in its
     [simulation] table; `options` replaces all of them but t_end.

@@ -13,8 +13,9 @@ import numpy as np
 
 from clutchwork.base.errors import UseError, near
 from clutchwork.base.text import columns
-from clutchwork.declare.options import SIMULATION
+from clutchwork.declare.options import SIMULATION, instants
 from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.units import split
 from clutchwork.face.driveline import Driveline
 from clutchwork.run.flags import add_options, given_options
 from clutchwork.sweeps import outputs as made
@@ -22,7 +23,7 @@ from clutchwork.sweeps.result import Sweep, SweepInterrupted
 from clutchwork.sweeps.sweep import ROWS, sweep
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
 DONE, STOPPED, INTERRUPTED = 0, 1, 130
 CALLS = ("at", "maximum", "minimum", "peak", "integral", "lock", "break_away")
@@ -44,7 +45,8 @@ def add_command(subparsers: Any) -> None:
         metavar="NAME=VALUES",
         action="append",
         default=[],
-        help="values in SI: FIRST:LAST:COUNT or A,B,C; given several times: all combinations",
+        help="values: FIRST:LAST:COUNT or A,B,C, in SI or with a unit behind the last one: 'c1.pressure=1,2,3 bar'; "
+        "given several times: all combinations",
     )
     parser.add_argument(
         "--outputs",
@@ -122,20 +124,25 @@ def _ranges(found: Sweep) -> Iterator[tuple[str, float, float]]:
 
 
 def _varied(text: str) -> tuple[str, Any]:
-    """c1.gain=4e-4:8e-4:21, or c1.gain=4e-4,8e-4."""
+    """c1.gain=4e-4:8e-4:21, c1.gain=4e-4,8e-4, or with units, c1.pressure=1:3 bar:5."""
     name, sign, values = text.partition("=")
+    spaced = values.count(":") == 2
+    words = values.split(":")[:2] if spaced else values.split(",")
+    parts = [split(word) for word in words]
+    numbers = [part[0] for part in parts if part is not None]
+    units = {part[1] for part in parts if part is not None and part[1]}
     try:
-        if values.count(":") == 2:
-            first, last, count = values.split(":")
-            numbers: Sequence[float] = np.linspace(float(first), float(last), int(count)).tolist()
-        else:
-            numbers = [float(value) for value in values.split(",")]
-    except ValueError:
-        sign, numbers = "", []
-    if not sign or not name or not numbers:
-        remedy = "write NAME=FIRST:LAST:COUNT or NAME=A,B,C, such as c1.gain=4e-4:8e-4:21"
+        if spaced:
+            first, last = numbers
+            numbers = np.linspace(first, last, int(values.split(":")[2])).tolist()
+    except (ValueError, TypeError):
+        numbers = []
+    if not sign or not name or not numbers or None in parts or (":" in values and not spaced):
+        remedy = "write NAME=FIRST:LAST:COUNT or NAME=A,B,C, such as c1.gain=4e-4:8e-4:21 or 'c1.pressure=1:3 bar:5'"
         raise UseError("sweep", [f"--vary {text}: {remedy}"])
-    return name, numbers
+    if len(units) > 1 or (units and not parts[-1][1]):  # type: ignore[index]
+        raise UseError("sweep", [f"--vary {text}: write one unit, behind the last value: 'c1.pressure=1,2,3 bar'"])
+    return name, [f"{number!r} {unit}" for number in numbers for unit in units] or numbers
 
 
 def _outputs(text: str) -> list[Any]:
@@ -151,10 +158,18 @@ def _output(text: str) -> Any:
     if call not in CALLS:
         raise UseError("sweep", [f"--outputs {text}: no output {call!r}{near(call, CALLS, KNOWN)}"])
     try:
-        numbers = [float(part) if call == "at" else int(part) for part in rest]
+        numbers = [_instant(part) if call == "at" else int(part) for part in rest]
     except ValueError:
         raise UseError("sweep", [f"--outputs {text}: {', '.join(rest)} must be numbers"]) from None
     return getattr(made, call)(name, *([numbers] if call == "at" else numbers))
+
+
+def _instant(text: str) -> float:
+    """A time in s, or with a unit."""
+    try:
+        return float(text)
+    except ValueError:
+        return float(instants([text])[0])
 
 
 def _by_default(model: Driveline) -> list[Any]:
