@@ -32,6 +32,7 @@ def test_a_model_a_system_and_a_run_give_the_same(run):
         cw.linearise(d, at=1.0),
         cw.linearise(d.assemble(), at=1.0),
         cw.linearize(run, at=1.0),
+        cw.linearise(run, at="1000 ms"),
     ]
     for lin in made[1:]:
         assert np.array_equal(lin.A, made[0].A)
@@ -147,6 +148,7 @@ def test_all_that_is_wrong_is_said_at_once(run):
         (lambda run: cw.linearise(run, at=9.0), "is after the end of the run at 4 s"),
         (lambda run: cw.linearise(run, at=-1.0), "must be a time in s, zero or later"),
         (lambda run: cw.linearise(run, at="late"), "must be a time in s"),
+        (lambda run: cw.linearise(run, at="2 bar"), "must be a time in s"),
         (lambda run: cw.linearise("model.toml"), "cw.Driveline.load('model.toml')"),
         (lambda run: cw.linearise(3), "is not a model"),
         (lambda run: cw.linearise(run, at=1.0, output="x"), "did you mean 'outputs'"),

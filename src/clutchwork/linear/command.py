@@ -75,5 +75,13 @@ def _linearised(asked: argparse.Namespace) -> Linear:
     return linearise(system, at=asked.at, **names)
 
 
+def _time(text: str) -> float | str:
+    """A number of seconds, or what has a unit."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def _names(text: str | None) -> list[str] | None:
     return None if text is None else [name.strip() for name in text.split(",") if name.strip()]

@@ -16,6 +16,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.layout import MODES
+from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.linear.reached import reached, refuse_stopped, resumed, started, step_over
 from clutchwork.results.trajectory import Trajectory
 from clutchwork.run.failure import StoppedEarly
@@ -63,7 +64,8 @@ class Instant:
 
 def instant_of(model: Any, at: Any) -> Instant:
     """A model at its start, at a time [s] or at a saved state, or a run at a time [s]; UseError for anything else."""
-    problems = list(_problems(model, at))
+    at, problems = _plain(at)
+    problems = problems or list(_problems(model, at))
     if problems:
         raise UseError(CALL, problems)
     if isinstance(model, Trajectory):
@@ -77,6 +79,16 @@ def instant_of(model: Any, at: Any) -> Instant:
         warnings.simplefilter("ignore", StoppedEarly)
         run = simulate(system, float(at))
     return _of_run(run.raise_for_status(), float(at))
+
+
+def _plain(at: Any) -> tuple[Any, list[str]]:
+    """A time that may have a unit, in s."""
+    if not has_unit(at):
+        return at, []
+    try:
+        return in_si(at, "s"), []
+    except QuantityError as bad:
+        return at, [f"at = {shown(at)}: must be a time in s, zero or later ({bad})"]
 
 
 def _is_state(at: Any) -> bool:
