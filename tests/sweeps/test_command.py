@@ -9,33 +9,13 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.command.main import main
-
-MODEL = """
-name = "two discs"
-[[shaft]]
-name = "engine"
-inertia = 0.2
-speed = 100.0
-[[shaft]]
-name = "load"
-inertia = 0.8
-[[element]]
-name = "c1"
-type = "clutch"
-base = "engine"
-follower = "load"
-gain = 1.0
-normal_force = 100.0
-friction = {type = "coulomb", static = 0.1, kinetic = 0.1}
-[simulation]
-t_end = 3.0
-"""
+from support.two_discs import MODEL
 
 
 @pytest.fixture
 def model(tmp_path):
     path = tmp_path / "model.toml"
-    path.write_text(MODEL)
+    path.write_text(MODEL.replace("t_end = 2.0", "t_end = 3.0"))
     return str(path)
 
 

@@ -52,6 +52,8 @@ from clutchwork.signals.bases.sheets import one_reading
 # more belongs into CSV files
 MOST_BYTES = 10_000_000
 ENDINGS = (".toml", ".json")
+# what nobody means when a model file is missing
+NO_MODELS = ("pyproject.toml", "package.json", "package-lock.json", "tsconfig.json", "Cargo.toml")
 
 
 def load(path: str | Path) -> Model:
@@ -72,11 +74,14 @@ def _elsewhere(path: Path) -> str:
     """Where a file that is missing may be."""
     if not path.parent.is_dir():
         return f"check the path: there is no folder {shown(str(path.parent))}"
-    others = {other.stem: other.name for other in sorted(path.parent.iterdir()) if other.suffix.lower() in ENDINGS}
+    files = [other for other in sorted(path.parent.iterdir()) if other.name not in NO_MODELS]
+    others = {other.stem: other.name for other in files if other.suffix.lower() in ENDINGS}
     found = nearest(path.stem, others)
     if found:
         return f"did you mean {others[found]!r}?"
-    return f"check the path; in its folder: {listed([*others.values()][:5])}" if others else "check the path"
+    if others:
+        return f"check the path; in its folder: {listed([*others.values()][:5])}"
+    return f"check the path, or write a model to start from: clutchwork new {path}"
 
 
 def _from_text(path: Path, text: str) -> Model:
