@@ -14,11 +14,13 @@ from clutchwork.base.shown import LONGEST, shortened
 from clutchwork.base.text import columns, counted
 from clutchwork.model.changes import all_names, targets_of
 from clutchwork.results.channels import channels
+from clutchwork.results.hints.registry import of_model
 from clutchwork.results.ratios import Gears, Phase, gears
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.results.events import Events
+    from clutchwork.results.hints.hint import Hint, Hints
     from clutchwork.results.trajectory import Trajectory
 
 MOST_LINES = 40
@@ -38,6 +40,7 @@ def run_text(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
     if run.options.work:
         parts.append(str(run.energy))
     parts.append(effort_text(run))
+    parts += hint_text(run.hints)
     return "\n\n".join(parts)
 
 
@@ -76,6 +79,11 @@ def dependent_text(run: Trajectory) -> list[str]:
     return ["locked contacts that depend on each other; they share their load by capacity:\n" + "\n".join(lines)]
 
 
+def hint_text(hints: Hints) -> list[str]:
+    """What may not be meant; nothing where there is none."""
+    return ["\n".join(["hints", *(f"  {hint}" for hint in hints[:MOST_LINES])])] if hints else []
+
+
 def effort_text(run: Trajectory) -> str:
     """Steps and time that the run took."""
     s = run.statistics
@@ -103,6 +111,7 @@ def run_data(
         "energy": run.energy.to_dict() if run.options.work and len(run) else None,
         "final": {name: float(run[name][-1]) for name in run.names if name.endswith(FINAL) and len(run)},
         "statistics": dict(run.statistics),
+        "hints": [_hint_data(hint) for hint in run.hints],
     }
     if not names:
         return data
@@ -118,8 +127,9 @@ def model_text(system: System, shafts: tuple[str, str] | None) -> str:
         sets = [f"  {' '.join(names)}" for names in system.dependent]
         head = "depend on each other when locked together, and share their load by capacity:"
         parts.append("\n".join([head, *_first(sets)]))
+    advice = hint_text(of_model(system))
     if shafts is None:
-        return "\n\n".join(parts)
+        return "\n\n".join([*parts, *advice])
     found = gears(system, shafts)
     lines = [(" ".join(closed) or "-", number(value)) for closed, value in found.ratios]
     if lines:
@@ -127,7 +137,7 @@ def model_text(system: System, shafts: tuple[str, str] | None) -> str:
         parts.append("\n".join([table[0], *_first(table[1:])]))
     if found.untried is not None:
         parts.append(f"not tried: {found.untried} or more contacts closed at once, there are too many combinations")
-    return "\n\n".join(parts)
+    return "\n\n".join([*parts, *advice])
 
 
 def _first(lines: Sequence[str]) -> list[str]:
@@ -174,6 +184,7 @@ def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]
         "gears": [{"closed": list(closed), "ratio": value} for closed, value in found.ratios],
         "gears_untried_from": found.untried,
         "dependent": [list(names) for names in system.dependent],
+        "hints": [_hint_data(hint) for hint in of_model(system)],
     }
 
 
@@ -191,6 +202,15 @@ def sizes(system: System) -> dict[str, int]:
         "inputs": len(parts.inputs),
         **{name: len(things) for name, things in more.items() if things},
     }
+
+
+def _hint_data(hint: Hint) -> dict[str, Any]:
+    return hint.to_dict() | {"numbers": _finite(dict(hint.numbers))}
+
+
+def _finite(data: dict[str, Any]) -> dict[str, Any]:
+    """JSON has no infinity."""
+    return {name: None if isinstance(x, float) and not math.isfinite(x) else x for name, x in data.items()}
 
 
 def number(value: float | None) -> str:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.declare.options import Options
+    from clutchwork.results.hints.hint import Hints
     from clutchwork.results.trajectory import Trajectory
     from clutchwork.run.record import Progress
 
@@ -153,6 +154,26 @@ class Driveline:
         for one in found.advice:
             warn(one)
         return list(found.problems)
+
+    def hints(self) -> Hints:
+        """What an expert would say of the model before it runs, with numbers and a remedy; print it to read it.
+
+        Hints are neither the mistakes that `check` lists nor warnings. Those that a run shows are in
+        `Trajectory.hints`. ModelError lists all mistakes.
+        """
+        from clutchwork.assembly.system import System
+        from clutchwork.model.findings import findings
+        from clutchwork.model.problems import TOO_FAR_APART
+        from clutchwork.results.hints.registry import of_model
+
+        with words_of_files(self._model.from_file):
+            found = findings(self._model)
+            if found.problems:
+                raise ModelError(found.problems, self.name)
+            try:
+                return of_model(System.of(self._model))
+            except ArithmeticError:
+                raise ModelError([TOO_FAR_APART], self.name) from None
 
     @explained("d.assemble")
     def assemble(self, independent: Sequence[str] = ()) -> System:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from clutchwork.results.dependence import DependentPhase
     from clutchwork.results.energy import EnergyBalance
     from clutchwork.results.events import Event
+    from clutchwork.results.hints.hint import Hints
 
 Array = NDArray[np.float64]
 
@@ -51,7 +52,7 @@ class Trajectory(Exports):
 
     `run.time` [s] and `run["engine.speed"]` are arrays over the same instants; an instant that appears twice gives
     the left and the right limit at an event. `run.names` lists all signals, `run.units` their units,
-    `run.events`, `run.energy` and `run.statistics` what else is known.
+    `run.events`, `run.energy` and `run.statistics` what else is known, `run.hints` what may not be meant.
     """
 
     system: System
@@ -147,6 +148,16 @@ class Trajectory(Exports):
         from clutchwork.results.dependence import dependent_phases
 
         return dependent_phases(self)
+
+    @cached_property
+    def hints(self) -> Hints:
+        """What an expert would say of this run and its model, with numbers and a remedy; print it to read it.
+
+        Looked for when it is first asked for. A run whose output has instants of its own is repeated for that.
+        """
+        from clutchwork.results.hints.registry import of_run
+
+        return of_run(self)
 
     @explained("plot")
     def plot(self, path: str | Path | None = None, *, lockup: Event | None = None) -> Figure:
