@@ -79,6 +79,15 @@ double cw_time(const cw_run* run);
 int64_t cw_row_size(const cw_run* run);
 int cw_row(cw_run* run, double* row);
 
+/* Derivatives of all components at the present time, the modes of all contacts held: rows and columns of the matrix
+   (nothing for null pointers), and the matrix, row by row, with the row of output at this instant, as cw_row gives it;
+   its status. Rows: torque of each element, then of each contact (zero where it is locked or open); rate of each state;
+   static torque of each contact, against the slip that its torque resists; most torque that each contact holds, then
+   least, infinite where there is no bound; value of each flow. Columns: rate of each element and contact, each state,
+   each signal, and last the value itself. docs/theory/linearisation.md (2) */
+void cw_local_size(const cw_run* run, int64_t* rows, int64_t* columns);
+int cw_local(cw_run* run, double* row, double* matrix);
+
 /* Numbers in one event. */
 int64_t cw_event_size(void);
 
