@@ -24,7 +24,7 @@ from clutchwork.declare.options import OPTIONS, SIMULATION, Method
 from clutchwork.declare.setting import Setting
 from clutchwork.files.model_file import toml
 from clutchwork.run import simulation
-from clutchwork.run.simulation import new_run
+from clutchwork.run.begin import new_run
 
 ROOT = Path(__file__).resolve().parents[2]
 CORE = {name: row for name, row in OPTIONS.items() if row.core}

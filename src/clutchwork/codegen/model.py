@@ -16,7 +16,7 @@ from clutchwork.results.channels import Channel, Channels, channels
 from clutchwork.results.forms import Mode
 from clutchwork.results.rows import numbers
 from clutchwork.run.grid import output_grid
-from clutchwork.run.simulation import new_run
+from clutchwork.run.begin import new_run
 
 MADE = "Made by clutchwork. Do not edit: export the model again."
 BYTES_PER_LINE = 16
