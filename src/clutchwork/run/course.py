@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import field
+from functools import cached_property
 from typing import Any, NamedTuple, Protocol
 
 from clutchwork.base.classes import dataclass
+
+Numbers = tuple[tuple[int, float], ...]
 
 
 class Course(Protocol):
@@ -28,7 +31,7 @@ class Act(NamedTuple):
     kind: str  # "input", "release", "param" or "control"
     name: str
     value: Any  # None: that of the model
-    numbers: tuple[tuple[int, float], ...]  # what the core is told, by place
+    numbers: Numbers  # what the core is told, by place
 
     def apply(self, run: Any) -> None:
         """Tell the core."""
@@ -48,17 +51,24 @@ class Tape:
     held: Mapping[str, float] = field(default_factory=dict)  # at its begin
     changed: Mapping[str, Any] = field(default_factory=dict)
     ends: list[float] = field(default_factory=list)  # of the stretches [s]
-    acts: dict[int, list[Act]] = field(default_factory=dict)  # by the number of the stretch that they precede
+    # number of the stretch that it precedes, then the fields of an Act: plain tuples, which cost collectors nothing
+    noted: list[tuple[int, str, str, Any, Numbers]] = field(default_factory=list)
 
-    def copy(self, length: int | None = None) -> Tape:
-        """The same up to a number of stretches."""
-        length = len(self.ends) if length is None else length
-        acts = {number: list(acts) for number, acts in self.acts.items() if number <= length}
-        return Tape(self.held, self.changed, self.ends[:length], acts)
+    def copy(self) -> Tape:
+        """The same, to be kept."""
+        return Tape(self.held, self.changed, self.ends[:], self.noted[:])
 
-    def note(self, act: Act) -> None:
-        """Something was set before the next stretch."""
-        self.acts.setdefault(len(self.ends), []).append(act)
+    def cut(self, ends: int, noted: int) -> None:
+        """Forget what came after so many stretches and acts."""
+        del self.ends[ends:], self.noted[noted:]
+
+    @cached_property
+    def acts(self) -> dict[int, list[Act]]:
+        """Acts by the number of the stretch that they precede, of a tape that is kept."""
+        found = dict[int, list[Act]]()
+        for number, *act in self.noted:
+            found.setdefault(number, []).append(Act(*act))
+        return found
 
     def stops(self, begin: float, t_end: float) -> Iterator[float]:  # noqa: ARG002, where it began is known
         """Ends of the stretches; a run that was not stepped yet ends where it begins."""
@@ -76,17 +86,15 @@ class Tape:
     def outside(self, number: int) -> tuple[Mapping[str, float], Mapping[str, Any]]:
         """Signals and parameters that are set from outside after so many stretches."""
         held, changed = dict(self.held), dict(self.changed)
-        for before in sorted(self.acts):
-            for one in self.acts[before] if before < number else ():
-                if one.kind in ("input", "release"):
-                    _put(held, one)
-                elif one.kind == "param":
-                    _put(changed, one)
+        for before, kind, name, value, _ in self.noted:
+            if before < number and kind != "control":
+                put(changed if kind == "param" else held, name, value)
         return held, changed
 
 
-def _put(known: dict[str, Any], act: Act) -> None:
-    if act.value is None:
-        known.pop(act.name, None)
+def put(known: dict[str, Any], name: str, value: Any) -> None:
+    """Remember what is set; None: it is no more."""
+    if value is None:
+        known.pop(name, None)
     else:
-        known[act.name] = act.value
+        known[name] = value

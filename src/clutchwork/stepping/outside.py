@@ -10,7 +10,7 @@ from clutchwork.base.shown import shown
 from clutchwork.declare.quantity import QuantityError, in_si
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.model.changes import named, target
-from clutchwork.run.course import Act
+from clutchwork.run.course import Act, put
 from clutchwork.stepping.parameters import NEW_RUN, NOTHING, Change, changed
 from clutchwork.stepping.signals import Settable, given_by_others, signals, unknown
 
@@ -72,11 +72,7 @@ class Outside:
     def take(self, plan: Plan) -> None:
         """Remember what was done."""
         for act in plan.acts:
-            known: dict[str, Any] = self.changed if act.kind == "param" else self.held
-            if act.value is None:
-                known.pop(act.name, None)
-            else:
-                known[act.name] = act.value
+            put(self.changed if act.kind == "param" else self.held, act.name, act.value)
         self._present = plan.present or self._present
 
     def _signal(self, name: str, value: Any) -> tuple[Act, list[Problem]]:

@@ -46,7 +46,7 @@ class Settable(NamedTuple):
 
     def told(self, value: float) -> tuple[tuple[int, float], ...]:
         """What the core is told."""
-        return tuple((number, value) for number in self.numbers)
+        return tuple([(number, value) for number in self.numbers])
 
 
 def signals(system: System) -> dict[str, Settable]:

@@ -27,7 +27,7 @@ from clutchwork.results.state import State
 from clutchwork.results.trajectory import SimulationError, Trajectory
 from clutchwork.run.begin import begun, choose, put, row_of, state_of
 from clutchwork.run.control import Controller, Readings, controllers, instants, is_due
-from clutchwork.run.course import Act, Tape
+from clutchwork.run.course import Act, Numbers, Tape
 from clutchwork.run.failure import StoppedEarly, warn_of_faults
 from clutchwork.run.settings import without_end
 from clutchwork.run.simulation import Assembles, Job, begin_of, message_of, model_of, trajectory
@@ -82,6 +82,7 @@ class Simulator:
 
     # ---------------------------------------------------------------------------------------------------- going on
 
+    @explained("sim.advance")
     def advance(self, duration: float) -> None:
         """Go on by a time [s].
 
@@ -94,10 +95,10 @@ class Simulator:
         end = self._time + step
         if step > 0.0:
             whole = round(end / step) * step
-            if abs(whole - end) <= ROUND_OFF * end:
-                end = whole
+            end = whole if _same(whole, end) else end
         self._to(end)
 
+    @explained("sim.advance_to")
     def advance_to(self, time: float) -> None:
         """Go on up to a point in time [s]; errors are those of `advance`."""
         end = _seconds("sim.advance_to", "time", time)
@@ -109,12 +110,12 @@ class Simulator:
     def _to(self, end: float) -> None:
         if self._failure is not None:
             raise self._failure
-        if end <= self._time:
-            return
         if not self._controllers:
-            self._stretch(end)
+            if end > self._time:
+                self._stretch(end)
             return
-        for stop in instants(self._controllers, self._time, end):
+        end = next((at for one in self._controllers if _same(at := round(end / one.period) * one.period, end)), end)
+        for stop in instants(self._controllers, self._time, end) if end > self._time else ():
             self._control()
             self._stretch(stop)
 
@@ -180,6 +181,7 @@ class Simulator:
 
     # ------------------------------------------------------------------------------------------------------ setting
 
+    @explained("sim.set")
     def set(self, name: str | Mapping[str, Any], value: Any = None) -> None:
         """Set a signal or a parameter from the present time on, or several at once by name.
 
@@ -187,10 +189,14 @@ class Simulator:
         `release` is called. A parameter, such as "c1.gain" or "c1.friction.static", keeps it too; what a run cannot
         change, such as an inertia, is refused. ModelError names all that is wrong at once, and nothing is set then.
         """
-        if type(value) is float and type(name) is str:
+        if isinstance(value, float) and isinstance(name, str):
             known = self._outside.signals.get(name)
             if known is not None and isfinite(value) and known.spec.allows(value):
-                self._apply(Act("input", name, value, known.told(value)))
+                value = float(value)
+                told = known.told(value)
+                for number, one in told:
+                    self._run.set_input(number, one)
+                self._done(("input", name, value, told))
                 self._hold(name, value)
                 return
         given = dict(name) if isinstance(name, Mapping) else {name: value}
@@ -198,6 +204,7 @@ class Simulator:
             raise UseError("sim.set", [f"{shown(name)} has no value; write sim.set({shown(name)}, value)"])
         self._set(given)
 
+    @explained("sim.release")
     def release(self, *names: str) -> None:
         """Let signals follow the model again, and parameters have their value of it; all of them without a name."""
         chosen = names or (*self._outside.held, *self._outside.changed)
@@ -218,7 +225,10 @@ class Simulator:
 
     def _apply(self, act: Act) -> None:
         act.apply(self._run)
-        self._tape.note(act)
+        self._done(act)
+
+    def _done(self, act: tuple[str, str, Any, Numbers]) -> None:
+        self._tape.noted.append((len(self._tape.ends), *act))
         self._stale = True
         if self._untouched:
             # the start is decided anew
@@ -320,8 +330,7 @@ class Simulator:
         if self._failure is not None:
             raise SimulationError(f"there is nothing to save: {self._failure}", self._failure.trajectory)
         state = state_of(self._run, self._system, (self._outside.held, self._outside.changed), self._row().tobytes())
-        acts = len(self._tape.acts.get(len(self._tape.ends), ()))
-        self._marks[state] = len(self._tape.ends), acts, len(self._events)
+        self._marks[state] = len(self._tape.ends), len(self._tape.noted), len(self._events)
         return state
 
     @explained("sim.restore")
@@ -356,14 +365,12 @@ class Simulator:
         self._events: list[Array] = []
         self._here(here)
 
-    def _back_to(self, state: State, ends: int, acts: int, events: int) -> None:
+    def _back_to(self, state: State, ends: int, noted: int, events: int) -> None:
         """The past up to a state stays."""
-        self._tape = self._tape.copy(ends)
-        if ends in self._tape.acts:
-            del self._tape.acts[ends][acts:]
+        self._tape.cut(ends, noted)
         del self._events[events:]
-        for other, (length, *_) in list(self._marks.items()):
-            if length > ends:
+        for other, mark in list(self._marks.items()):
+            if mark > (ends, noted, events):
                 del self._marks[other]
         self._outside.begin(state)
         self._here(state)
@@ -392,8 +399,15 @@ class Simulator:
         return iter(self._channels())
 
 
+def _same(one: float, other: float) -> bool:
+    """Whether two times are one within round-off."""
+    return abs(one - other) <= ROUND_OFF * other
+
+
 def _seconds(call: str, name: str, value: object) -> float:
     """A finite time [s]; UseError for anything else."""
+    if type(value) is float and isfinite(value):
+        return value
     if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(float(value)):
         raise UseError(call, [f"{name} is {shown(value)}: give a number in s"])
     return float(value)
