@@ -97,11 +97,9 @@ class Outside:
             problems += faults
             if found is not None and not faults:
                 values[name] = in_si(value, found.spec.unit) if isinstance(value, str) else value
-        if problems:
-            return Plan([], problems)
-        change, problems = changed(self._base, self._present, self.changed, values)
-        if change is None:
-            return Plan([], problems)
+        change, found = changed(self._base, self._present, self.changed, values) if values else (None, [])
+        if change is None or problems:
+            return Plan([], problems + found)
         return self._acts(values, change)
 
     def _value(self, name: str) -> Found | None:

@@ -82,18 +82,22 @@ def changed(
 
     Parameters: settled, what was changed before; given, the new values by name, None: that of the model again.
     """
+    made, wrong, refused = _changed(base, present, settled, given)
+    if made is None and len(given) > 1:
+        # which of them it is; what is wrong with one alone may be right with the others
+        alone = [_changed(base, present, settled, {name: value})[2] for name, value in given.items()]
+        refused = [problem for problems in alone for problem in problems] or refused
+    return made, wrong + refused
+
+
+def _changed(
+    base: System, present: System, settled: Mapping[str, Any], given: Mapping[str, Any]
+) -> tuple[Change | None, list[Problem], list[Problem]]:
+    """What new values do, what is wrong with them in any model, and why a run that goes on refuses them."""
     wanted = {name: value for name, value in {**settled, **given}.items() if value is not None}
     try:
-        new = base.changed(wanted) if wanted else base
+        made = Change(base, present, base.changed(wanted) if wanted else base)
     except ModelError as error:
-        return None, list(error.problems)
-    made = Change(base, present, new)
+        return None, list(error.problems), []
     why = next(made.refusals(), None)
-    if why is None:
-        return made, []
-    if len(given) == 1:
-        name = next(iter(given))
-        return None, [Problem(name, "", why[0], remedy=why[1])]
-    alone = [changed(base, present, settled, {name: value})[1] for name, value in given.items()]
-    found = [problem for problems in alone for problem in problems]
-    return None, found or [Problem(", ".join(given), "", why[0], remedy=why[1])]
+    return (made, [], []) if why is None else (None, [], [Problem(", ".join(given), "", why[0], remedy=why[1])])

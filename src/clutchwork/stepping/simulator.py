@@ -86,15 +86,16 @@ class Simulator:
     def advance(self, duration: float) -> None:
         """Go on by a time [s].
 
-        Times that are multiples of the duration within round-off are exactly these, as those of a grid are. An error is
-        a `SimulationError`, with the run so far in `trajectory`; time stands then, until `restore` or `reset`.
+        A time that is a multiple of the duration but for round-off is that multiple. A run that cannot go on is a
+        `SimulationError`, with the run so far in `trajectory`; time stands then, until `restore` or `reset`.
         """
         step = _seconds("sim.advance", "duration", duration)
         if step < 0.0:
             raise UseError("sim.advance", [f"duration is {step:g} s: time does not go back; sim.restore(state) does"])
         end = self._time + step
         if step > 0.0:
-            whole = round(end / step) * step
+            # as a decimal, which knots of tables are
+            whole = float(f"{round(end / step) * step:.15g}")
             end = whole if _same(whole, end) else end
         self._to(end)
 
