@@ -15,8 +15,8 @@ from clutchwork.declare.options import OPTIONS, Options
 from clutchwork.results.channels import Channel, Channels, channels
 from clutchwork.results.forms import Mode
 from clutchwork.results.rows import numbers
-from clutchwork.run.grid import output_grid
 from clutchwork.run.begin import new_run
+from clutchwork.run.grid import output_grid
 
 MADE = "Made by clutchwork. Do not edit: export the model again."
 BYTES_PER_LINE = 16

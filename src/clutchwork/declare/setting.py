@@ -96,7 +96,7 @@ class Setting:
 
     def _is_too_low(self, number: float) -> bool:
         """Whether a number is not above zero, or the bound where there is one; zero itself may be allowed."""
-        return number <= (self.spec.above or 0.0) and not (number == self.spec.at_least)
+        return number <= (self.spec.above or 0.0) and number != self.spec.at_least
 
     def _shown(self, value: Any) -> str:
         number = _as_number(value)

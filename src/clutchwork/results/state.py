@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from clutchwork.assembly.system import System
-    from clutchwork.results.trajectory import Trajectory
 
 FORMAT = 1
 PARTS = ("head", "core", "row")
@@ -89,8 +88,14 @@ class State:
     def fits(self, system: System) -> None:
         """StateError where it is the state of another model."""
         if self.fingerprint != fingerprint(system):
-            same = f"{shown(system.name)} with other numbers or signals" if self.model == system.name else "another model"
-            told = f"this is a state of {shown(self.model)}" if self.model != system.name else "this is a state of the model"
+            same = (
+                f"{shown(system.name)} with other numbers or signals" if self.model == system.name else "another model"
+            )
+            told = (
+                f"this is a state of {shown(self.model)}"
+                if self.model != system.name
+                else "this is a state of the model"
+            )
             raise StateError(
                 f"{told} at {self.time:g} s, and the model here is {same}: "
                 "continue with the model that it was saved from, and change what may change with Simulator.set"
@@ -103,9 +108,8 @@ def fingerprint(system: System) -> str:
     return hashlib.sha256(system.to_bytes()).hexdigest()
 
 
-def instant(run: Trajectory, at: object) -> float:
-    """A time of a run [s], None: its end; UseError for any other."""
-    begin, reached = run.options.t_start, run.reached
+def instant(at: object, begin: float, reached: float) -> float:
+    """A time of a run [s] that goes from begin to what it has reached, None: its end; UseError for any other."""
     if at is None:
         return reached
     if isinstance(at, bool) or not isinstance(at, Real):

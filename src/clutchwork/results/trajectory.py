@@ -129,7 +129,7 @@ class Trajectory:
         """
         from clutchwork.results.state import instant
 
-        return self.capture(instant(self, at))
+        return self.capture(instant(at, self.options.t_start, self.reached))
 
     @cached_property
     def energy(self) -> EnergyBalance:
@@ -192,7 +192,8 @@ class Trajectory:
         return chosen
 
     def __repr__(self) -> str:
+        end = self.time[-1] if len(self) else 0
         return (
-            f"<Trajectory {self.status}, {self.options.t_start:g} to {self.time[-1] if len(self) else 0:g} s, {counted(len(self), 'instants')}"
+            f"<Trajectory {self.status}, {self.options.t_start:g} to {end:g} s, {counted(len(self), 'instants')}"
             f", {counted(len(self.names), 'signals')}, {counted(len(self.events), 'events')}>"
         )

@@ -58,10 +58,6 @@ class Tape:
         """The same, to be kept."""
         return Tape(self.held, self.changed, self.ends[:], self.noted[:])
 
-    def cut(self, ends: int, noted: int) -> None:
-        """Forget what came after so many stretches and acts."""
-        del self.ends[ends:], self.noted[noted:]
-
     @cached_property
     def acts(self) -> dict[int, list[Act]]:
         """Acts by the number of the stretch that they precede, of a tape that is kept."""

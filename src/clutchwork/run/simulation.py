@@ -133,7 +133,9 @@ def begin_of(system: System, start: object, given: Mapping[str, Any]) -> dict[st
         remedy = "give what sim.save(), run.state() or cw.State.load(path) returned"
         raise UseError("simulate", [f"start is {shown(start)}: {remedy}"])
     if given.get("t_start") is not None:
-        raise OptionError([f"t_start cannot be given beside start: the state is at {start.time:g} s; leave t_start out"])
+        raise OptionError(
+            [f"t_start cannot be given beside start: the state is at {start.time:g} s; leave t_start out"]
+        )
     start.fits(system)
     return {"t_start": start.time}
 

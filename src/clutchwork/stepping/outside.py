@@ -92,11 +92,11 @@ class Outside:
     def _parameters(self, given: Mapping[str, Any]) -> Plan:
         values, problems = dict[str, Any](), list[Problem]()
         for name, value in given.items():
-            found = self._value(name)
-            faults = [unknown(self._base, name)] if found is None else list(self._faults(name, value, found))
+            known = self._value(name)
+            faults = [unknown(self._base, name)] if known is None else list(self._faults(name, value, known))
             problems += faults
-            if found is not None and not faults:
-                values[name] = in_si(value, found.spec.unit) if isinstance(value, str) else value
+            if known is not None and not faults:
+                values[name] = in_si(value, known.spec.unit) if isinstance(value, str) else value
         change, found = changed(self._base, self._present, self.changed, values) if values else (None, [])
         if change is None or problems:
             return Plan([], problems + found)
@@ -131,7 +131,8 @@ class Outside:
         """Acts of a change that can be done; the numbers of all are told with the first."""
         acts, problems = list[Act](), list[Problem]()
         for name, value in values.items():
-            if not change.params and value is not None and self._value(name).value != value:
+            known = self._value(name)
+            if not change.params and value is not None and known is not None and known.value != value:
                 problems.append(Problem(name, "", NOTHING, remedy=NEW_RUN))
             acts.append(Act("param", name, value, () if acts else tuple(change.params.items())))
         return Plan([] if problems else acts, problems, change.new)

@@ -51,7 +51,9 @@ class Change:
         """Why it cannot be done while a run goes on: what is wrong, and the remedy."""
         old, new = self._present.arrays, self.new.arrays
         for array in new:
-            if array != "params" and (old[array].shape != new[array].shape or old[array].tobytes() != new[array].tobytes()):
+            if array != "params" and (
+                old[array].shape != new[array].shape or old[array].tobytes() != new[array].tobytes()
+            ):
                 yield next((why for word, why in STAYS.items() if array.startswith(word)), OTHER)
         if old["params"].shape != new["params"].shape:
             yield OTHER

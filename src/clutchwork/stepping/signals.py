@@ -136,6 +136,8 @@ def unknown(system: System, name: object) -> Problem:
     path = name if isinstance(name, str) else shown(name)
     known = signals(system)
     such = f"signals are such as {', '.join(map(repr, list(known)[:3]))}" if known else ""
-    return Problem(path, "", f"is neither a signal nor a parameter of this driveline{near(path, [*known, *system.parameters], such)}")
-
-
+    return Problem(
+        path,
+        "",
+        f"is neither a signal nor a parameter of this driveline{near(path, [*known, *system.parameters], such)}",
+    )

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterator, Mapping, Sequence
 from math import inf, isfinite
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Unpack
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,30 +14,29 @@ from clutchwork.assembly.system import System
 from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
-from clutchwork.declare.layout import CAUSES, EVENT
 from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, EVENTS_FULL
-from clutchwork.results.channels import Channels, channels
-from clutchwork.results.events import Events, from_rows
-from clutchwork.results.forms import Column
-from clutchwork.results.state import State
-from clutchwork.results.trajectory import SimulationError, Trajectory
+from clutchwork.results.state import State, StateError
+from clutchwork.results.trajectory import SimulationError
 from clutchwork.run.begin import begun, choose, put, row_of, state_of
 from clutchwork.run.control import Controller, Readings, controllers, instants, is_due
-from clutchwork.run.course import Act, Numbers, Tape
-from clutchwork.run.failure import StoppedEarly, warn_of_faults
+from clutchwork.run.failure import warn_of_faults
 from clutchwork.run.settings import without_end
-from clutchwork.run.simulation import Assembles, Job, begin_of, message_of, model_of, trajectory
+from clutchwork.run.simulation import Assembles, begin_of, message_of, model_of
 from clutchwork.stepping.outside import Outside
+from clutchwork.stepping.past import Past
+from clutchwork.stepping.readout import Readout
 
 if TYPE_CHECKING:
     from clutchwork.declare.option_fields import OptionFields
+    from clutchwork.results.events import Events
+    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.course import Act, Numbers
 
 Array = NDArray[np.float64]
-CAUSE = next(column for column, (name, _) in enumerate(EVENT) if name == "cause")
-FAULT = next(number for number, (word, _) in CAUSES.items() if word == "fault")
 # two instants that are closer are one, as a share of them
 ROUND_OFF = 1e-12
+OF_A_STATE = "give what sim.save(), run.state() or cw.State.load(path) returned"
 
 
 class Simulator:
@@ -50,6 +46,12 @@ class Simulator:
     before, `simulate` does it in one call. Between the steps everything is as in `simulate`: contacts lock and let go
     inside of a step, controllers of the model act at their instants, signals follow their tables until they are set.
     """
+
+    _time: float  # s
+    _called: float  # s, when controllers were called last
+    _failure: SimulationError | None  # why it cannot go on
+    _left: Array | None  # row just before what is set now
+    _controllers: tuple[Controller, ...]
 
     @explained("cw.Simulator")
     def __init__(
@@ -70,15 +72,13 @@ class Simulator:
         self._options = without_end(self._system.settings, given, options)
         self._run = begun(self._system, self._options, start)
         self._run.expect_inputs(True)
-        self._instant, self._rows = np.empty(1), np.empty((1, self._run.row_size))
-        self._readers: dict[str, Callable[[], Any]] = {}
-        self._marks: WeakKeyDictionary[State, tuple[int, int, int]] = WeakKeyDictionary()
+        self._instant, self._readout = np.empty(1), Readout(self._system, self._options, self._run.row_size)
         self._outside = Outside(self._system)
-        self._contacts = [contact.name for contact in self._system.contacts]
-        self._given = start
-        self._begin_at(start, start)
+        self._sampled = bool(controllers(self._system.inputs))
+        self._start = start
+        self._begin(start, start)
         self._row()
-        self._origin, self._first = self.save(), list(self._events)
+        self._origin, self._first_events = self.save(), list(self._past.rows)
 
     # ---------------------------------------------------------------------------------------------------- going on
 
@@ -122,63 +122,66 @@ class Simulator:
 
     def _stretch(self, stop: float) -> None:
         """Let the core run; the row at its end is taken with the same call."""
-        run = self._run
+        run, rows = self._run, self._readout.rows
         self._instant[0] = stop
-        status, filled, raised = run.advance(stop, self._instant, self._rows, 0, 0)
-        while status == EVENTS_FULL:
+        status, filled, raised = run.advance(stop, self._instant, rows, 0, 0)
+        while status == EVENTS_FULL and raised is None:
             self._take_events()
-            status, more, raised = run.advance(stop, self._instant, self._rows, filled, 0)
+            status, more, raised = run.advance(stop, self._instant, rows, filled, 0)
             filled += more
-        self._untouched = False
-        self._stale = filled == 0
+        self._untouched, self._stale = False, filled == 0
         # what is set later does not change what a controller sees just before that time
-        self._left = self._rows.copy() if self._sampled else None
+        self._left = rows.copy() if self._sampled else None
         if run.pending:
             self._take_events()
-        if raised is not None:
-            self._time = run.time
-            self._tape.ends.append(self._time)
-            raise raised
-        self._tape.ends.append(stop)
-        if status != DONE:
-            self._stop(status)
-        self._time = stop
+        if status == DONE and raised is None:
+            self._time = stop
+            self._past.stepped(stop)
+        else:
+            self._stop(status, stop, raised)
 
-    def _stop(self, status: int) -> None:
-        """The core cannot go on: tell why, with the run so far."""
-        self._time = self._run.time
+    def _stop(self, status: int, stop: float, raised: BaseException | None) -> None:
+        """The core did not get there: tell why, with the run so far. After Ctrl-C it can go on."""
+        self._time, self._stale = self._run.time, True
+        self._past.stepped(self._time if raised is not None else stop)
+        if raised is not None:
+            raise raised
+        raise self._failed(SimulationError(message_of(self._system, status, self._run), self._repeated()))
+
+    def _repeated(self) -> Trajectory | None:
+        """The run up to where it failed."""
         try:
-            made = self._trajectory(self._tape.ends[-1])
+            return self._past.trajectory(self._past.goal, self._options)
         except SimulationError as error:
-            made = error.trajectory
-        self._stale = True
-        self._failure = SimulationError(message_of(self._system, status, self._run), made)
-        raise self._failure
+            return error.trajectory
+
+    def _failed(self, error: SimulationError) -> SimulationError:
+        """Remember that the run cannot go on."""
+        self._failure = error
+        return error
 
     def _take_events(self) -> None:
         rows = np.asarray(self._run.events())
-        self._events.append(rows)
-        if np.any(rows[:, CAUSE] == FAULT):
-            warn_of_faults(self._system, from_rows(rows, self._contacts))
+        self._past.rows.append(rows)
+        warn_of_faults(self._system, self._past.named(rows))
 
     def _control(self) -> None:
         """Call the controllers that are due, once at each instant."""
-        if self._called == self._time:
+        due = [one for one in self._controllers if is_due(one.period, self._time)]
+        if not due or self._called == self._time:
             return
         self._called = self._time
-        due = [one for one in self._controllers if is_due(one.period, self._time)]
-        if not due:
-            return
-        readings = Readings(self._channels(), self._row() if self._left is None else self._left)
+        readings = Readings(self._readout.channels, self._row() if self._left is None else self._left)
         for one in due:
-            self._apply(Act("control", one.name, None, ((one.index, self._asked(one, readings)),)))
+            numbers = ((one.index, self._asked(one, readings)),)
+            self._run.set_input(*numbers[0])
+            self._done("control", one.name, None, numbers)
 
     def _asked(self, controller: Controller, readings: Readings) -> float:
         try:
             return controller.value(self._time, readings)
         except SimulationError as error:
-            self._failure = SimulationError(str(error), self.run)
-            raise self._failure from error.__cause__
+            raise self._failed(SimulationError(str(error), self.run)) from error.__cause__
 
     # ------------------------------------------------------------------------------------------------------ setting
 
@@ -191,29 +194,34 @@ class Simulator:
         change, such as an inertia, is refused. ModelError names all that is wrong at once, and nothing is set then.
         """
         if isinstance(value, float) and isinstance(name, str):
-            known = self._outside.signals.get(name)
-            if known is not None and isfinite(value) and known.spec.allows(value):
-                value = float(value)
-                told = known.told(value)
-                for number, one in told:
-                    self._run.set_input(number, one)
-                self._done(("input", name, value, told))
-                self._hold(name, value)
+            known, number = self._outside.signals.get(name), float(value)
+            if known is not None and isfinite(number) and known.spec.allows(number):
+                numbers = known.told(number)
+                for place, one in numbers:
+                    self._run.set_input(place, one)
+                self._done("input", name, number, numbers)
+                fresh = name not in self._outside.held
+                self._outside.held[name] = number
+                if fresh:
+                    self._find_controllers()
                 return
-        given = dict(name) if isinstance(name, Mapping) else {name: value}
         if not isinstance(name, Mapping) and value is None:
             raise UseError("sim.set", [f"{shown(name)} has no value; write sim.set({shown(name)}, value)"])
-        self._set(given)
+        self._set(name if isinstance(name, Mapping) else {name: value})
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        """The same as `set`."""
+        self.set(name, value)
 
     @explained("sim.release")
     def release(self, *names: str) -> None:
         """Let signals follow the model again, and parameters have their value of it; all of them without a name."""
-        chosen = names or (*self._outside.held, *self._outside.changed)
-        unset = [name for name in chosen if name not in self._outside.held and name not in self._outside.changed]
+        held = self.held
+        unset = [name for name in names if name not in held]
         if unset:
-            known = ", ".join((*self._outside.held, *self._outside.changed)) or "nothing"
+            known = ", ".join(held) or "nothing"
             raise UseError("sim.release", [f"{shown(name)} is not set; set is {known}" for name in unset])
-        self._set(dict.fromkeys(chosen))
+        self._set(dict.fromkeys(names or held))
 
     def _set(self, given: Mapping[Any, Any]) -> None:
         plan = self._outside.plan(given)
@@ -226,24 +234,17 @@ class Simulator:
 
     def _apply(self, act: Act) -> None:
         act.apply(self._run)
-        self._done(act)
+        self._done(*act)
 
-    def _done(self, act: tuple[str, str, Any, Numbers]) -> None:
-        self._tape.noted.append((len(self._tape.ends), *act))
+    def _done(self, kind: str, name: str, value: Any, numbers: Numbers) -> None:
+        self._past.note(kind, name, value, numbers)
         self._stale = True
         if self._untouched:
             # the start is decided anew
-            self._events.clear()
-
-    def _hold(self, name: str, value: float) -> None:
-        fresh = name not in self._outside.held
-        self._outside.held[name] = value
-        if fresh and self._sampled:
-            self._find_controllers()
+            self._past.rows.clear()
 
     def _find_controllers(self) -> None:
-        held = self._outside.held
-        self._controllers = controllers(self._system.inputs, held) if self._sampled else ()
+        self._controllers = controllers(self._system.inputs, self._outside.held) if self._sampled else ()
 
     @property
     def held(self) -> dict[str, Any]:
@@ -260,15 +261,12 @@ class Simulator:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all signals that can be read."""
-        return tuple(self._channels())
+        return tuple(self._readout)
 
     @property
     def units(self) -> dict[str, str]:
         """Unit of every signal that can be read."""
-        return {name: channel.unit for name, channel in self._channels().items()}
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._channels()
+        return {name: channel.unit for name, channel in self._readout.channels.items()}
 
     def __getitem__(self, name: str | Sequence[str]) -> Any:
         """A signal at the present time, or an array of several; KeyError with near names where there is none.
@@ -277,52 +275,41 @@ class Simulator:
         """
         if self._stale:
             self._row()
-        if not isinstance(name, str):
-            return np.array([self[one] for one in name], dtype=float)
-        reader = self._readers.get(name)
-        if reader is None:
-            reader = self._readers[name] = self._reader(name)
-        return reader()
+        if isinstance(name, str):
+            return self._readout[name]
+        return np.array([self._readout[one] for one in name], dtype=float)
 
-    def _reader(self, name: str) -> Callable[[], Any]:
-        form, rows = self._channels()[name].evaluate, self._rows
-        if isinstance(form, Column):
-            return partial(rows.item, 0, form.index)
-        return lambda: form(rows)[0].item()
+    def __contains__(self, name: object) -> bool:
+        return name in self._readout
 
-    def _channels(self) -> Channels:
-        return channels(self._system, self._options.angles, self._options.work)
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._readout)
 
     def _row(self) -> Array:
+        """The row at the present time."""
+        rows = self._readout.rows
         if self._stale:
             if self._failure is not None:
                 raise self._failure
-            self._rows[0] = row_of(self._run, self._system)
+            rows[0] = row_of(self._run, self._system)
             self._stale = False
             if self._run.pending:
                 self._take_events()
-        return self._rows
+        return rows
 
     @property
     def events(self) -> Events:
         """What happened to the contacts so far."""
-        if self._stale:
+        if self._stale and self._failure is None:
             self._row()
-        rows = np.concatenate([np.empty((0, len(EVENT))), *self._events])
-        return from_rows(rows, self._contacts)
+        return self._past.events
 
     @property
     def run(self) -> Trajectory:
-        """Everything so far as a `Trajectory`, since the start or since `restore`."""
+        """Everything so far as a `Trajectory`: since the start, or since `restore`. The run is repeated for it."""
         if self._failure is not None and self._failure.trajectory is not None:
             return self._failure.trajectory
-        return self._trajectory(self._time)
-
-    def _trajectory(self, end: float) -> Trajectory:
-        job = Job(self._system, end, self._options.changed({"t_start": self._begin}), self._tape.copy(), self._start)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", StoppedEarly)
-            return trajectory(job, None)
+        return self._past.trajectory(self._time, self._options)
 
     # ------------------------------------------------------------------------------------------------------- states
 
@@ -330,74 +317,56 @@ class Simulator:
         """The complete state at the present time, with all that was set from outside: to go on from it anywhere."""
         if self._failure is not None:
             raise SimulationError(f"there is nothing to save: {self._failure}", self._failure.trajectory)
-        state = state_of(self._run, self._system, (self._outside.held, self._outside.changed), self._row().tobytes())
-        self._marks[state] = len(self._tape.ends), len(self._tape.noted), len(self._events)
+        row = self._row().tobytes()
+        state = state_of(self._run, self._system, (self._outside.held, self._outside.changed), row)
+        self._past.mark(state)
         return state
 
     @explained("sim.restore")
     def restore(self, state: State) -> None:
-        """Go to a state of the same model, of this or another Simulator or run, and go on from there with the same bits.
+        """Go to a state of the same model, saved here, by another Simulator or a run, and go on with the same bits.
 
         `run` and `events` are then those up to there where the state was saved by this Simulator on its way, else they
         begin there. StateError for a state that is damaged or that of another model.
         """
         if not isinstance(state, State):
-            remedy = "give what sim.save(), run.state() or cw.State.load(path) returned"
-            raise UseError("sim.restore", [f"state is {shown(state)}: {remedy}"])
-        mark = self._marks.get(state)
-        put(self._run, self._system, state)
-        if mark is None:
-            choose(self._run, self._options)
-            self._begin_at(state, state)
+            raise UseError("sim.restore", [f"state is {shown(state)}: {OF_A_STATE}"])
+        before = self._run.save()
+        try:
+            put(self._run, self._system, state)
+        except StateError:
+            self._run.restore(before)
+            raise
+        if self._past.back_to(state):
+            self._outside.begin(state)
+            self._here(state)
         else:
-            self._back_to(state, *mark)
+            choose(self._run, self._options)
+            self._begin(state, state)
 
     def reset(self) -> None:
         """Go back to where the Simulator began, with nothing set from outside but what it began with."""
         put(self._run, self._system, self._origin)
-        self._begin_at(self._origin, self._given)
-        self._events += self._first
+        self._begin(self._origin, self._start)
+        self._past.rows += self._first_events
 
-    def _begin_at(self, here: State | None, start: State | None) -> None:
-        """Everything that is known of the past is forgotten; `start` is what the run is repeated from."""
-        self._start, self._begin = start, self._run.time
-        self._marks.clear()
-        self._tape = Tape(*self._outside.begin(here))
-        self._events: list[Array] = []
+    def _begin(self, here: State | None, start: State | None) -> None:
+        """Forget the past; `start` is what the run is repeated from."""
+        self._past = Past(self._system, start, self._run.time, self._outside.begin(here))
         self._here(here)
 
-    def _back_to(self, state: State, ends: int, noted: int, events: int) -> None:
-        """The past up to a state stays."""
-        self._tape.cut(ends, noted)
-        del self._events[events:]
-        for other, mark in list(self._marks.items()):
-            if mark > (ends, noted, events):
-                del self._marks[other]
-        self._outside.begin(state)
-        self._here(state)
-
     def _here(self, state: State | None) -> None:
-        self._time = self._run.time
-        self._called = -inf
-        self._failure: SimulationError | None = None
+        self._time, self._called, self._failure = self._run.time, -inf, None
         counts = self._run.statistics()
         self._untouched = counts["steps"] + counts["rejected"] == 0
-        self._stale = state is None
-        self._left: Array | None = None
+        self._stale, self._left = state is None, None
         if state is not None:
-            self._rows[0] = state.values
-        self._sampled = bool(controllers(self._system.inputs))
+            self._readout.rows[0] = state.values
         self._find_controllers()
 
     def __repr__(self) -> str:
         status = "" if self._failure is None else f", {self._failure}"
         return f"<Simulator of {shown(self._system.name)} at {self._time:g} s{status}>"
-
-    def __setitem__(self, name: str, value: Any) -> None:
-        self.set(name, value)
-
-    def __iter__(self) -> Any:
-        return iter(self._channels())
 
 
 def _same(one: float, other: float) -> bool:
