@@ -67,6 +67,8 @@ def bad(row: Setting) -> list[tuple[Any, str]]:
         high = (row.most + 1, f"must be at most {row.most:.0f}")
         return [(0, "must be at least 1"), (2.5, "must be a whole number"), high]
     if spec.at_least is not None:
+        if spec.at_least == 0.0:
+            return [(-1.0, "must be a finite number of at least 0"), (math.nan, "must be a finite number")]
         return [(0.5 * spec.at_least, f"must be at least {spec.at_least:g}"), (math.nan, "must be a finite number")]
     return [(0.0, "finite number above 0"), (-1.0, "finite number above 0"), (math.inf, "finite number above 0")]
 

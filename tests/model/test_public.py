@@ -24,7 +24,7 @@ PUBLIC = [
     *("ClutchworkError", "Domain", "Driveline", "Element", "EnergyBalance", "Event", "Events", "FaultWarning"),
     *("HeatFlow", "Interrupted", "Law"),
     *("ModelError", "ModelWarning", "Node", "OptionError", "Options", "Problem", "Rate", "Signal", "SimulationError"),
-    *("StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
+    *("Simulator", "State", "StateError", "StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
     *("export_c", "fit", "rig", "simulate"),
     *("Sweep", "SweepInterrupted", "at", "break_away", "integral", "lock", "maximum", "minimum", "peak"),
     *("sweep", "variants"),
