@@ -137,6 +137,8 @@ int cw_release_input(cw_run* run, std::int64_t input) {
   if (!signal.given) return 1;
   signal.given = false;
   make_knot(run->ws);
+  // a saved state stands on the segment of its time
+  if (run->ws.started) seek(run->ws, int(input), run->ws.time);
   return 1;
 }
 

@@ -348,3 +348,13 @@ def test_sweeps_begin_later_too() -> None:
     assert swept["turned"][0] == pytest.approx(98.75 * 0.1 + 0.4 * 87.5, rel=1e-4)
     with pytest.raises(cw.UseError, match=r"before t_start = 0.5 s"):
         cw.sweep(brake(), 1.0, t_start=0.5, vary={"b.gain": [1.0]}, outputs=cw.at("a.speed", 0.2))
+
+
+def test_exported_c_begins_there_too(tmp_path: Path) -> None:
+    folder = cw.export_c(brake(), tmp_path / "c", t_end=1.0, t_start=0.5, dt=0.2)
+    header, tables = ((folder / name).read_text() for name in ("model.h", "model.c"))
+    assert "#define MODEL_T_START 0.5 " in header
+    # 0.5, 0.7, 0.9 and 1 s
+    assert "#define MODEL_INSTANTS 4\n" in header
+    assert 'cw_set_option(run, "t_start", 0.5)' in tables
+    assert all("MODEL_T_START" in (folder / name).read_text() for name in ("main.c", "main.cpp"))

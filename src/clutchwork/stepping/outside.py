@@ -128,7 +128,7 @@ class Outside:
             yield Problem(name, "", NOT_A_NUMBER[0], shown(value), NOT_A_NUMBER[1])
 
     def _acts(self, values: Mapping[str, Any], change: Change) -> Plan:
-        """Acts of a change that can be done; the numbers of all are told with the first."""
+        """Acts of a change that can be done; the first has the numbers of all."""
         acts, problems = list[Act](), list[Problem]()
         for name, value in values.items():
             known = self._value(name)

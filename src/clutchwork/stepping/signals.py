@@ -45,7 +45,7 @@ class Settable(NamedTuple):
         return (0.0 if found else float(given)), found
 
     def told(self, value: float) -> tuple[tuple[int, float], ...]:
-        """What the core is told."""
+        """What the core is given."""
         return tuple([(number, value) for number in self.numbers])
 
 
@@ -111,7 +111,7 @@ def _of(thing: Any, component: Any, inside: str) -> Iterator[tuple[str, tuple[st
 
 
 def given_by_others(system: System, name: str) -> Problem | None:
-    """Why a signal that another component gives cannot be set; None where it is no such signal."""
+    """Why a signal that another component gives cannot be set; None where it is another name."""
     linked = next((link for link in system.links if link.name == name), None)
     if linked is None:
         return None

@@ -40,7 +40,7 @@ OF_A_STATE = "give what sim.save(), run.state() or cw.State.load(path) returned"
 
 
 class Simulator:
-    """A run that goes on when it is told to: `advance` by a time, `set` what acts on it, read what it does.
+    """A run that goes on when it is asked to: `advance` by a time, `set` what acts on it, read what it does.
 
     Use it where something outside of the model decides: a controller, a user, another simulator. Where all is known
     before, `simulate` does it in one call. Between the steps everything is as in `simulate`: contacts lock and let go
@@ -141,7 +141,7 @@ class Simulator:
             self._stop(status, stop, raised)
 
     def _stop(self, status: int, stop: float, raised: BaseException | None) -> None:
-        """The core did not get there: tell why, with the run so far. After Ctrl-C it can go on."""
+        """The core did not get there: say why, with the run so far. After Ctrl-C it can go on."""
         self._time, self._stale = self._run.time, True
         self._past.stepped(self._time if raised is not None else stop)
         if raised is not None:
@@ -189,8 +189,8 @@ class Simulator:
     def set(self, name: str | Mapping[str, Any], value: Any = None) -> None:
         """Set a signal or a parameter from the present time on, or several at once by name.
 
-        A signal, such as "c1.pressure", holds the value [in its unit] whatever the model says, until it is set again or
-        `release` is called. A parameter, such as "c1.gain" or "c1.friction.static", keeps it too; what a run cannot
+        A signal, such as "c1.pressure", holds the value [in its unit] in place of that of the model, until it is set
+        again or released. A parameter, such as "c1.gain" or "c1.friction.static", keeps it too; what a run cannot
         change, such as an inertia, is refused. ModelError names all that is wrong at once, and nothing is set then.
         """
         if isinstance(value, float) and isinstance(name, str):
