@@ -88,7 +88,7 @@ def test_a_column_of_temperature(head: str, tmp_path: Path) -> None:
         ("time,slip [s],torque,load", {"slip": "slip", "torque": "torque"}, "does not fit"),
         ("time,slip [rads],torque,load", {"slip": "slip", "torque": "torque"}, "unknown unit"),
         ("time,slip [m/s],torque [N m],load", {"slip": "slip", "torque": "torque"}, "mix rotation and translation"),
-        ("time;slip;torque;load", {"slip": "slip", "torque": "torque"}, "not with semicolons"),
+        ("time;slip;torque;load", {"slip": "slipp", "torque": "torque"}, "did you mean 'slip"),
     ],
 )
 def test_columns_that_do_not_fit(head: str, names: dict[str, str], words: str, tmp_path: Path) -> None:

@@ -38,6 +38,7 @@ PUBLIC = [
     *("export_c", "fit", "rig", "simulate"),
     *("Sweep", "SweepInterrupted", "at", "break_away", "integral", "lock", "maximum", "minimum", "peak"),
     *("sweep", "variants"),
+    *("load_run", "read_columns"),
 ]
 
 

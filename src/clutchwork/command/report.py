@@ -93,7 +93,7 @@ def run_data(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
         "ratio_of": list(shafts) if shafts else None,
         "phases": [_finite(asdict(phase)) for phase in phases],
         "dependent": [asdict(phase) for phase in run.dependent] if len(run) else [],
-        "energy": run.energy.as_dict() if run.options.work and len(run) else None,
+        "energy": run.energy.to_dict() if run.options.work and len(run) else None,
         "final": {name: float(run[name][-1]) for name in run.names if name.endswith(FINAL) and len(run)},
         "statistics": dict(run.statistics),
     }

@@ -226,9 +226,9 @@ def option(
     return _field(spec, default)
 
 
-def text(doc: str, *, default: str = MISSING, kw_only: bool = True) -> Any:  # type: ignore[assignment]
+def text(doc: str, *, default: str | None = MISSING, kw_only: bool = True) -> Any:  # type: ignore[assignment]
     """A path or a name."""
-    return _field(Spec("text", "", doc), default, kw_only)
+    return _field(Spec("text", "", doc, default is None), default, kw_only)
 
 
 def function(doc: str, *, kw_only: bool = True) -> Any:

@@ -195,7 +195,7 @@ def _peak(law: Law, at: At) -> Iterator[Problem]:
 
 
 def _text(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
-    if not isinstance(value, str) or not value:
+    if not (value is None and spec.optional) and (not isinstance(value, str) or not value):
         yield at.problem("must be a string", value=shown(value), remedy=spec.doc)
 
 

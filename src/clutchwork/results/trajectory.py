@@ -19,6 +19,7 @@ from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, NAMES
 from clutchwork.results.channels import Channels, Units, channels
 from clutchwork.results.events import Events
+from clutchwork.results.exchange.exports import Exports
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -46,7 +47,7 @@ class SimulationError(ClutchworkError, RuntimeError):
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory:
+class Trajectory(Exports):
     """The result of a run.
 
     `run.time` [s] and `run["engine.speed"]` are arrays over the same instants; an instant that appears twice gives
@@ -153,26 +154,6 @@ class Trajectory:
 
         return dependent_phases(self)
 
-    def to_csv(self, path: str | Path, names: Any = None) -> None:
-        """Write signals (all by default) as columns `name [unit]` with 17 digits, the time first."""
-        from pathlib import Path
-
-        from clutchwork.results.export import to_csv
-
-        to_csv(self, Path(path), self._chosen(names))
-
-    def to_pandas(self, names: Any = None) -> Any:
-        """A pandas DataFrame over time; needs pandas."""
-        from clutchwork.results.export import to_pandas
-
-        return to_pandas(self, self._chosen(names))
-
-    def to_xarray(self, names: Any = None) -> Any:
-        """An xarray Dataset with units as attributes; needs xarray."""
-        from clutchwork.results.export import to_xarray
-
-        return to_xarray(self, self._chosen(names))
-
     @explained("plot")
     def plot(self, path: str | Path | None = None, *, lockup: Event | None = None) -> Figure:
         """Picture of speeds, lock-up, inputs and torques; written to `path` when given. Needs matplotlib.
@@ -182,14 +163,6 @@ class Trajectory:
         from clutchwork.results.plot import picture
 
         return picture(self, path, lockup=lockup)
-
-    def _chosen(self, names: Any) -> tuple[str, ...]:
-        if names is None:
-            return self.names
-        chosen = (names,) if isinstance(names, str) else tuple(names)
-        for name in chosen:
-            self.channels[name]
-        return chosen
 
     def __repr__(self) -> str:
         end = self.time[-1] if len(self) else 0

@@ -27,6 +27,7 @@ from clutchwork.base.shown import listed, shown
 from clutchwork.declare.quantity import QuantityError
 from clutchwork.signals.bases import sheets
 from clutchwork.signals.bases.column_heads import Head, meant, split
+from clutchwork.signals.bases.semicolons import with_commas
 from clutchwork.signals.bases.sheets import Sheet
 
 Array = NDArray[np.float64]
@@ -48,6 +49,7 @@ class Wanted:
     time: str
     column: str
     scale: float = 1.0
+    group: str = ""  # what the column stands in, where a file of another format has several of its name
 
     def error(self, quantity: str, message: str, remedy: str) -> FileError:
         """A single mistake."""
@@ -69,8 +71,8 @@ def read(path: Path, wanted: Wanted) -> Values:
     if made is not None:
         return made
     try:
-        with open_regular(path, MOST_BYTES) as file:
-            return _read(file, wanted, path)
+        with open_regular(path, MOST_BYTES) as file, with_commas(file) as plain:
+            return _read(plain, wanted, path)
     except FileNotFoundError:
         raise wanted.error("path", "does not exist", f"put the file into {_folder(path)}") from None
     except OSError as error:
@@ -110,7 +112,7 @@ def _column(sheet: Sheet, wanted: Wanted) -> Values | None:
 def _read(file: BinaryIO, wanted: Wanted, path: Path) -> Values:
     alike = _scan(file, wanted)
     size = file.tell()
-    with io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
+    with as_text(file) as text:
         header, lines = _opened(text)
         if not header:
             raise wanted.error("path", "is empty", "give a header line and at least one row of numbers")
@@ -125,6 +127,11 @@ def _read(file: BinaryIO, wanted: Wanted, path: Path) -> Values:
         made = _at_once(lines, places) if alike else None
         made = _by_cells(_opened(text)[1], header, places, wanted) if made is None else made
     return Values(_scaled(made, factors, wanted), column)
+
+
+def as_text(file: BinaryIO) -> io.TextIOWrapper:
+    """The characters of a file."""
+    return io.TextIOWrapper(file, encoding="utf-8-sig", newline="")
 
 
 def _opened(text: io.TextIOWrapper) -> tuple[list[str], Iterator[list[str]]]:
@@ -196,9 +203,7 @@ def _name_fault(
     if found:
         return quantity, f"{path} has {len(found)} columns {shown(name)}", "give every column a different name"
     remedy = "the first line names the columns, with commas between them"
-    if len(header) == 1 and ";" in header[0]:
-        remedy = "separate the columns with commas, not with semicolons"
-    elif asked:
+    if asked:
         hint = near(name, header) or near(split(name)[0], [split(head)[0] for head in header])
         remedy = f"the columns are {listed(header)}{hint}"
     return quantity, f"{path} has no column {shown(name)}", remedy
@@ -219,6 +224,20 @@ def _factors(time: Head, column: Head, wanted: Wanted) -> tuple[float, float]:
         fault = f"repeats the unit of column {shown(column.text)} of {shown(wanted.path)}"
         raise FileError([("scale", fault, "remove scale: the values are already converted by the unit of the column")])
     return factors[0], factors[1] * wanted.scale
+
+
+def in_si(table: Array, heads: tuple[Head, Head], wanted: Wanted) -> Values:
+    """Times and values of another format, by the units of their heads."""
+    return Values(_scaled(table, _factors(*heads, wanted), wanted), heads[1])
+
+
+def names_of(path: Path) -> list[str]:
+    """The first line of a file; none where it cannot be read, for other defects show when its columns are."""
+    try:
+        with open_regular(path, MOST_BYTES) as file, with_commas(file) as plain, as_text(plain) as text:
+            return _opened(text)[0]
+    except (OSError, UnicodeDecodeError, csv.Error):
+        return []
 
 
 def _at_once(lines: Iterator[list[str]], places: tuple[int, int]) -> Array | None:
