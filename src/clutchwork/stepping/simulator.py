@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from math import inf, isfinite
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -363,6 +363,11 @@ class Simulator:
         if state is not None:
             self._readout.rows[0] = state.values
         self._find_controllers()
+
+    def __reduce__(self) -> NoReturn:
+        """Refuse to be copied or pickled, with what to do instead."""
+        remedy = "keep the model and sim.save(), and begin with cw.Simulator(model, start=state)"
+        raise UseError("cw.Simulator", [f"it cannot be copied or pickled; {remedy}"])
 
     def __repr__(self) -> str:
         status = "" if self._failure is None else f", {self._failure}"
