@@ -84,7 +84,7 @@ def test_a_column_of_temperature(head: str, tmp_path: Path) -> None:
         (SI, {"slip": "slipp", "torque": "torque"}, "did you mean 'slip"),
         (SI, {"slip": "slip", "torque": "torque", "time": "t"}, "no column 't'"),
         (SI, {"slip": "slip", "torque": "torque", "temperature": "theta"}, "no column 'theta'"),
-        ("time,slip,torque,T [degC]", {"slip": "slip", "torque": "torque", "temperature": "T"}, r"give it in \[K\]"),
+        ("time,slip,torque,T [bar]", {"slip": "slip", "torque": "torque", "temperature": "T"}, r"give it in \[K\]"),
         ("time,slip [s],torque,load", {"slip": "slip", "torque": "torque"}, "does not fit"),
         ("time,slip [rads],torque,load", {"slip": "slip", "torque": "torque"}, "unknown unit"),
         ("time,slip [m/s],torque [N m],load", {"slip": "slip", "torque": "torque"}, "mix rotation and translation"),

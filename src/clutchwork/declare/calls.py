@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import is_dataclass
 from typing import Any, TypeVar
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, near, nearest
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import counted
@@ -39,6 +40,10 @@ def explained(call: str) -> Callable[[F], F]:
 
 def explain(cls: Any) -> None:
     """Let the constructor of a declaration do so."""
+    if getattr(cls.__init__, "__module__", "") == dataclass.__module__:
+        # which asks for this where a call does not fit, and costs nothing where it does
+        cls._explained = staticmethod(_explained)
+        return
     made = cls.__init__
 
     @functools.wraps(made)
@@ -46,12 +51,17 @@ def explain(cls: Any) -> None:
         try:
             made(self, *args, **named)
         except TypeError:
-            problems = list(_problems(cls, args, named, _meanings(cls)))
-            if not problems:
-                raise
-            raise UseError(f"cw.{cls.__name__}({_name(args, named)})", problems) from None
+            _explained(cls, args, named)
+            raise
 
     cls.__init__ = construct
+
+
+def _explained(cls: Any, args: tuple[Any, ...], named: Mapping[str, Any]) -> None:
+    """A UseError that names every mistake of a call, where there is one."""
+    problems = list(_problems(cls, args, named, _meanings(cls)))
+    if problems:
+        raise UseError(f"cw.{cls.__name__}({_name(args, named)})", problems) from None
 
 
 def _name(args: tuple[Any, ...], named: Mapping[str, Any]) -> str:
@@ -89,8 +99,12 @@ def _problems(
         yield _spare(spare, [p for p in by_place if p not in OWNERS], [p.name for p in rest if p.name not in given])
     for name in set(by_place[: len(args)]) & set(named):
         yield f"{name} is given twice, by position and by keyword; give it once"
+    fields = f"known fields: {listed(known)}"
     for name in unknown:
-        yield f"unknown field {shown(name)}{near(name, known, f'known fields: {listed(known)}')}"
+        # the list of all is only said once, and not where a near one says enough
+        said = near(name, known)
+        yield f"unknown field {shown(name)}{said or (fields and f'; {fields}')}"
+        fields = fields if said else ""
     for p in parameters[len(args) :]:
         lacks = p.default is p.empty and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) and p.name not in named
         # values by place are meant for some of them, and so is a name close to theirs

@@ -13,6 +13,8 @@ NAMES = {
     "Events": "results.events",
     "FaultWarning": "run.failure",
     "HeatFlow": "declare.node",
+    "Hint": "results.hints.hint",
+    "Hints": "results.hints.hint",
     "Interrupted": "run.failure",
     "Law": "declare.node",
     "ModelError": "base.errors",

@@ -84,7 +84,7 @@ def _head(name: str, wanted: str, known: list[str]) -> Head:
         raise FitError(name, f"has no column {wanted!r}", remedy)
     head, units = found[0], UNITS[name]
     try:
-        head.factor(units)
+        head.scale(units)
     except QuantityError as bad:
         raise FitError(name, f"column {head.text!r} {bad.message}", bad.remedy) from None
     # a name with a unit gives it to a head without

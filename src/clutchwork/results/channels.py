@@ -104,7 +104,8 @@ class Channels(Mapping[str, Channel]):
         yield from self._thermal()
         start = self._start("input")
         for index, (name, unit) in enumerate(self._wiring.inputs):
-            yield name, _column(start + index, unit)
+            if name not in self._wiring.unused:
+                yield name, _column(start + index, unit)
 
     def _start(self, part: str) -> int:
         return int(self._wiring.columns[part].start)

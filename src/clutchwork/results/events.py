@@ -106,7 +106,7 @@ class Events(Sequence[Event]):
 
     def __str__(self) -> str:
         """A table for reading."""
-        head = ("time s", "element", "from", "to", "cause", "slip acc rad/s2", "torque before", "torque after N m")
+        head = ("time s", "element", "from", "to", "cause", "slip acc rad/s2", "torque before N m", "torque after N m")
         lines = [tuple(_cells(event)) for event in self]
         return columns([head, *lines], right={0, 5, 6, 7}) if lines else "no events"
 

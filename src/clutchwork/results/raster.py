@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from clutchwork.base.errors import OptionError
 from clutchwork.base.shown import shown
-from clutchwork.declare.options import MOST_COUNTED, MOST_ROWS, ONE_GRID, Options
+from clutchwork.declare.options import MOST_COUNTED, MOST_ROWS, ONE_GRID, Options, instants
+from clutchwork.declare.units import split
 
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
@@ -46,16 +47,16 @@ def at_raster(run: Recorded, dt: float | None, times: Any) -> Recorded:
     first, last = float(run.time[0]), float(run.time[-1])
     if dt is None:
         return run.at(_within(times, first, last))
-    Options(dt=dt)
-    grid = uniform(float(dt), run.options.t_start, last)
+    grid = uniform(float(Options(dt=dt).dt or 0.0), run.options.t_start, last)
     inside = grid[grid >= first]
     return run.at(inside if inside.size and inside[0] == first else np.append(first, inside))
 
 
 def _within(times: Any, first: float, last: float) -> Array:
     """Instants in order that lie within the run."""
+    given = times if isinstance(times, str) and not split(times) else instants(times)
     try:
-        grid = np.sort(np.atleast_1d(np.array(times, dtype=float)))
+        grid = np.sort(np.atleast_1d(np.array(given, dtype=float)))
     except (TypeError, ValueError):
         raise OptionError([f"times are {shown(times)}: they must be a sequence of numbers [s]"]) from None
     if grid.ndim != 1 or not grid.size or not np.all(np.isfinite(grid)):

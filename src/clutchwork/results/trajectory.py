@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from clutchwork.results.dependence import DependentPhase
     from clutchwork.results.energy import EnergyBalance
     from clutchwork.results.events import Event
+    from clutchwork.results.hints.hint import Hints
     from clutchwork.results.state import State
 
 Array = NDArray[np.float64]
@@ -52,7 +53,7 @@ class Trajectory(Exports):
 
     `run.time` [s] and `run["engine.speed"]` are arrays over the same instants; an instant that appears twice gives
     the left and the right limit at an event. `run.names` lists all signals, `run.units` their units,
-    `run.events`, `run.energy` and `run.statistics` what else is known.
+    `run.events`, `run.energy` and `run.statistics` what else is known, `run.hints` what may not be meant.
     """
 
     system: System
@@ -107,6 +108,18 @@ class Trajectory(Exports):
         """A signal over `time`; KeyError with near names when there is none of that name."""
         return self.channels[name].evaluate(self.rows)
 
+    def in_units(self, name: str, unit: str) -> NDArray[Any]:
+        """A signal over `time` in another unit: `run.in_units("engine.speed", "rpm")`.
+
+        UseError, a TypeError, where the unit is not one of the signal, with those that are; KeyError with near names
+        where there is no such signal.
+        """
+        from clutchwork.results.units import converter
+
+        self.channels[name]
+        found: NDArray[Any] = converter(self, {name: unit}).values(self, name)
+        return found
+
     def __contains__(self, name: object) -> bool:
         return name in self.channels
 
@@ -153,6 +166,16 @@ class Trajectory(Exports):
         from clutchwork.results.dependence import dependent_phases
 
         return dependent_phases(self)
+
+    @cached_property
+    def hints(self) -> Hints:
+        """What an expert would say of this run and its model, with numbers and a remedy; print it to read it.
+
+        Looked for when it is first asked for. A run whose output has instants of its own is repeated for that.
+        """
+        from clutchwork.results.hints.registry import of_run
+
+        return of_run(self)
 
     @explained("plot")
     def plot(self, path: str | Path | None = None, *, lockup: Event | None = None) -> Figure:

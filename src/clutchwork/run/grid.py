@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.errors import OptionError
 from clutchwork.base.shown import shown
-from clutchwork.declare.options import Options
+from clutchwork.declare.options import Options, instants
 from clutchwork.results.raster import uniform
 
 
@@ -21,8 +21,9 @@ def output_grid(options: Options, t_end: float) -> NDArray[np.float64] | None:
 
 
 def _given(times: Sequence[float] | NDArray[np.float64], begin: float, t_end: float) -> NDArray[np.float64]:
+    given = times if isinstance(times, str) else instants(times)
     try:
-        grid = np.array(times, dtype=float)
+        grid = np.array(given, dtype=float)
     except (TypeError, ValueError):
         raise OptionError([f"times are {shown(times)}: they must be a sequence of numbers [s]"]) from None
     if grid.ndim != 1 or grid.size == 0:

@@ -19,7 +19,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, caller
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
-from clutchwork.declare.options import Options
+from clutchwork.declare.options import Options, instants
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES, NOT_FINITE
 from clutchwork.results.channels import channels
 from clutchwork.results.events import from_rows
@@ -36,6 +36,7 @@ from clutchwork.run.record import Progress, Recording, record
 from clutchwork.run.settings import merged
 
 if TYPE_CHECKING:
+    from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
 
 Array = NDArray[np.float64]
@@ -71,8 +72,8 @@ class Job:
 
     def again(self, times: Any) -> Trajectory:
         """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
-        instants = np.sort(np.atleast_1d(np.asarray(times, dtype=float)))
-        return trajectory(replace(self, options=self.options.changed({"times": instants, "dt": None})), None)
+        wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
+        return trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
 
     def state(self, at: float) -> State:
         """Repeat it up to a time [s], and save what it is there."""
@@ -90,7 +91,7 @@ class Job:
 @explained("simulate")
 def simulate(
     model: Assembles | System,
-    t_end: float | None = None,
+    t_end: Number | None = None,
     *,
     start: State | None = None,
     options: Options | None = None,
@@ -99,9 +100,9 @@ def simulate(
 ) -> Trajectory:
     """Compute the motion of a Driveline or a System from 0, or from t_start or a state on, to t_end.
 
-    Parameters: t_end [s], a point in time, wherever the run begins; start, a `State` of the same model, from which the
-    run goes on at the time of it; options, an `Options`, or its fields by name (rtol=, dt=, t_start= ...); progress, a
-    function of (time reached [s], t_end [s]) that is called now and then.
+    Parameters: t_end [s], or with a unit, "500 ms", a point in time, wherever the run begins; start, a `State` of the
+    same model, from which the run goes on at the time of it; options, an `Options`, or its fields by name (rtol=, dt=,
+    t_start= ...); progress, a function of (time reached [s], t_end [s]) that is called now and then.
 
     What is left out is that of the settings of the model, `Driveline.simulation`, which a model file holds in its
     [simulation] table; `options` replaces all of them but t_end.

@@ -19,8 +19,9 @@ class Column(Signal):
     The file is CSV, MDF (INCA, CANape), MAT (MATLAB), Parquet or NetCDF; `cw.read_columns(path)` lists what it holds.
     Equal times make a jump. Values with a unit are converted to SI, and so are times; it must fit the driven
     quantity. Without a unit they are in SI. The first line of a CSV file names the columns, with units such as
-    `c1 [bar]`; the separator is a comma. A name without its unit finds that column too. A channel of an MDF file has
-    the times of its group, a vector of a MAT file those named `time` or `t` beside it, or in a structure around it.
+    `c1 [bar]` or `oil [degC]`; the separator is a comma. A name without its unit finds that column too. A channel of
+    an MDF file has the times of its group, a vector of a MAT file those named `time` or `t` beside it, or in a
+    structure around it.
     In a model file the path is relative to that file. A file that cannot be used raises `FileError`.
     """
 
@@ -66,7 +67,7 @@ class Column(Signal):
         from clutchwork.declare.quantity import QuantityError
 
         try:
-            _ = self._read.head.factor(units)
+            _ = self._read.head.scale(units)
         except FileError:
             # its mistakes are reported as those of the file
             return []

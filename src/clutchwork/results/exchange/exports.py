@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 from clutchwork.declare.calls import explained
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from clutchwork.results.recorded import Recorded
@@ -51,12 +52,23 @@ class Exports:
         self._write("", path, names, dt, times)
 
     @explained("to_pandas")
-    def to_pandas(self, names: Any = None, *, dt: float | None = None, times: Any = None) -> Any:
-        """A pandas DataFrame over time; `frame.attrs["units"]` holds the units. Needs pandas."""
+    def to_pandas(
+        self,
+        names: Any = None,
+        *,
+        dt: float | None = None,
+        times: Any = None,
+        units: Mapping[str, str] | None = None,
+    ) -> Any:
+        """A pandas DataFrame over time; `frame.attrs["units"]` holds the units. Needs pandas.
+
+        Parameters: units, other ones than those of SI by signal, `*` for any characters: {"engine.speed": "rpm",
+        "*.pressure": "bar", "time": "ms"}.
+        """
         from clutchwork.results.exchange.content import content
         from clutchwork.results.exchange.frames import to_pandas
 
-        return to_pandas(content(self._recorded, names, dt, times))
+        return to_pandas(content(self._recorded, names, dt, times), units)
 
     @explained("to_xarray")
     def to_xarray(self, names: Any = None, *, dt: float | None = None, times: Any = None) -> Any:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from clutchwork.base.extras import need
 from clutchwork.results.exchange.content import Content
+from clutchwork.results.units import converter
 
 
-def to_pandas(content: Content) -> Any:
+def to_pandas(content: Content, units: Mapping[str, str] | None = None) -> Any:
     """DataFrame with the time as index; `frame.attrs["units"]` holds the units."""
-    pandas = need("pandas", "tables", "a table")
-    columns = {signal.name: signal.values for signal in content.signals()}
-    frame = pandas.DataFrame(columns, index=pandas.Index(content.time, name="time"))
-    frame.attrs["units"] = {name: content.run.units[name] for name in content.names}
+    pandas, made = need("pandas", "tables", "a table"), converter(content.run, units)
+    columns = {signal.name: made.put(signal.values, signal.name) for signal in content.signals()}
+    frame = pandas.DataFrame(columns, index=pandas.Index(made.put(content.time, "time"), name="time"))
+    frame.attrs["units"] = {name: made.unit(name) for name in content.names}
     return frame
 
 

@@ -139,7 +139,10 @@ def carrying(run: Recorded, names: list[str]) -> str:
 
 def driven(run: Recorded) -> list[dict[str, str]]:
     """Contacts that carry torque, with the signal that presses each, those of one unit together."""
-    names = {*(name for name, _ in run.wiring.inputs), *(link.name for link in run.wiring.links)}
+    names = {
+        *(name for name, _ in run.wiring.inputs if name not in run.wiring.unused),
+        *(link.name for link in run.wiring.links),
+    }
     found = {
         name: [f"{name}.{word}" for word in _pressing(run, name) if f"{name}.{word}" in names] for name in busy(run)
     }
