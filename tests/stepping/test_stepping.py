@@ -169,6 +169,8 @@ def test_durations_add_up_without_round_off() -> None:
     assert sim.time == 1.0
     sim.advance(0.0)
     assert sim.time == 1.0
+    sim.advance("10 ms")
+    assert sim.time == 1.01
 
 
 @pytest.mark.parametrize("step", [0.002, 0.0047, 0.01, 0.25])
@@ -395,7 +397,7 @@ def test_knots_at_the_end_of_a_step_wait_for_what_is_set() -> None:
     ("call", "words"),
     [
         (lambda sim: sim.advance(-0.1), "time does not go back"),
-        (lambda sim: sim.advance("1 s"), "duration is '1 s': give a number in s"),
+        (lambda sim: sim.advance("1 m"), "duration is '1 m': give a number in s"),
         (lambda sim: sim.advance(float("nan")), "give a number in s"),
         (lambda sim: sim.advance_to(0.01), r"time is 0.01 s, before the present time 0.1 s; sim.restore"),
         (lambda sim: sim.advance(), "duration is missing"),

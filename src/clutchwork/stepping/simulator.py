@@ -15,6 +15,7 @@ from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
+from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.declare.status import DONE, EVENTS_FULL
 from clutchwork.results.state import State, StateError
 from clutchwork.results.trajectory import SimulationError
@@ -383,6 +384,14 @@ def _seconds(call: str, name: str, value: object) -> float:
     """A finite time [s]; UseError for anything else."""
     if type(value) is float and isfinite(value):
         return value
-    if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(float(value)):
+    given = _in_seconds(value) if has_unit(value) else value
+    if isinstance(given, bool) or not isinstance(given, Real) or not isfinite(float(given)):
         raise UseError(call, [f"{name} is {shown(value)}: give a number in s"])
-    return float(value)
+    return float(given)
+
+
+def _in_seconds(value: object) -> object:
+    try:
+        return in_si(value, "s")
+    except QuantityError:
+        return None
