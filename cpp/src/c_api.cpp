@@ -42,9 +42,21 @@ void reset(cw_run* run) {
 
 bool is_finite(double x) { return x - x == 0; }
 
+/// Present time; before the start the one at which it will be.
+double present(const Workspace<double>& ws) { return ws.started ? ws.time : ws.options.t_start; }
+
+/// A signal steps at the present time.
+void make_knot(Workspace<double>& ws) {
+  ws.in.next_knot = -infinity;
+  // before the first step the value belongs to the start, which is decided anew
+  if (ws.statistics.steps + ws.statistics.rejected > 0) return;
+  ws.started = false;
+  for (std::int64_t i = 0; i < ws.sys.inputs; ++i) ws.in.signal[i].segment = 0, ws.in.signal[i].idle = false;
+}
+
 /// Where rows go, for a call that advances a run; other than 0: what the call returns at once.
 int take_sink(Sink& sink, cw_run* run, double t_end, double* times, double* rows, std::int64_t n, int steps) {
-  if (run == nullptr || !is_finite(t_end) || t_end < run->ws.time || n < 0 || steps < 0) return -1;
+  if (run == nullptr || !is_finite(t_end) || t_end < present(run->ws) || n < 0 || steps < 0) return -1;
   if (n > 0 && (times == nullptr || rows == nullptr)) return -1;
   // a step fills its rows and up to two more, at an event
   if (steps > 0 && n < std::int64_t(steps) + 2) return int(Status::rows_full);
@@ -110,16 +122,30 @@ int cw_set_option(cw_run* run, const char* name, double value) {
 }
 
 int cw_set_input(cw_run* run, std::int64_t input, double value) {
-  if (run == nullptr || !is_finite(value)) return 0;
-  Workspace<double>& ws = run->ws;
-  if (input < 0 || input >= ws.sys.inputs || ws.sys.input_count[input] != 0) return 0;
+  if (run == nullptr || !is_finite(value) || input < 0 || input >= run->ws.sys.inputs) return 0;
+  Signal& signal = run->ws.in.signal[input];
   // what the other signals do at this instant has waited for it
-  if (ws.in.signal[input].held == value && ws.in.next_knot > ws.time) return 1;
-  ws.in.signal[input].held = value;
-  // a step is a knot
-  ws.in.next_knot = -infinity;
-  // before the first step the value belongs to the start, which is decided anew
-  if (ws.statistics.steps + ws.statistics.rejected == 0) ws.started = false;
+  if (is_held(run->ws, int(input)) && signal.held == value && run->ws.in.next_knot > run->ws.time) return 1;
+  signal.held = value;
+  signal.given = run->ws.sys.input_count[input] != 0;
+  make_knot(run->ws);
+  return 1;
+}
+
+int cw_release_input(cw_run* run, std::int64_t input) {
+  if (run == nullptr || input < 0 || input >= run->ws.sys.inputs || run->ws.sys.input_count[input] == 0) return 0;
+  Signal& signal = run->ws.in.signal[input];
+  if (!signal.given) return 1;
+  signal.given = false;
+  make_knot(run->ws);
+  // a saved state stands on the segment of its time
+  if (run->ws.started) seek(run->ws, int(input), run->ws.time);
+  return 1;
+}
+
+int cw_expect_inputs(cw_run* run, int expected) {
+  if (run == nullptr) return 0;
+  run->ws.in.expected = expected != 0;
   return 1;
 }
 
@@ -177,13 +203,13 @@ int cw_advance_group(cw_member* members, std::int64_t count, double t_end, void*
   return 0;
 }
 
-double cw_time(const cw_run* run) { return run == nullptr ? __builtin_nan("") : run->ws.time; }
+double cw_time(const cw_run* run) { return run == nullptr ? __builtin_nan("") : present(run->ws); }
 
 std::int64_t cw_row_size(const cw_run* run) { return run == nullptr ? -1 : run->ws.row.size; }
 
 int cw_row(cw_run* run, double* row) {
   if (run == nullptr) return -1;
-  double t = run->ws.time;
+  double t = present(run->ws);
   return cw_advance(run, t, &t, row, 1, 0, nullptr);
 }
 
@@ -201,6 +227,8 @@ int cw_local(cw_run* run, double* row, double* matrix) {
 }
 
 std::int64_t cw_event_size(void) { return event_size; }
+
+std::int64_t cw_pending_events(const cw_run* run) { return run == nullptr ? -1 : run->ws.events.n; }
 
 std::int64_t cw_take_events(cw_run* run, double* events, std::int64_t room) {
   if (run == nullptr || room < 0 || (events == nullptr && room > 0)) return -1;
@@ -257,8 +285,10 @@ int cw_restore(cw_run* run, const void* bytes, std::int64_t n) {
   saved::describe(run->ws, check);
   if (!check.good) return 0;
   const Poll poll = run->ws.poll;
+  const bool expected = run->ws.in.expected;
   reset(run);
   run->ws.poll = poll;
+  run->ws.in.expected = expected;
   saved::resume(run->ws, from + state_head::bytes);
   return 1;
 }

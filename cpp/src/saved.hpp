@@ -60,6 +60,7 @@ struct Visitor {
   template <class S>
   void cursor(int, S& signal) {
     self().whole(signal.segment, 0, most), self().whole(signal.idle, 0, 1), self().number(signal.held);
+    self().whole(signal.given, 0, 1);
   }
 
  private:
@@ -171,9 +172,12 @@ class Check : public Visitor<Check> {
     const auto k = words_.next<std::int64_t>();
     const auto idle = words_.next<std::int64_t>();
     good = good && settable(words_.next<double>(), sys.input_value[i]) && k >= 0 && (idle == 0 || idle == 1);
+    const auto given = words_.next<std::int64_t>();
+    good = good && (given == 0 || (given == 1 && sys.input_count[i] > 0));
     if (!started_ || sys.input_count[i] == 0) good = good && k == 0 && idle == 0;
     if (!good || !started_ || sys.input_count[i] == 0) return;
     const bool repeats = sys.input_period[i] > 0;
+    if (given != 0) return left_behind(i, k);
     good = idle != 0 ? repeats && k == 0 : repeats ? k < (std::int64_t(1) << 52) : k < sys.input_count[i];
     if (!good) return;
     if (idle != 0) {
@@ -189,6 +193,13 @@ class Check : public Visitor<Check> {
   const Workspace<double>& ws_;
   Words words_;
   double time_ = 0;
+
+  /// A signal that is held stands on a segment that it was on before.
+  void left_behind(int i, std::int64_t k) {
+    const System& sys = ws_.sys;
+    good = (sys.input_period[i] > 0 ? k < (std::int64_t(1) << 52) : k < sys.input_count[i]) &&
+           (k == 0 || segment_start(sys, i, k) <= time_);
+  }
   bool started_ = false;
   std::int64_t events_ = 0;
 
@@ -234,7 +245,7 @@ inline void place_cursors(Workspace<double>& ws) {
   for (int i = 0; i < ws.sys.inputs; ++i) {
     const Signal& signal = ws.in.signal[i];
     const bool begun = signal.segment > 0 || (ws.sys.input_period[i] > 0 && !signal.idle);
-    if (ws.sys.input_count[i] > 0 && begun) t = larger(t, segment_start(ws.sys, i, signal.segment));
+    if (!is_held(ws, i) && begun) t = larger(t, segment_start(ws.sys, i, signal.segment));
   }
   load_inputs(ws, t);
 }

@@ -76,10 +76,12 @@ class Run {
     }
   }
   void set_input(std::int64_t input, double value) {
-    if (!cw_set_input(run_, input, value))
-      throw nb::value_error(
-          "unknown input, or the value is not finite; only signals that are set from outside can be set");
+    if (!cw_set_input(run_, input, value)) throw nb::value_error("unknown input, or the value is not finite");
   }
+  void release_input(std::int64_t input) {
+    if (!cw_release_input(run_, input)) throw nb::value_error("unknown input, or one that is set from outside alone");
+  }
+  void expect_inputs(bool expected) { cw_expect_inputs(run_, expected ? 1 : 0); }
   void set_param(std::int64_t offset, double value) {
     if (!cw_set_param(run_, offset, value))
       throw nb::value_error("unknown or fixed parameter, or the value is not finite");
@@ -113,11 +115,9 @@ class Run {
   }
 
   nb::object events() {
-    nb::list all;
-    std::int64_t total = 0;
-    std::unique_ptr<double[]> out(new double[event_columns * 4096]);
-    total = cw_take_events(run_, out.get(), 4096);
-    double* data = out.release();
+    const std::int64_t total = cw_pending_events(run_);
+    double* data = new double[std::size_t(event_columns * (total > 0 ? total : 1))];
+    cw_take_events(run_, data, total);
     nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
     return nb::cast(
         nb::ndarray<nb::numpy, double, nb::ndim<2>>(data, {std::size_t(total), std::size_t(event_columns)}, owner));
@@ -173,6 +173,7 @@ class Run {
     }
   }
 
+  std::int64_t pending() const { return cw_pending_events(run_); }
   double time() const { return cw_time(run_); }
   std::int64_t row_size() const { return cw_row_size(run_); }
   std::int64_t memory_size() const { return size_; }
@@ -235,6 +236,8 @@ NB_MODULE(_core, m) {
       .def(nb::init<nb::bytes>(), nb::arg("system"))
       .def("set_option", &Run::set_option, nb::arg("name"), nb::arg("value"))
       .def("set_input", &Run::set_input, nb::arg("index"), nb::arg("value"))
+      .def("release_input", &Run::release_input, nb::arg("index"))
+      .def("expect_inputs", &Run::expect_inputs, nb::arg("expected"))
       .def("set_param", &Run::set_param, nb::arg("offset"), nb::arg("value"))
       .def("is_settable", &Run::is_settable, nb::arg("offset"), nb::arg("value"))
       .def("advance", &Run::advance, nb::arg("t_end"), nb::arg("times"), nb::arg("rows"), nb::arg("first") = 0,
@@ -246,6 +249,7 @@ NB_MODULE(_core, m) {
       .def("detail", &Run::detail)
       .def("save", &Run::save)
       .def("restore", &Run::restore, nb::arg("state"))
+      .def_prop_ro("pending", &Run::pending)
       .def_prop_ro("time", &Run::time)
       .def_prop_ro("row_size", &Run::row_size)
       .def_prop_ro("memory_size", &Run::memory_size);

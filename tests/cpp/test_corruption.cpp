@@ -156,7 +156,7 @@ void little_room() {
     CHECK(cw_advance(r.run, 1, times, exact.data(), n, 1, &filled) == int(Status::rows_full));
     CHECK(filled <= n);
   }
-  CHECK(cw_set_input(r.run, 0, 1) == 0 && cw_set_input(r.run, -1, 1) == 0 && cw_set_input(r.run, 99, 1) == 0);
+  CHECK(cw_set_input(r.run, 0, 1) == 1 && cw_set_input(r.run, -1, 1) == 0 && cw_set_input(r.run, 99, 1) == 0);
   CHECK(cw_set_param(r.run, -1, 1) == 0 && cw_set_param(r.run, 9999, 1) == 0);
   CHECK(cw_set_option(r.run, "rtol", NAN) == 0 && cw_set_option(r.run, "no such", 1) == 0);
 }

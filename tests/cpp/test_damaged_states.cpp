@@ -262,20 +262,35 @@ void cursors() {
       seal(other);
       return restore(r, other);
     };
-    // segment, whether it waits, value of: the speed, that input, the wave
+    // segment, whether it waits, value, whether it was set of: the speed, that input, the wave
     std::int64_t segment;
-    std::memcpy(&segment, &state[at + 8], 8);
-    CHECK(put(1, segment) && put(2, t < 0.2));
-    CHECK(!put(2, t >= 0.2) && !put(2, 2) && !put(2, -1));
+    std::memcpy(&segment, &state[at + 16], 8);
+    CHECK(put(2, segment) && put(3, t < 0.2));
+    CHECK(!put(3, t >= 0.2) && !put(3, 2) && !put(3, -1));
     // it waits only before its start
     Bytes waiting = state;
     const std::int64_t words[] = {0, 1};
-    std::memcpy(&waiting[at + 8], words, 16);
+    std::memcpy(&waiting[at + 16], words, 16);
     seal(waiting);
     CHECK(restore(r, waiting) == (t < 0.2));
-    for (std::int64_t k : {-1, 1, 2, 3}) CHECK(!put(1, segment + k));
-    for (std::int64_t k : {1ll << 31, 1ll << 51, 1ll << 53, 1ll << 62, 1ll << 63}) CHECK(!put(1, k));
-    CHECK(!put(-5, 1) && !put(-5, -1) && !put(-4, 1) && !put(-2, 1) && !put(-1, 1));
+    for (std::int64_t k : {-1, 1, 2, 3}) CHECK(!put(2, segment + k));
+    for (std::int64_t k : {1ll << 31, 1ll << 51, 1ll << 53, 1ll << 62, 1ll << 63}) CHECK(!put(2, k));
+    CHECK(!put(-6, 1) && !put(-6, -1) && !put(-5, 1) && !put(-2, 1) && !put(-1, 1));
+    // what comes from outside alone is never set over its segments
+    CHECK(put(5, 0) && !put(5, 2) && !put(5, -1) && !put(1, 1) && !put(1, -1));
+    // one that is held may stand where it was left, and nowhere ahead
+    Bytes behind = state;
+    const std::int64_t one = 1;
+    std::memcpy(&behind[at + 40], &one, 8);
+    seal(behind);
+    CHECK(restore(r, behind));
+    std::memset(&behind[at + 16], 0, 8);
+    seal(behind);
+    CHECK(restore(r, behind));
+    const std::int64_t ahead = segment + 1;
+    std::memcpy(&behind[at + 16], &ahead, 8);
+    seal(behind);
+    CHECK(!restore(r, behind));
   }
 }
 

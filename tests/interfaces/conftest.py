@@ -13,6 +13,7 @@ class FakeRun:
     """State x with dx/dt = input; steps of 0.1 s; an event at 0.25 s; row = (x, input)."""
 
     STEP, EVENT_AT = 0.1, 0.25
+    row_size = 2
 
     def __init__(self, *, fail_at: float = float("inf"), room: int = 10_000) -> None:
         self.time, self.x, self.rate = 0.0, 0.0, 1.0

@@ -16,7 +16,7 @@ import clutchwork as cw
 from clutchwork.assembly.wiring import wiring
 from clutchwork.command.main import main
 from clutchwork.results.channels import Channels
-from clutchwork.run.simulation import new_run
+from clutchwork.run.begin import new_run
 
 feature = pytest.mark.feature
 

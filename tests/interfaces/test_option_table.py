@@ -24,7 +24,7 @@ from clutchwork.declare.options import OPTIONS, SIMULATION, Method
 from clutchwork.declare.setting import Setting
 from clutchwork.files.model_file import toml
 from clutchwork.run import simulation
-from clutchwork.run.simulation import new_run
+from clutchwork.run.begin import new_run
 
 ROOT = Path(__file__).resolve().parents[2]
 CORE = {name: row for name, row in OPTIONS.items() if row.core}
@@ -67,6 +67,8 @@ def bad(row: Setting) -> list[tuple[Any, str]]:
         high = (row.most + 1, f"must be at most {row.most:.0f}")
         return [(0, "must be at least 1"), (2.5, "must be a whole number"), high]
     if spec.at_least is not None:
+        if spec.at_least == 0.0:
+            return [(-1.0, "must be a finite number of at least 0"), (math.nan, "must be a finite number")]
         return [(0.5 * spec.at_least, f"must be at least {spec.at_least:g}"), (math.nan, "must be a finite number")]
     return [(0.0, "finite number above 0"), (-1.0, "finite number above 0"), (math.inf, "finite number above 0")]
 

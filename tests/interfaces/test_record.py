@@ -23,7 +23,7 @@ def channels() -> Any:
 
 
 def recorded(run: Any, t_end: float, grid: np.ndarray | None = None, *controllers: Controller) -> Recording:
-    recording = Recording(run, 2)
+    recording = Recording(run)
     record(recording, t_end, grid, Control(controllers, channels), None)
     return recording
 
@@ -104,7 +104,7 @@ def test_decisions_are_replayed_not_asked_for_again(fake_run: Make) -> None:
         return float(count)
 
     control = Control((controller(law),), channels)
-    first, second = Recording(fake_run(), 2), Recording(fake_run(), 2)
+    first, second = Recording(fake_run()), Recording(fake_run())
     record(first, 1.0, None, control, None)
     record(second, 1.0, None, control, None)
     assert count == 5
@@ -120,7 +120,8 @@ def test_a_controller_that_raises_or_returns_no_number_names_itself_and_the_time
 
 def test_instants_of_two_controllers_are_merged() -> None:
     control = Control((controller(None, 0.1), controller(None, 0.15)), channels)
-    assert list(control.stops(0.5)) == pytest.approx([0.1, 0.15, 0.2, 0.3, 0.4, 0.45, 0.5])
+    assert list(control.stops(0.0, 0.5)) == pytest.approx([0.1, 0.15, 0.2, 0.3, 0.4, 0.45, 0.5])
+    assert list(control.stops(0.2, 0.41)) == pytest.approx([0.3, 0.4, 0.41])
 
 
 def test_refining_keeps_steps_and_doubled_instants() -> None:

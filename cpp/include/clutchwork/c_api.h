@@ -22,16 +22,27 @@ int64_t cw_schema_hash(void);
 /* Bytes of memory that a run of this system needs; -1 when the bytes do not fit this core. */
 int64_t cw_size(const void* system, int64_t bytes);
 
-/* Start a run at time zero in `memory` (aligned to 16 bytes); NULL when system or memory do not fit. */
+/* Start a run, at time zero or at its setting t_start, in `memory` (aligned to 16 bytes); NULL when system or memory do
+ * not fit. */
 cw_run* cw_load(const void* system, int64_t bytes, void* memory, int64_t memory_bytes);
 
 /* Settings by name: rtol, atol, method (0 auto, 1 rodas5p, 2 dopri5), first_step [s] (0: chosen by the solver),
-   max_step [s] (INFINITY: no limit), max_steps, max_events, angles, work (0 or 1). Ranges are those of the options of a
-   run. 1: set; 0: unknown, out of range or not a number. */
+   max_step [s] (INFINITY: no limit), max_steps, max_events, angles, work (0 or 1), t_start [s] before the first step.
+   Ranges are those of the options of a run. 1: set; 0: unknown, out of range or not a number. */
 int cw_set_option(cw_run* run, const char* name, double value);
 
-/* Value of a signal that is set from outside. 1: set; 0: no such signal, or the value is not finite. */
+/* Value of a signal, which it holds from the present time on in place of what the system has for it. 1: set; 0: no such
+   signal, or the value is not finite. */
 int cw_set_input(cw_run* run, int64_t input, double value);
+
+/* Let a signal follow the system again. 1: done, also where it did so already; 0: no such signal, or one that is set
+   from outside alone. */
+int cw_release_input(cw_run* run, int64_t input);
+
+/* Whether values of signals may be set between calls: what all signals do at the very end of cw_advance then waits for
+   them, so that each instant is decided once. Off at the start, where the system has no signal that is set from outside
+   alone. It is not part of a saved state. 1: set; 0: no run. */
+int cw_expect_inputs(cw_run* run, int expected);
 
 /* A number of the parameter pool, before the run starts or between calls. 1: set; 0: no such number, the value is not
    finite, or the number is fixed because it locates a curve or selects a variant, such as an extrapolation. */
@@ -90,6 +101,9 @@ int cw_local(cw_run* run, double* row, double* matrix);
 
 /* Numbers in one event. */
 int64_t cw_event_size(void);
+
+/* How many events wait to be taken; -1 for a null pointer. */
+int64_t cw_pending_events(const cw_run* run);
 
 /* Take the pending events: writes up to `room` of them, returns how many; -1: refused because `room` is negative, or
    `events` is NULL although it is not 0. */

@@ -15,8 +15,8 @@ from clutchwork.declare.options import OPTIONS, Options
 from clutchwork.results.channels import Channel, Channels, channels
 from clutchwork.results.forms import Mode
 from clutchwork.results.rows import numbers
+from clutchwork.run.begin import new_run
 from clutchwork.run.grid import output_grid
-from clutchwork.run.simulation import new_run
 
 MADE = "Made by clutchwork. Do not edit: export the model again."
 BYTES_PER_LINE = 16
@@ -85,7 +85,8 @@ def header(model: Exported) -> Iterator[str]:
     yield from ("#include <clutchwork/c_api.h>", '#include "model_system.h"', "")
     yield "/* Memory of a run, aligned to 16 bytes; cw_load refuses when another machine needs more. */"
     yield from (f"#define MODEL_MEMORY {memory}", "")
-    yield "/* The grid of main.c: 0, dt, 2 dt ... t_end. */"
+    yield "/* The grid of main.c: t_start, t_start + dt ... t_end. */"
+    yield f"#define MODEL_T_START {literal(model.options.t_start)} /* s */"
     yield f"#define MODEL_T_END {literal(model.t_end)} /* s */"
     yield f"#define MODEL_DT {literal(model.dt)} /* s */"
     yield from (f"#define MODEL_INSTANTS {model.instants}", "")

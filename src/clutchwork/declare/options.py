@@ -93,6 +93,7 @@ class Options:
     max_events: int = setting(
         "1", "number of events after which a run stops", default=100_000, at_least=1, at_most=MOST_COUNTED, core=True
     )
+    t_start: float = setting("s", "time at which the run begins", default=0.0, at_least=0.0, core=True)
     dt: float | None = setting("s", "spacing of the output", default=None, above=0.0)
     times: Sequence[float] | NDArray[Any] | None = setting(
         "s",

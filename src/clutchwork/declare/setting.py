@@ -108,12 +108,16 @@ class Setting:
             return "must be a whole number"
         if number is None:
             return f"must be a number in{self.unit}" if self.unit else "must be a number"
-        if not spec.whole and (not math.isfinite(number) or number <= (spec.above or 0.0)):
+        if not spec.whole and (not math.isfinite(number) or self._is_too_low(number)):
             low = f"of at least {spec.at_least:g}" if spec.above is None else f"above {spec.above:g}"
             return f"must be a finite number {low}"
         if number < self.least:
             return f"must be at least {self.least:g}"
         return f"must be at most {self.most:.16g}" if number > self.most else ""
+
+    def _is_too_low(self, number: float) -> bool:
+        """Whether a number is not above zero, or the bound where there is one; zero itself may be allowed."""
+        return number <= (self.spec.above or 0.0) and number != self.spec.at_least
 
     def _shown(self, value: Any) -> str:
         number = _as_number(value)

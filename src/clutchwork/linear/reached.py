@@ -9,7 +9,6 @@ import numpy as np
 from clutchwork.declare.core import core
 from clutchwork.declare.options import DEFAULTS
 from clutchwork.declare.status import DONE
-from clutchwork.results.channels import channels
 from clutchwork.results.trajectory import SimulationError
 from clutchwork.run.simulation import simulate, told
 
@@ -33,15 +32,7 @@ def started(system: System) -> Any:
 
 def reached(trajectory: Trajectory, at: float) -> Any:
     """A run at a time [s]: repeated up to there, bit for bit, and what controllers decided is replayed."""
-    run = core().Run(trajectory.system.to_bytes())
-    capture = getattr(trajectory, "state", None)
-    if capture is not None:
-        run.restore(capture(at).core)
-        return run
-    for name, value in trajectory.options.core_options().items():
-        run.set_option(name, value)
-    _repeat(run, trajectory, at)
-    return run
+    return resumed(trajectory.system, trajectory.state(at=at))
 
 
 def resumed(system: System, state: Any) -> Any:
@@ -50,23 +41,6 @@ def resumed(system: System, state: Any) -> Any:
     run = core().Run(system.to_bytes())
     run.restore(state.core)
     return run
-
-
-def _repeat(run: Any, trajectory: Trajectory, at: float) -> None:
-    from clutchwork.run.control import Control, controllers
-    from clutchwork.run.record import Recording, record
-    from clutchwork.run.simulation import Job
-
-    system, job = trajectory.system, getattr(trajectory.repeat, "__self__", None)
-    if not isinstance(job, Job):
-        # it says why it cannot be repeated, where that is so
-        trajectory.at([at])
-    own = Control(controllers(system.inputs), lambda: channels(system, True, True))
-    recording = Recording(run, run.row_size)
-    record(recording, at, np.array([at]), job.control if isinstance(job, Job) else own, None)
-    if recording.raised is not None:
-        raise recording.raised
-    refuse_stopped(system, run, recording.status)
 
 
 def refuse_stopped(system: System, run: Any, status: int) -> None:

@@ -95,8 +95,8 @@ class Events(Sequence[Event]):
         return Events(chosen, self._contacts)
 
     def at_start(self) -> Events:
-        """Impulses at time zero."""
-        chosen = [event for event in self if event.time == 0.0 and event.cause == "impulse"]
+        """Impulses at the very start."""
+        chosen = [event for event in self if event.cause == "impulse"]
         return Events(chosen, self._contacts)
 
     @property

@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-def uniform(dt: float, t_end: float) -> Array:
-    """0, dt, 2 dt ... and t_end; a last interval that is only round-off long is dropped."""
-    instants = t_end / dt * (1.0 + 1e-12)
+def uniform(dt: float, begin: float, t_end: float) -> Array:
+    """begin, begin + dt ... and t_end; a last interval that is only round-off long is dropped."""
+    instants = (t_end - begin) / dt * (1.0 + 1e-12)
     count = math.floor(instants) if math.isfinite(instants) else MOST_COUNTED
     if count > MOST_ROWS:
         fault = f"dt is {dt:g} s: {count:.6g} instants up to {t_end:g} s do not fit into memory; use a larger dt"
         raise OptionError([fault])
-    grid: Array = np.minimum(np.arange(count + 1) * dt, t_end)
+    grid: Array = np.minimum(begin + np.arange(count + 1) * dt, t_end)
     if t_end - grid[-1] > 1e-9 * dt:
         return np.append(grid, t_end)
     grid[-1] = t_end
@@ -47,7 +47,7 @@ def at_raster(run: Recorded, dt: float | None, times: Any) -> Recorded:
     first, last = float(run.time[0]), float(run.time[-1])
     if dt is None:
         return run.at(_within(times, first, last))
-    grid = uniform(float(Options(dt=dt).dt or 0.0), last)
+    grid = uniform(float(Options(dt=dt).dt or 0.0), run.options.t_start, last)
     inside = grid[grid >= first]
     return run.at(inside if inside.size and inside[0] == first else np.append(first, inside))
 

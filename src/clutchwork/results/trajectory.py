@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from clutchwork.results.events import Event
     from clutchwork.results.hints.hint import Hints
     from clutchwork.results.plot.canvas import Picture
+    from clutchwork.results.state import State
 
 Array = NDArray[np.float64]
 
@@ -64,11 +65,17 @@ class Trajectory(Exports):
     message: str  # "" when done; else what, where, when, and what to do
     statistics: Mapping[str, float] = field(repr=False)
     repeat: Callable[[Any], Trajectory] = field(repr=False)  # the same run, bit for bit, at other instants [s]
+    capture: Callable[[float], State] = field(repr=False)  # the state of the same run at a time [s]
 
     @property
     def finished(self) -> bool:
         """Whether the run reached its end time."""
         return self.status == NAMES[DONE]
+
+    @property
+    def reached(self) -> float:
+        """Time up to which it is known [s]: its end, or where it stopped."""
+        return self.t_end if self.finished or not len(self) else float(self.time[-1])
 
     def raise_for_status(self) -> Trajectory:
         """Return itself when the run is complete, else raise SimulationError."""
@@ -125,6 +132,17 @@ class Trajectory(Exports):
         The run is repeated, bit for bit; controllers are not called again, their decisions are replayed.
         """
         return self.repeat(times)
+
+    @explained("run.state")
+    def state(self, at: float | None = None) -> State:
+        """What the run is at a time [s], by default at its end: `simulate(start=state)` goes on from there.
+
+        The run is repeated up to there; at an event it is the right limit. Where a step of the solver ends at that time
+        the motion that follows is that of this run, bit for bit, else within the tolerance.
+        """
+        from clutchwork.results.state import instant
+
+        return self.capture(instant(at, self.options.t_start, self.reached))
 
     @cached_property
     def energy(self) -> EnergyBalance:
@@ -217,7 +235,8 @@ class Trajectory(Exports):
         return bundle(self, "trajectory")
 
     def __repr__(self) -> str:
+        end = self.time[-1] if len(self) else 0
         return (
-            f"<Trajectory {self.status}, 0 to {self.time[-1] if len(self) else 0:g} s, {counted(len(self), 'instants')}"
+            f"<Trajectory {self.status}, {self.options.t_start:g} to {end:g} s, {counted(len(self), 'instants')}"
             f", {counted(len(self.names), 'signals')}, {counted(len(self.events), 'events')}>"
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
@@ -57,12 +57,12 @@ class Controller:
         return value
 
 
-def controllers(inputs: Sequence[Input]) -> tuple[Controller, ...]:
-    """The inputs of a System that Python functions set."""
+def controllers(inputs: Sequence[Input], held: Container[str] = ()) -> tuple[Controller, ...]:
+    """The inputs of a System that Python functions set, without those that are held from outside."""
     return tuple(
         Controller(item.name, index, *sampling)
         for index, item in enumerate(inputs)
-        if (sampling := item.signal.sampling()) is not None
+        if (sampling := item.signal.sampling()) is not None and item.name not in held
     )
 
 
@@ -76,8 +76,10 @@ class Control:
     controllers: tuple[Controller, ...]
     channels: Callable[[], Channels]
     log: dict[float, Settings] = field(default_factory=dict)
+    held: Mapping[str, float] = field(default_factory=dict)  # from outside, since before the run
+    changed: Mapping[str, Any] = field(default_factory=dict)
 
-    def act(self, run: Any, time: float) -> bool:
+    def act(self, run: Any, time: float, number: int) -> bool:  # noqa: ARG002, the time says it
         """Set the inputs that are due; False when there is nothing to do."""
         if time not in self.log:
             self.log[time] = self._decide(run, time)
@@ -89,24 +91,39 @@ class Control:
         return bool(self.log[time])
 
     def _decide(self, run: Any, time: float) -> Settings:
-        due = [controller for controller in self.controllers if _is_due(controller.period, time)]
+        due = [controller for controller in self.controllers if is_due(controller.period, time)]
         if not due:
             return []
         readings = Readings(self.channels(), run.row())
         return [(controller.index, controller.value(time, readings)) for controller in due]
 
-    def stops(self, t_end: float) -> Iterator[float]:
+    def stops(self, begin: float, t_end: float) -> Iterator[float]:
         """Instants up to which the core may run: those of all controllers, then the end [s]."""
-        counts = [1] * len(self.controllers)
-        while self.controllers:
-            instants = [count * c.period for count, c in zip(counts, self.controllers, strict=True)]
-            first = min(instants)
-            if first >= t_end:
-                break
-            yield first
-            counts = [n + (at <= first * (1 + 1e-12)) for n, at in zip(counts, instants, strict=True)]
-        yield t_end
+        return instants(self.controllers, begin, t_end)
+
+    def outside(self, number: int) -> tuple[Mapping[str, float], Mapping[str, Any]]:  # noqa: ARG002, they stay
+        """Signals and parameters that are set from outside."""
+        return self.held, self.changed
 
 
-def _is_due(period: float, time: float) -> bool:
+def instants(given: Sequence[Controller], begin: float, t_end: float) -> Iterator[float]:
+    """Instants of controllers after the begin and before the end, then the end [s]."""
+    counts = [_first_after(begin, controller.period) for controller in given]
+    while given:
+        due = [count * controller.period for count, controller in zip(counts, given, strict=True)]
+        first = min(due)
+        if first >= t_end:
+            break
+        yield first
+        counts = [n + (at <= first * (1 + 1e-12)) for n, at in zip(counts, due, strict=True)]
+    yield t_end
+
+
+def _first_after(time: float, period: float) -> int:
+    """Number of the first multiple of a period after a time, one that is there within round-off left out."""
+    return round(time / period) + 1 if is_due(period, time) else math.floor(time / period) + 1
+
+
+def is_due(period: float, time: float) -> bool:
+    """Whether a time is a multiple of a period, within round-off."""
     return abs(time - round(time / period) * period) <= 1e-12 * max(time, period)

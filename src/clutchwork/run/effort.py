@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     from clutchwork.assembly.records import Input
 
 
-def refuse_endless(inputs: Sequence[Input], t_end: float, max_steps: int) -> None:
+def refuse_endless(inputs: Sequence[Input], begin: float, t_end: float, max_steps: int) -> None:
     """OptionError for signals that repeat, or are asked for, more often than the run may take steps."""
     found = []
     for item in inputs:
         sampling = item.signal.sampling()
         period = sampling.period if sampling else item.signal.repeats()
-        if period > 0.0 and t_end / period > max_steps:
+        if period > 0.0 and (t_end - begin) / period > max_steps:
             times = f"more than max_steps = {max_steps} times up to {t_end:g} s"
             found.append(f"{item.name} has a period of {period:g} s, {times}; give a longer period or a shorter run")
     if found:

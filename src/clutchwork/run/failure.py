@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable
 from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import caller
 from clutchwork.declare.layout import STATUS
 from clutchwork.declare.schema import specs
 from clutchwork.results.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.results.events import Event
 
 # why a run stopped, where a value tells more
 WITH_VALUE = ("not_finite", "out_of_table", "chatter")
@@ -71,8 +76,13 @@ def _covered(component: Any) -> str:
 
 def report_faults(run: Trajectory) -> None:
     """Warn of the faults of a run whose elements report them as a warning."""
-    contacts = {contact.name: contact for contact in run.system.contacts}
-    for event in run.events:
+    warn_of_faults(run.system, run.events)
+
+
+def warn_of_faults(system: System, events: Iterable[Event]) -> None:
+    """Warn of the faults among events."""
+    contacts = {contact.name: contact for contact in system.contacts}
+    for event in events:
         what = contacts[event.element].fault_warning() if event.cause == "fault" else ""
         if what:
             warnings.warn(FaultWarning(f"{event.element!r} {what} from {event.time:.9g} s on"), stacklevel=caller())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -19,9 +20,9 @@ if TYPE_CHECKING:
 MOST_JUMPS = 10_000
 
 
-def jump_times(system: System, t_end: float) -> NDArray[np.float64]:
-    """Instants inside (0, t_end) at which at least one signal of a System jumps [s], each once."""
-    found = {time for at, period in _jumping(system) for time in _repeated(at, period, t_end)}
+def jump_times(system: System, begin: float, t_end: float) -> NDArray[np.float64]:
+    """Instants inside (begin, t_end) at which at least one signal of a System jumps [s], each once."""
+    found = {time for at, period in _jumping(system) for time in _repeated(at, period, begin, t_end)}
     return np.array(sorted(found))
 
 
@@ -40,10 +41,14 @@ def _jumps(signal: Signal) -> list[float]:
     return [after.start for before, after in pairwise(pieces) if _differ(before, after)]
 
 
-def _repeated(at: list[float], period: float, t_end: float) -> list[float]:
-    repeats = np.arange(0.0, min(t_end / period, MOST_JUMPS) + 1.0) * period if period > 0.0 else np.zeros(1)
+def _repeated(at: list[float], period: float, begin: float, t_end: float) -> list[float]:
+    repeats = np.zeros(1)
+    if period > 0.0:
+        # the repetition before the begin reaches into the run
+        before = float(max(0, math.floor((begin - at[0]) / period) - 1))
+        repeats = (before + np.arange(0.0, min((t_end - begin) / period, MOST_JUMPS) + 3.0)) * period
     times: NDArray[np.float64] = np.add.outer(np.array(at, dtype=float), repeats).ravel()
-    inside: list[float] = times[(times > 0.0) & (times < t_end)][:MOST_JUMPS].tolist()
+    inside: list[float] = times[(times > begin) & (times < t_end)][:MOST_JUMPS].tolist()
     return inside
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.declare.layout import EVENT
 from clutchwork.declare.status import DONE, EVENTS_FULL, INTERRUPTED, ROWS_FULL
-from clutchwork.run.control import Control
+from clutchwork.run.course import Course
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, float], None]
@@ -26,12 +26,15 @@ LONG_GRID = 100_000
 class Recording:
     """What a run has written so far."""
 
-    def __init__(self, run: Any, row_size: int) -> None:
+    def __init__(self, run: Any, continued: bool = False, look: Callable[[], Array] | None = None) -> None:
         self.run = run
-        self.row_size = row_size
+        self.row_size = int(run.row_size)
+        self.continued = continued  # whether it goes on from a state
+        self.look = look or run.row  # the row at the present time
         self.status = DONE
         self.raised: BaseException | None = None  # by a signal handler, such as Ctrl-C
         self.core_seconds = 0.0
+        self._before = run.statistics()
         self._parts: list[tuple[Array, Array]] = []
         self._events: list[Array] = []
 
@@ -51,6 +54,10 @@ class Recording:
         happened = np.asarray(self.run.events())
         if len(happened):
             self._events.append(happened)
+
+    def counts(self) -> dict[str, int]:
+        """What the core has counted since the begin."""
+        return {name: count - self._before[name] for name, count in self.run.statistics().items()}
 
     @property
     def times(self) -> Array:
@@ -73,15 +80,17 @@ def _joined(parts: list[Array], nothing: Array) -> Array:
     return parts[0] if len(parts) == 1 else np.concatenate([nothing, *parts])
 
 
-def record(recording: Recording, t_end: float, grid: Array | None, control: Control, progress: Told | None) -> None:
+def record(recording: Recording, t_end: float, grid: Array | None, course: Course, progress: Told | None) -> None:
     """Run to the end, or until the core stops; a grid of None records the solver's steps."""
-    begin = 0.0
-    for stop in control.stops(t_end):
-        acted = control.act(recording.run, begin)
+    run = recording.run
+    start = begin = run.time
+    # one that goes on from a state does not give its first row by itself
+    for number, stop in enumerate(course.stops(begin, t_end)):
+        acted = course.act(run, begin, number) or (number == 0 and recording.continued)
         if grid is None:
             _steps(recording, stop, acted, progress)
         else:
-            _grid(recording, stop, _part(grid, begin, stop, stop == t_end), progress)
+            _grid(recording, stop, _part(grid, begin, stop, begin == start, stop == t_end), progress)
         if recording.status != DONE:
             return
         begin = stop
@@ -94,7 +103,7 @@ def _steps(recording: Recording, stop: float, acted: bool, progress: Told | None
     if acted:
         # the right limit after the controllers; the core may give it once more
         skip_at = run.time
-        recording.add(np.array([skip_at]), np.array(run.row()).reshape(1, -1))
+        recording.add(np.array([skip_at]), np.array(recording.look()).reshape(1, -1))
     while True:
         times, rows = np.empty(size), np.empty((size, recording.row_size))
         filled = recording.advance(stop, times, rows, 0, True)
@@ -133,10 +142,10 @@ def _stretch(recording: Recording, stop: float, times: Array) -> None:
         recording.add(times[:0], rows[:0])
 
 
-def _part(grid: Array, begin: float, stop: float, last: bool) -> Array:
+def _part(grid: Array, begin: float, stop: float, at_start: bool, last: bool) -> Array:
     """Instants of one stretch: of its end once, the left limit as at any event; what is left is of the next one."""
     first, end = int(np.searchsorted(grid, begin, "left")), int(np.searchsorted(grid, stop, "left"))
-    if begin > 0.0 and first < len(grid) and grid[first] == begin:
+    if not at_start and first < len(grid) and grid[first] == begin:
         first += 1
     if last:
         return grid[first:]

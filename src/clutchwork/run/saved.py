@@ -43,10 +43,13 @@ class NoRepeat:
     """Says why a run has no other instants."""
 
     controllers: tuple[str, ...]
+    needs: tuple[str, ...] = ()  # what else the file does not hold
 
     def __call__(self, _times: Any) -> NoReturn:
         """Refuse."""
         why = f"inputs were set by Python functions ({listed(self.controllers)}), which a file does not hold"
+        if self.needs:
+            why = f"{' and '.join(self.needs)}, which a file does not hold"
         raise RepeatError(f"this run was loaded and cannot be repeated: {why}; simulate the model again")
 
 
@@ -87,7 +90,7 @@ def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
 def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Trajectory:
     times, rows, events, *model = parts
     system, options, end = _system(about, model, path), Options(**about["options"]), end_time(about["t_end"])
-    controllers = tuple(map(str, about.get("controllers", ())))
+    controllers, needs = (tuple(map(str, about.get(key, ()))) for key in ("controllers", "needs"))
     time = np.frombuffer(times, "<f8").astype(float)
     job = Job(system, end, options, Control((), partial(channels, system)))
     return Trajectory(
@@ -100,7 +103,8 @@ def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Tra
         status=str(about["status"]),
         message=str(about["message"]),
         statistics=dict(about["statistics"]),
-        repeat=NoRepeat(controllers) if controllers else job.again,
+        repeat=NoRepeat(controllers, needs) if controllers or needs else job.again,
+        capture=NoRepeat(controllers, needs) if controllers or needs else job.state,
     )
 
 

@@ -21,12 +21,7 @@ def merged(
     Parameters: settings of the model, t_end among them; given, those that overrule them one by one; options, which
     replace all settings but the end time.
     """
-    wanted = {name: settings[name] for name in settings if options is None or name == "t_end"}
-    # a grid that is given replaces the other kind of grid
-    for grid, other in (("dt", "times"), ("times", "dt")):
-        if given.get(grid) is not None:
-            wanted.pop(other, None)
-    wanted.update(given)
+    wanted = _wanted(settings, given, options)
     t_end = wanted.pop("t_end", None)
     # unknown names first: one may be a misspelt t_end
     known(wanted)
@@ -36,7 +31,32 @@ def merged(
     if "t_end" in given and "times" not in given and wanted.get("times") is not None:
         # a run that is made shorter ends before the last instants of the settings
         wanted["times"] = _up_to(end, wanted["times"])
-    return end, (options or DEFAULTS).changed(wanted)
+    made = (options or DEFAULTS).changed(wanted)
+    if end <= made.t_start:
+        raise OptionError([f"t_end is {end:g} s: it must lie after t_start = {made.t_start:g} s, where the run begins"])
+    return end, made
+
+
+def without_end(settings: Mapping[str, Any], given: Mapping[str, Any], options: Options | None = None) -> Options:
+    """Options of a run that is stepped, whose end and instants of output are not known."""
+    useless = {"t_end": "sim.advance says how far", "times": "ask sim.run.at(times) afterwards"}
+    found = [f"{name} cannot be given to a Simulator: {why}" for name, why in useless.items() if name in given]
+    if found:
+        raise OptionError(found)
+    wanted = {name: value for name, value in _wanted(settings, given, options).items() if name not in useless}
+    known(wanted)
+    return (options or DEFAULTS).changed(wanted).changed({"times": None})
+
+
+def _wanted(settings: Mapping[str, Any], given: Mapping[str, Any], options: Options | None) -> dict[str, Any]:
+    """What the call gives, before what the settings of the model say."""
+    wanted = {name: settings[name] for name in settings if options is None or name == "t_end"}
+    # a grid that is given replaces the other kind of grid
+    for grid, other in (("dt", "times"), ("times", "dt")):
+        if given.get(grid) is not None:
+            wanted.pop(other, None)
+    wanted.update(given)
+    return wanted
 
 
 def _up_to(end: float, times: Any) -> list[float]:

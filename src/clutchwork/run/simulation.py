@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 import warnings
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, Unpack
@@ -15,17 +16,19 @@ from numpy.typing import NDArray
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, caller
+from clutchwork.base.errors import OptionError, UseError, caller
 from clutchwork.base.progress import MEASURED, followed
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
-from clutchwork.declare.core import core
 from clutchwork.declare.options import Options, instants
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES, NOT_FINITE
 from clutchwork.results.channels import channels
 from clutchwork.results.events import from_rows
+from clutchwork.results.state import State
 from clutchwork.results.trajectory import SimulationError, Trajectory
+from clutchwork.run.begin import advance, begun, reach, row_of, state_of
 from clutchwork.run.control import Control, controllers
+from clutchwork.run.course import Course
 from clutchwork.run.effort import refuse_endless
 from clutchwork.run.failure import Interrupted, StoppedEarly, explain, report_faults
 from clutchwork.run.grid import output_grid
@@ -54,12 +57,36 @@ class Job:
     system: System
     t_end: float
     options: Options
-    control: Control
+    course: Course
+    start: State | None = None
+
+    @property
+    def begin(self) -> float:
+        """Time at which it begins [s]."""
+        return self.options.t_start
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What it cannot be repeated without beside model and options, but for Python functions."""
+        stepped = () if isinstance(self.course, Control) else ("it was stepped and set from outside",)
+        return (*(("it went on from a state",) if self.start is not None else ()), *stepped)
 
     def again(self, times: Any) -> Trajectory:
         """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
         wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
-        return _trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
+        return trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
+
+    def state(self, at: float) -> State:
+        """Repeat it up to a time [s], and save what it is there."""
+        run = begun(self.system, self.options, self.start)
+        done, status = 0, DONE
+        for number, stop in enumerate(self.course.stops(self.begin, self.t_end)):
+            if run.time >= at or status != DONE:
+                break
+            self.course.act(run, run.time, number)
+            status = advance(run, stop) if at >= stop else reach(run, stop, at)
+            done = number + 1
+        return state_of(run, self.system, self.course.outside(done))
 
 
 @explained("simulate")
@@ -67,15 +94,17 @@ def simulate(
     model: Assembles | System,
     t_end: Number | None = None,
     *,
+    start: State | None = None,
     options: Options | None = None,
     progress: Progress | bool | None = None,
     **changes: Unpack[OptionFields],
 ) -> Trajectory:
-    """Compute the motion of a Driveline or a System from 0 to t_end.
+    """Compute the motion of a Driveline or a System from 0, or from t_start or a state on, to t_end.
 
-    Parameters: t_end [s], or with a unit, "500 ms"; options, an `Options`, or its fields by name (rtol=, dt=, method=
-    ...); progress, True for a bar of tqdm in a terminal or a notebook, or a function of (time reached [s], t_end [s])
-    that is called now and then.
+    Parameters: t_end [s], or with a unit, "500 ms", a point in time, wherever the run begins; start, a `State` of the
+    same model, from which the run goes on at the time of it; options, an `Options`, or its fields by name (rtol=, dt=,
+    t_start= ...); progress, True for a bar of tqdm in a terminal or a notebook, or a function of (time reached [s],
+    t_end [s]) that is called now and then.
 
     What is left out is that of the settings of the model, `Driveline.simulation`, which a model file holds in its
     [simulation] table; `options` replaces all of them but t_end.
@@ -85,19 +114,40 @@ def simulate(
     A controller that raises ends in `SimulationError`, which holds the trajectory so far too, and so does
     `Interrupted`, the KeyboardInterrupt that Ctrl-C raises.
     """
-    if options is not None and not isinstance(options, Options):
-        raise UseError("simulate", [f"options is {shown(options)}: it must be cw.Options(...)"])
-    if not isinstance(model, System) and not hasattr(model, "assemble"):
-        raise UseError("simulate", [_no_model(model)])
-    system = model if isinstance(model, System) else model.assemble()
+    system = model_of("simulate", model, options)
     given = {**changes} if t_end is None else {**changes, "t_end": t_end}
+    if start is not None:
+        given |= begin_of(system, start, given)
     end, chosen = merged(system.settings, given, options)
-    refuse_endless(system.inputs, end, chosen.max_steps)
-    control = Control(controllers(system.inputs), partial(channels, system))
+    refuse_endless(system.inputs, chosen.t_start, end, chosen.max_steps)
+    held, changed = (start.held, start.changed) if start else ({}, {})
+    control = Control(controllers(system.inputs, held), partial(channels, system), held=held, changed=changed)
     with followed(progress, end, "simulate", "(time, t_end)", bar_format=MEASURED, unit="s") as told:
-        run = _trajectory(Job(system, end, chosen, control), told)
+        run = trajectory(Job(system, end, chosen, control, start), told)
     report_faults(run)
     return run
+
+
+def model_of(call: str, model: Assembles | System, options: object = None) -> System:
+    """The System of a model; UseError where it is none, or where options are none."""
+    if options is not None and not isinstance(options, Options):
+        raise UseError(call, [f"options is {shown(options)}: it must be cw.Options(...)"])
+    if not isinstance(model, System) and not hasattr(model, "assemble"):
+        raise UseError(call, [_no_model(model)])
+    return model if isinstance(model, System) else model.assemble()
+
+
+def begin_of(system: System, start: object, given: Mapping[str, Any]) -> dict[str, float]:
+    """The time of a state of a System as an option; an error for anything else."""
+    if not isinstance(start, State):
+        remedy = "give what sim.save(), run.state() or cw.State.load(path) returned"
+        raise UseError("simulate", [f"start is {shown(start)}: {remedy}"])
+    if given.get("t_start") is not None:
+        raise OptionError(
+            [f"t_start cannot be given beside start: the state is at {start.time:g} s; leave t_start out"]
+        )
+    start.fits(system)
+    return {"t_start": start.time}
 
 
 def _no_model(given: object) -> str:
@@ -107,7 +157,7 @@ def _no_model(given: object) -> str:
     return f"{shown(given)} is not a model; {remedy}"
 
 
-def _trajectory(job: Job, progress: Told | None) -> Trajectory:
+def trajectory(job: Job, progress: Told | None) -> Trajectory:
     """Run, and report how it ended."""
     started = time.perf_counter()
     recording, failure = _collect(job, progress)
@@ -125,15 +175,15 @@ def _trajectory(job: Job, progress: Told | None) -> Trajectory:
 
 def _collect(job: Job, progress: Told | None) -> tuple[Recording, SimulationError | None]:
     """Record a run; smooth output repeats it on a grid that is known to hold every step and event."""
-    data, grid = job.system.to_bytes(), output_grid(job.options, job.t_end)
-    first, failure = _once(job, data, grid, progress)
+    grid = output_grid(job.options, job.t_end)
+    first, failure = _once(job, grid, progress)
     if grid is not None or job.options.output != "smooth" or failure is not None or first.status == INTERRUPTED:
         return first, failure
-    spacing = job.t_end / job.options.points
-    finer = refined(first.times, spacing, jump_times(job.system, job.t_end))
+    spacing = (job.t_end - job.begin) / job.options.points
+    finer = refined(first.times, spacing, jump_times(job.system, job.begin, job.t_end)) if spacing else first.times
     if finer.size == first.times.size:
         return first, None
-    second, failure = _once(job, data, finer, None)
+    second, failure = _once(job, finer, None)
     second.core_seconds = first.core_seconds
     if second.status == INTERRUPTED:
         # the bare steps reach further
@@ -142,24 +192,19 @@ def _collect(job: Job, progress: Told | None) -> tuple[Recording, SimulationErro
     return second, failure
 
 
-def _once(job: Job, data: bytes, grid: Array | None, progress: Told | None) -> tuple[Recording, SimulationError | None]:
-    run = new_run(data)
-    for name, value in job.options.core_options().items():
-        run.set_option(name, value)
-    recording = Recording(run, run.row_size)
+def _once(job: Job, grid: Array | None, progress: Told | None) -> tuple[Recording, SimulationError | None]:
+    run = begun(job.system, job.options, job.start)
+    # what was stepped or goes on from a state is looked at without a trace
+    plain = job.start is None and isinstance(job.course, Control)
+    recording = Recording(run, job.start is not None, None if plain else partial(row_of, run, job.system))
     try:
-        record(recording, job.t_end, grid, job.control, progress)
+        record(recording, job.t_end, grid, job.course, progress)
     except SimulationError as error:
         return recording, error
     except KeyboardInterrupt as error:
         # between two calls of the core
         recording.status, recording.raised = INTERRUPTED, error
     return recording, None
-
-
-def new_run(data: bytes) -> Any:
-    """A run of the compiled core over the bytes of a System."""
-    return core().Run(data)
 
 
 def refined(steps: Array, spacing: float, jumps: Array) -> Array:
@@ -177,7 +222,7 @@ def refined(steps: Array, spacing: float, jumps: Array) -> Array:
     return np.sort(np.concatenate([grid, np.repeat(reached, np.maximum(0, 2 - present))]))
 
 
-def _message(system: System, status: int, run: Any) -> str:
+def message_of(system: System, status: int, run: Any) -> str:
     """Why a run stopped. What is not finite is an element, or a number of a row; else the largest one is named."""
     index, at, value, column = run.detail()
     if status == NOT_FINITE and not names_part(system, index) and column < 0:
@@ -210,7 +255,7 @@ def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
     run, status, system = recording.run, recording.status, job.system
     message = ""
     if status != DONE:
-        message = _message(system, status, run)
+        message = message_of(system, status, run)
     return Trajectory(
         system=system,
         options=job.options,
@@ -221,5 +266,6 @@ def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
         status=NAMES[status],
         message=message,
         repeat=job.again,
-        statistics={**run.statistics(), "core_seconds": recording.core_seconds, "seconds": seconds},
+        capture=job.state,
+        statistics={**recording.counts(), "core_seconds": recording.core_seconds, "seconds": seconds},
     )

@@ -51,6 +51,7 @@ class Wanted:
     outputs: Mapping[str, Output]
     channels: Channels
     contacts: tuple[str, ...]
+    begin: float  # s
     t_end: float
 
     @classmethod
@@ -58,7 +59,7 @@ class Wanted:
         """Of a System, without those that need a Trajectory."""
         known = channels(system, options.angles, options.work)
         native = {name: one for name, one in outputs.items() if not isinstance(one, Computed)}
-        return cls(native, known, tuple(contact.name for contact in system.contacts), t_end)
+        return cls(native, known, tuple(contact.name for contact in system.contacts), options.t_start, t_end)
 
     def __post_init__(self) -> None:
         """Refuse names that are not there, all at once."""
@@ -83,6 +84,8 @@ class Wanted:
                 yield f"{one.signal} is a word, which has no {one.kind}; take {one.signal.removesuffix('state')}mode"
             if isinstance(one, AtTimes) and one.times[-1] > self.t_end:
                 yield f"{one.name} {one.times[-1]:g} s is after t_end = {self.t_end:g} s"
+            if isinstance(one, AtTimes) and one.times[0] < self.begin:
+                yield f"{one.name} {one.times[0]:g} s is before t_start = {self.begin:g} s"
 
     def signals(self, *kinds: type) -> list[str]:
         """Signals that outputs of some kinds are made of."""
@@ -93,7 +96,7 @@ class Wanted:
     def grid(self) -> Array:
         """Instants of the grid: those asked for, the start of integrals, the end."""
         asked = {time for one in self.outputs.values() if isinstance(one, AtTimes) for time in one.times}
-        start = {0.0} if self.signals(Integral) else set()
+        start = {self.begin} if self.signals(Integral) else set()
         # one at an event is shown once, from the left, as a run that is asked for it
         return np.array(sorted(asked | start | {self.t_end}))
 

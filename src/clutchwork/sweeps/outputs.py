@@ -108,7 +108,7 @@ class Integral:
 
     def of(self, run: Trajectory) -> Any:
         """Its value in a run; NaN where that did not reach its end."""
-        values = run.at([0.0, run.t_end])[self.kept_as(run)]
+        values = run.at([run.options.t_start, run.t_end])[self.kept_as(run)]
         return (values[-1] - values[0]).item() if run.finished else np.nan
 
 

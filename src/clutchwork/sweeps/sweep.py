@@ -75,7 +75,7 @@ def sweep(
         raise UseError("sweep", [f"{' and '.join(useless)} would be without effect: {remedy}"])
     end, settled = merged(system.settings, chosen, options)
     plain = settled.changed({"dt": None, "times": None})
-    refuse_endless(system.inputs, end, plain.max_steps)
+    refuse_endless(system.inputs, plain.t_start, end, plain.max_steps)
     count = _threads(threads)
     _refuse_clashes(wanted)
     swept = Swept(system, variants, wanted, end, plain)

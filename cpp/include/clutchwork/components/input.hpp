@@ -97,13 +97,20 @@ inline bool segment_exists(const System& sys, int i, std::int64_t k) {
   return k >= 0 && (sys.input_period[i] > 0 || k < sys.input_count[i]);
 }
 
+/// Whether signal i holds a value that comes from outside.
+template <class T>
+bool is_held(const Workspace<T>& ws, int i) {
+  return ws.sys.input_count[i] == 0 || ws.in.signal[i].given;
+}
+
 /// Put the cursor of signal i on the segment that holds at time t (right limit).
 template <class T>
 void seek(Workspace<T>& ws, int i, double t) {
   const System& sys = ws.sys;
   Signal& signal = ws.in.signal[i];
-  if (sys.input_count[i] == 0) {
-    signal.knot = infinity;
+  if (is_held(ws, i)) {
+    signal.knot = infinity, signal.coef = nullptr;
+    signal.varying = signal.idle = false, signal.linear = true;
     return;
   }
   while (segment_exists(sys, i, signal.segment + 1) && segment_start(sys, i, signal.segment + 1) <= t) ++signal.segment;
@@ -186,7 +193,7 @@ bool awaits_values(const Workspace<T>& ws, double t) {
   for (int i = 0; i < ws.sys.inputs; ++i) {
     if (ws.sys.input_count[i] == 0) return true;
   }
-  return false;
+  return ws.in.expected;
 }
 
 /// Values of all references at time t; only the varying ones are computed again.

@@ -71,10 +71,11 @@ void start_contacts(Workspace<T>& ws) {
   }
 }
 
-/// State at time zero. False when the mass matrix is not positive definite.
+/// State at the start. False when the mass matrix is not positive definite.
 template <class T>
 bool start(Workspace<T>& ws) {
   if (!prepare_geometry(ws)) return false;
+  ws.time = ws.options.t_start;
   ws.statistics = {};
   ws.events.n = 0;
   ws.contact.failed = -1;

@@ -13,6 +13,7 @@ struct Signal {
   const double* coef = nullptr;
   double held = 0;  ///< value of a signal that is set from outside
   bool varying = false, linear = true, idle = false;
+  bool given = false;  ///< it was set from outside, and follows its segments no more
 };
 
 /// What components read, through references to signals, shared states, rates and heats; the prescribed speeds come
@@ -25,6 +26,7 @@ struct Signals {
   T *u = nullptr, *du = nullptr;  ///< value of each reference; its time derivative where it is a signal
   double time = -infinity;        ///< [s] of the values
   double next_knot = infinity;    ///< [s]
+  bool expected = false;          ///< values may be set between calls
   T *prescribed = nullptr, *prescribed_slope = nullptr, *prescribed_before = nullptr;
 
   // references that are no signals: shared states first, then rates and heats of directions

@@ -52,6 +52,7 @@ def save(run: Recorded, path: str | Path) -> None:
         "message": run.message,
         "statistics": dict(run.statistics),
         "controllers": controllers,
+        "needs": list(getattr(getattr(run.repeat, "__self__", run.repeat), "needs", ())),
     }
     parts = {
         "run": json.dumps(about, default=float).encode(),

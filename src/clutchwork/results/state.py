@@ -1,0 +1,137 @@
+"""The complete state of a run at an instant: what a run is continued from, here or elsewhere."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping
+from dataclasses import field
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import ClutchworkError, UseError
+from clutchwork.base.kept import kept
+from clutchwork.base.shown import shortened, shown
+from clutchwork.declare.calls import explained
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from clutchwork.assembly.system import System
+
+FORMAT = 1
+PARTS = ("head", "core", "row")
+
+
+class StateError(ClutchworkError, ValueError):
+    """A state that is damaged, or that of another model."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class State:
+    """A run at an instant, bit for bit: motion, contacts, angles and work, and what was set from outside.
+
+    `Simulator.save` and `Trajectory.state` make it, `Simulator.restore` and `simulate(start=...)` go on from it. It
+    belongs to the model that it is of, with all its numbers and signals; options of a run are not part of it. It can be
+    pickled, and `save` writes one file without code inside. What a Python function of a controller remembers by itself
+    is not in it.
+    """
+
+    time: float  # s
+    model: str  # name of the driveline
+    fingerprint: str  # of its System
+    core: bytes = field(repr=False)  # as the compiled core saves it
+    row: bytes = field(repr=False)  # output row at this instant
+    held: Mapping[str, float] = field(default_factory=dict)  # signals that were set from outside
+    changed: Mapping[str, Any] = field(default_factory=dict)  # parameters that were
+
+    def __repr__(self) -> str:
+        size = len(self.core) + len(self.row)
+        return f"<State of {shown(self.model)} at {self.time:g} s, {size / 1024:.1f} KiB>"
+
+    @property
+    def values(self) -> NDArray[np.float64]:
+        """The output row of the core at this instant."""
+        return np.frombuffer(self.row, dtype=np.float64)
+
+    @explained("state.save")
+    def save(self, path: str | Path) -> None:
+        """Write it to one file; nothing in it is code."""
+        import json
+
+        from clutchwork.base import archive
+
+        _refuse_no_path("state.save", path)
+        head = {"format": FORMAT, "time": self.time, "model": self.model, "fingerprint": self.fingerprint}
+        head |= {"held": dict(self.held), "changed": dict(self.changed)}
+        archive.write(path, {"head": json.dumps(head).encode(), "core": self.core, "row": self.row})
+
+    @classmethod
+    @explained("cw.State.load")
+    def load(cls, path: str | Path) -> State:
+        """Read a file of `save`; StateError for any other. Whether it fits a model is seen where it is used."""
+        from clutchwork.base import archive
+        from clutchwork.base.regular import reason
+
+        _refuse_no_path("cw.State.load", path)
+        try:
+            head, core, row = archive.read(path, PARTS)
+            return cls(core=core, row=row, **_read_head(head))
+        except (ValueError, RecursionError, OSError) as error:
+            why = reason(error) if isinstance(error, OSError) else shortened(str(error))
+            raise StateError(f"{path}: cannot read a state: {why}; write the file with State.save") from None
+
+    def fits(self, system: System) -> None:
+        """StateError where it is the state of another model."""
+        if self.fingerprint != fingerprint(system):
+            same = (
+                f"{shown(system.name)} with other numbers or signals" if self.model == system.name else "another model"
+            )
+            told = (
+                f"this is a state of {shown(self.model)}"
+                if self.model != system.name
+                else "this is a state of the model"
+            )
+            raise StateError(
+                f"{told} at {self.time:g} s, and the model here is {same}: "
+                "continue with the model that it was saved from, and change what may change with Simulator.set"
+            )
+
+
+@kept
+def fingerprint(system: System) -> str:
+    """What a System is recognised by, found once."""
+    return hashlib.sha256(system.to_bytes()).hexdigest()
+
+
+def instant(at: object, begin: float, reached: float) -> float:
+    """A time of a run [s] that goes from begin to what it has reached, None: its end; UseError for any other."""
+    if at is None:
+        return reached
+    if isinstance(at, bool) or not isinstance(at, Real):
+        raise UseError("run.state", [f"at is {shown(at)}: give a time in s, or nothing for the end"])
+    if not begin <= float(at) <= reached:
+        raise UseError("run.state", [f"at is {float(at):g} s: the run goes from {begin:g} to {reached:g} s"])
+    return float(at)
+
+
+def _refuse_no_path(call: str, path: object) -> None:
+    if not isinstance(path, str | os.PathLike):
+        raise UseError(call, [f"{shown(path)} is not a path; give the name of a file"])
+
+
+def _read_head(data: bytes) -> dict[str, Any]:
+    """The fields beside the bytes; ValueError where they are not what they must be."""
+    import json
+
+    head = json.loads(data)
+    if not isinstance(head, dict) or head.get("format") != FORMAT:
+        raise ValueError("it is of another version")
+    kinds = {"time": float, "model": str, "fingerprint": str, "held": dict, "changed": dict}
+    if any(not isinstance(head.get(name), kind) for name, kind in kinds.items()):
+        raise ValueError("its head is damaged")
+    return {name: head[name] for name in kinds}

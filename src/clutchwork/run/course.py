@@ -1,0 +1,96 @@
+"""What happens to a run from outside, and when: stretches of the core, and what is set before each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import field
+from functools import cached_property
+from typing import Any, NamedTuple, Protocol
+
+from clutchwork.base.classes import dataclass
+
+Numbers = tuple[tuple[int, float], ...]
+
+
+class Course(Protocol):
+    """Stretches of a run from one instant to the next."""
+
+    def stops(self, begin: float, t_end: float) -> Iterator[float]:
+        """Instants up to which the core may run, the last one the end [s]."""
+
+    def act(self, run: Any, time: float, number: int) -> bool:
+        """Set what is due before the stretch of a number; False when there is nothing to do."""
+
+    def outside(self, number: int) -> tuple[Mapping[str, float], Mapping[str, Any]]:
+        """Signals and parameters that are set from outside after so many stretches."""
+
+
+class Act(NamedTuple):
+    """One thing that was set: a signal, a signal that follows its model again, or a parameter."""
+
+    kind: str  # "input", "release", "param" or "control"
+    name: str
+    value: Any  # None: that of the model
+    numbers: Numbers  # what the core is given, by place
+
+    def apply(self, run: Any) -> None:
+        """Do it in the core."""
+        for place, value in self.numbers:
+            if self.kind == "param":
+                run.set_param(place, value)
+            elif self.kind == "release":
+                run.release_input(place)
+            else:
+                run.set_input(place, value)
+
+
+@dataclass
+class Tape:
+    """What was done to a run that was stepped, so that it can be repeated bit for bit."""
+
+    held: Mapping[str, float] = field(default_factory=dict)  # at its begin
+    changed: Mapping[str, Any] = field(default_factory=dict)
+    ends: list[float] = field(default_factory=list)  # of the stretches [s]
+    # number of the stretch that it precedes, then the fields of an Act: plain tuples, which cost collectors nothing
+    noted: list[tuple[int, str, str, Any, Numbers]] = field(default_factory=list)
+
+    def copy(self) -> Tape:
+        """The same, to be kept."""
+        return Tape(self.held, self.changed, self.ends[:], self.noted[:])
+
+    @cached_property
+    def acts(self) -> dict[int, list[Act]]:
+        """Acts by the number of the stretch that they precede, of a tape that is kept."""
+        found = dict[int, list[Act]]()
+        for number, *act in self.noted:
+            found.setdefault(number, []).append(Act(*act))
+        return found
+
+    def stops(self, begin: float, t_end: float) -> Iterator[float]:  # noqa: ARG002, where it began is known
+        """Ends of the stretches; a run that was not stepped yet ends where it begins."""
+        yield from self.ends or (t_end,)
+
+    def act(self, run: Any, time: float, number: int) -> bool:  # noqa: ARG002, the number says it
+        """Repeat what was set."""
+        if number == 0:
+            run.expect_inputs(True)
+        acts = self.acts.get(number, ())
+        for one in acts:
+            one.apply(run)
+        return bool(acts)
+
+    def outside(self, number: int) -> tuple[Mapping[str, float], Mapping[str, Any]]:
+        """Signals and parameters that are set from outside after so many stretches."""
+        held, changed = dict(self.held), dict(self.changed)
+        for before, kind, name, value, _ in self.noted:
+            if before < number and kind != "control":
+                put(changed if kind == "param" else held, name, value)
+        return held, changed
+
+
+def put(known: dict[str, Any], name: str, value: Any) -> None:
+    """Remember what is set; None: it is no more."""
+    if value is None:
+        known.pop(name, None)
+    else:
+        known[name] = value

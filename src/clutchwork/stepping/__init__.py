@@ -1,0 +1,1 @@
+"""Runs that are advanced step by step, and set from outside between the steps."""

@@ -1,0 +1,138 @@
+"""What is set from outside: by name, checked, as acts on a run of the core."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from clutchwork.base.errors import Problem
+from clutchwork.base.shown import shown
+from clutchwork.declare.quantity import has_unit
+from clutchwork.declare.schema import Spec, specs
+from clutchwork.model.changes import Target, in_si, named, target
+from clutchwork.run.course import Act, put
+from clutchwork.stepping.parameters import NEW_RUN, NOTHING, Change, changed
+from clutchwork.stepping.signals import Settable, given_by_others, signals, unknown
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.results.state import State
+
+PART_OF_SIGNAL = ("is a part of a signal, which the model gives", "set the signal itself to a number")
+NOT_A_NUMBER = ("must be a number", "a signal over time, or a friction law, belongs into the model")
+
+
+class Plan(NamedTuple):
+    """What is to be done, and all that is wrong with it."""
+
+    acts: list[Act]
+    problems: list[Problem]
+    present: System | None = None  # the System with all parameters, where they change
+
+
+class Found(NamedTuple):
+    """Where the name of a parameter leads to: its present value and its declaration."""
+
+    aim: Target
+    value: Any
+    spec: Spec
+
+
+class Outside:
+    """Signals and parameters of a System that are set from outside."""
+
+    def __init__(self, system: System) -> None:
+        self.signals: dict[str, Settable] = signals(system)
+        self.held: dict[str, float] = {}
+        self.changed: dict[str, Any] = {}
+        self._base = self._present = system
+
+    def begin(self, state: State | None) -> tuple[dict[str, float], dict[str, Any]]:
+        """What is set in a state; nothing at the start of a model."""
+        self.held = dict(state.held) if state else {}
+        self.changed = dict(state.changed) if state else {}
+        self._present = self._base.changed(self.changed) if self.changed else self._base
+        return dict(self.held), dict(self.changed)
+
+    def plan(self, given: Mapping[Any, Any]) -> Plan:
+        """How values are set by name; None: that of the model again."""
+        acts, problems, params = list[Act](), list[Problem](), dict[str, Any]()
+        for name, value in given.items():
+            linked = given_by_others(self._base, name) if isinstance(name, str) else unknown(self._base, name)
+            if name in self.signals:
+                act, found = self._signal(name, value)
+                acts.append(act)
+                problems += found
+            elif linked is not None:
+                problems.append(linked)
+            else:
+                params[name] = value
+        more = self._parameters(params) if params else Plan([], [])
+        return Plan(acts + more.acts, problems + more.problems, more.present)
+
+    def take(self, plan: Plan) -> None:
+        """Remember what was done."""
+        for act in plan.acts:
+            put(self.changed if act.kind == "param" else self.held, act.name, act.value)
+        self._present = plan.present or self._present
+
+    def _signal(self, name: str, value: Any) -> tuple[Act, list[Problem]]:
+        signal = self.signals[name]
+        if value is None:
+            return self._released(name, signal.numbers), []
+        number, problems = signal.read(value)
+        return Act("input", name, number, signal.told(number)), problems
+
+    def _released(self, name: str, numbers: tuple[int, ...]) -> Act:
+        counts = self._base.arrays["input_count"]
+        # where the system says nothing, a controller does
+        return Act("release", name, None, tuple((number, 0.0) for number in numbers if counts[number]))
+
+    # --------------------------------------------------------------------------------------------------- parameters
+
+    def _parameters(self, given: Mapping[str, Any]) -> Plan:
+        values, problems = dict[str, Any](), list[Problem]()
+        for name, value in given.items():
+            known = self._value(name)
+            faults = [unknown(self._base, name)] if known is None else list(self._faults(name, value, known))
+            problems += faults
+            if known is not None and not faults:
+                values[name] = in_si(known.aim, value) if has_unit(value) else value
+        change, found = changed(self._base, self._present, self.changed, values) if values else (None, [])
+        if change is None or problems:
+            return Plan([], problems + found)
+        return self._acts(values, change)
+
+    def _value(self, name: str) -> Found | None:
+        """Where a name leads to in the model."""
+        source = self._present.source
+        aim = target(named(source), name) if source is not None else None
+        if aim is None:
+            return None
+        thing = aim.owner
+        for word in aim.path[:-1]:
+            thing = getattr(thing, word)
+        known = {item.name: spec for item, spec in specs(type(thing))} if hasattr(type(thing), "kind") else {}
+        spec = known.get(aim.path[-1], Spec("param", "", "value"))
+        return Found(aim, getattr(thing, aim.path[-1]), spec)
+
+    def _faults(self, name: str, value: Any, found: Found) -> Iterator[Problem]:
+        """What is wrong with a value beside what a model says of it."""
+        if any(name.startswith(f"{signal}.") for signal in self.signals):
+            yield Problem(name, "", PART_OF_SIGNAL[0], remedy=PART_OF_SIGNAL[1])
+        elif (
+            not has_unit(value)
+            and found.spec.what in ("signal", "alternative", "law")
+            and not isinstance(value, int | float | None)
+        ):
+            yield Problem(name, "", NOT_A_NUMBER[0], shown(value), NOT_A_NUMBER[1])
+
+    def _acts(self, values: Mapping[str, Any], change: Change) -> Plan:
+        """Acts of a change that can be done; the first has the numbers of all."""
+        acts, problems = list[Act](), list[Problem]()
+        for name, value in values.items():
+            known = self._value(name)
+            if not change.params and value is not None and known is not None and known.value != value:
+                problems.append(Problem(name, "", NOTHING, remedy=NEW_RUN))
+            acts.append(Act("param", name, value, () if acts else tuple(change.params.items())))
+        return Plan([] if problems else acts, problems, change.new)

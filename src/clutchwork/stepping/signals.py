@@ -1,0 +1,143 @@
+"""The signals of a System that can be set from outside, by name, and what each of them may be."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from clutchwork.base.errors import Problem, near
+from clutchwork.base.kept import kept
+from clutchwork.base.shown import shown
+from clutchwork.declare.node import Component, is_reference
+from clutchwork.declare.quantity import QuantityError, has_unit, in_si
+from clutchwork.declare.schema import Spec, inputs, specs
+from clutchwork.declare.speech import path_of
+from clutchwork.model.fields import number_problems
+from clutchwork.model.numbers import At
+from clutchwork.signals.table import Table
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+
+# the temperature of an ambient, which has no declaration of its own
+MARK = 1.2345678e300  # s, a time that no signal has
+TEMPERATURE = Spec("signal", "K", "temperature of an ambient", above=0.0)
+
+
+class Settable(NamedTuple):
+    """One signal: its numbers in the core, its unit, its bounds, and where it is."""
+
+    numbers: tuple[int, ...]  # several where a composite gives it to parts of it
+    unit: str
+    spec: Spec
+    path: str
+    quantity: str
+
+    def read(self, value: Any) -> tuple[float, list[Problem]]:
+        """A number in SI, and what is wrong with it."""
+        at = At(self.path, self.quantity, self.unit)
+        try:
+            given = in_si(value, self.unit, self.spec.units) if has_unit(value) else value
+        except QuantityError as bad:
+            return 0.0, [at.problem(bad.message, bad.value, bad.remedy)]
+        found = list(number_problems(given, self.spec, at))
+        return (0.0 if found else float(given)), found
+
+    def told(self, value: float) -> tuple[tuple[int, float], ...]:
+        """What the core is given."""
+        return tuple([(number, value) for number in self.numbers])
+
+
+def signals(system: System) -> dict[str, Settable]:
+    """All signals of a System, under the names of results and those of composites whose parts have them."""
+    return {**settable(system), **composed(system)}
+
+
+@kept
+def settable(system: System) -> dict[str, Settable]:
+    """All signals of a System, found once."""
+    known = dict(_declared(system))
+    made = {}
+    for number, item in enumerate(system.inputs):
+        path, quantity, spec = known.get(item.name, (item.name, "", TEMPERATURE))
+        made[item.name] = Settable((number,), item.unit, spec, path, quantity)
+    return made
+
+
+@kept
+def composed(system: System) -> dict[str, Settable]:
+    """Signals of composites that have other names in their parts, such as the command of a synchroniser."""
+    made = {}
+    for element in system.source.elements if system.source else ():
+        composite = type(element).parts is not Component.parts
+        for item, spec in specs(type(element), "signal", "alternative") if composite else ():
+            name, value = f"{element.name}.{item.name}", getattr(element, item.name)
+            if name not in settable(system) and value is not None and not is_reference(value):
+                numbers = _parts_with(system, name, spec)
+                if numbers:
+                    made[name] = Settable(numbers, system.inputs[numbers[0]].unit, spec, path_of(element), item.name)
+    return made
+
+
+def _parts_with(system: System, name: str, spec: Spec) -> tuple[int, ...]:
+    """Numbers of the signals that are that of a composite: a mark put there is found in them."""
+    value = next(number for number in (1.0, 0.5, 300.0, 0.0, -1.0) if spec.allows(number))
+    mark = Table([(0.0, value), (MARK, value)])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        made = system.changed({name: mark})
+    return tuple(number for number, item in enumerate(made.inputs) if item.signal == mark)
+
+
+def _declared(system: System) -> Iterator[tuple[str, tuple[str, str, Spec]]]:
+    """Names of the inputs of all components, with where they are and what they may be."""
+    groups = (system.elements, system.contacts, system.flows, system.processes, system.motions)
+    for component in (one for group in groups for one in group):
+        yield from _of(component, component, "")
+        if component.friction is not None:
+            yield from _of(component.friction, component, "friction.")
+    for node in system.thermal:
+        yield f"{node.name}.temperature", (f'cw.ThermalNode("{node.name}")', "temperature", TEMPERATURE)
+
+
+def _of(thing: Any, component: Any, inside: str) -> Iterator[tuple[str, tuple[str, str, Spec]]]:
+    """The inputs of a component or of its friction law; each way to give one has bounds of its own."""
+    names = {name for group, _ in inputs(type(thing)) for name in group}
+    for item, spec in specs(type(thing), "signal", "alternative"):
+        if item.name in names:
+            quantity = f"{inside}{item.name}"
+            yield f"{component.name}.{quantity}", (path_of(component), quantity, spec)
+
+
+def given_by_others(system: System, name: str) -> Problem | None:
+    """Why a signal that another component gives cannot be set; None where it is another name."""
+    linked = next((link for link in system.links if link.name == name), None)
+    if linked is None:
+        return None
+    if linked.sort == "input":
+        source = system.inputs[linked.number].name
+        return Problem(name, "", f"is given by {source!r}", remedy=f"set {source!r}")
+    owner = _owner(system, linked.number)
+    commands = [other for other in settable(system) if other.startswith(f"{owner}.")]
+    remedy = f"set {commands[0]!r}" if commands else "leave it to that, or give the model a signal there"
+    return Problem(name, "", f"is given by {owner!r}", remedy=remedy)
+
+
+def _owner(system: System, shared: int) -> str:
+    """Name of the thermal node or process that has a shared state."""
+    owners = [node.name for node in system.thermal]
+    owners += [process.name for process in system.processes for _ in type(process).states]
+    return owners[shared]
+
+
+def unknown(system: System, name: object) -> Problem:
+    """A name that is that of nothing that could be set."""
+    path = name if isinstance(name, str) else shown(name)
+    known = signals(system)
+    such = f"signals are such as {', '.join(map(repr, list(known)[:3]))}" if known else ""
+    return Problem(
+        path,
+        "",
+        f"is neither a signal nor a parameter of this driveline{near(path, [*known, *system.parameters], such)}",
+    )
