@@ -10,6 +10,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.options import DEFAULTS
 from clutchwork.declare.status import DONE
 from clutchwork.results.trajectory import SimulationError
+from clutchwork.run.control import controllers
 from clutchwork.run.simulation import simulate, told
 
 if TYPE_CHECKING:
@@ -32,7 +33,14 @@ def started(system: System) -> Any:
 
 def reached(trajectory: Trajectory, at: float) -> Any:
     """A run at a time [s]: repeated up to there, bit for bit, and what controllers decided is replayed."""
-    return resumed(trajectory.system, trajectory.state(at=at))
+    run = resumed(trajectory.system, trajectory.state(at=at))
+    asked = controllers(trajectory.system.inputs)
+    # a state is what a run is before controllers are asked, and what they said follows
+    if asked:
+        after = trajectory.at([at, at])
+        for one in asked:
+            run.set_input(one.index, float(after[one.name][-1]))
+    return run
 
 
 def resumed(system: System, state: Any) -> Any:
