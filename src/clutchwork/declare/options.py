@@ -116,6 +116,10 @@ class Options:
         "", "whether the work of all elements is integrated, for the energy balance", default=True, core=True
     )
 
+    if TYPE_CHECKING:
+        # numbers may be given with units, what is kept is in SI
+        def __init__(self, **given: Unpack[OptionFields]) -> None: ...
+
     def __post_init__(self) -> None:
         """Put values with units into SI; refuse those that make no sense, with what to write instead, all at once."""
         for name, row in OPTIONS.items():
