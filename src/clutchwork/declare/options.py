@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from math import inf
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, Unpack, get_args
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, advised, near
@@ -23,6 +23,8 @@ from clutchwork.declare.setting import Setting, setting
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from clutchwork.declare.option_fields import OptionFields
 
 Method = Literal["auto", "rodas5p", "dopri5"]
 Output = Literal["smooth", "steps"]

@@ -122,8 +122,8 @@ def simulate(
     refuse_endless(system.inputs, chosen.t_start, end, chosen.max_steps)
     held, changed = (start.held, start.changed) if start else ({}, {})
     control = Control(controllers(system.inputs, held), partial(channels, system), held=held, changed=changed)
-    begin, looks = chosen.t_start, {"bar_format": MEASURED, "unit": "s"}
-    with followed(progress, end, "simulate", "(time, t_end)", begin, **looks) as told:
+    asks = "(time, t_end)"
+    with followed(progress, end, "simulate", asks, chosen.t_start, bar_format=MEASURED, unit="s") as told:
         run = trajectory(Job(system, end, chosen, control, start), told)
     report_faults(run)
     return run

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from clutchwork.base.html import page, table
 from clutchwork.model.model import Model
@@ -31,7 +31,10 @@ def tables(found: Diagram) -> str:
          ", ".join(element_values(thing)))
         for thing in _all(found.elements) if thing.what == "element"
     ]  # fmt: skip
-    lists = [(("node", "sort", "value"), nodes), (("element", "kind", "attached to", "values"), elements)]
+    lists: list[tuple[Sequence[str], Sequence[Sequence[str]]]] = [
+        (("node", "sort", "value"), nodes),
+        (("element", "kind", "attached to", "values"), elements),
+    ]
     return "".join(table(head, lines) for head, lines in lists if lines)
 
 

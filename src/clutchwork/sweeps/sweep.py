@@ -79,9 +79,8 @@ def sweep(
     count = _threads(threads)
     _refuse_clashes(wanted)
     swept = Swept(system, variants, wanted, end, plain)
-    looks = {"unit": " runs"}
     with (
-        followed(progress, len(variants), "sweep", "(done, variants)", **looks) as told,
+        followed(progress, len(variants), "sweep", "(done, variants)", unit=" runs") as told,
         warnings.catch_warnings(),
     ):
         # a value may be rarely wanted; that of a single run is given there

@@ -40,7 +40,8 @@ def compare(
     `run.plot` takes them: names, wildcards, lists of names for one panel, and the path of a picture; without any,
     speeds, loads and torques of contacts and temperatures that all runs have. labels, of runs that are not in a
     mapping, by default the names of their models, or run 1, run 2 ...; unit, path, zoom [s], events, measured and
-    units as in `run.plot`; colour, "run" for one colour for each run and dashes for signals, or "signal" for the other way round.
+    units as in `run.plot`; colour, "run" for one colour for each run and dashes for signals, or "signal" for the other
+    way round.
 
     Models may differ. A signal that one of the runs does not have is an `UnknownName` error that names the run; a
     wildcard takes what each of them has. Needs matplotlib.
