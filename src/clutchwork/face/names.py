@@ -37,6 +37,7 @@ NAMES = {
     "UseError": "base.errors",
     "export_c": "codegen",
     "load_run": "run.saved",
+    "OutputWarning": "sweeps.result",
     "Sweep": "sweeps.result",
     "SweepInterrupted": "sweeps.result",
     "at": "sweeps.outputs",

@@ -65,12 +65,6 @@ class Job:
         """Time at which it begins [s]."""
         return self.options.t_start
 
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """What it cannot be repeated without beside model and options, but for Python functions."""
-        stepped = () if isinstance(self.course, Control) else ("it was stepped and set from outside",)
-        return (*(("it went on from a state",) if self.start is not None else ()), *stepped)
-
     def again(self, times: Any) -> Trajectory:
         """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
         wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
