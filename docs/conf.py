@@ -8,9 +8,12 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures"), str(HERE)]
 
+import drawings  # noqa: E402
 import experiments  # noqa: E402
 import kept  # noqa: E402
 import launches  # noqa: E402
+import schematics  # noqa: E402
+import shuffle  # noqa: E402
 
 import clutchwork  # noqa: E402
 import gen_docs  # noqa: E402
@@ -23,6 +26,9 @@ gen_lists.write(HERE / "reference")
 kept.write(experiments.write, HERE / "reference" / "rig")
 kept.write(launches.write, HERE / "reference" / "car")
 kept.write(sweeps.write, HERE / "reference" / "sweeps")
+kept.write(drawings.write, HERE / "reference" / "pictures")
+kept.write(schematics.write, HERE / "reference" / "schematics")
+kept.write(shuffle.write, HERE / "reference" / "linear")
 parity.write(HERE / "reference")
 
 # what is public is documented by its public name, wherever it is defined

@@ -8,7 +8,8 @@ from typing import Any
 
 import element_figures
 import element_programs
-from clutchwork.declare.schema import REGISTRY, Role, Spec, inputs, specs
+from clutchwork.declare.purposes import ELEMENT_ROLES, groups
+from clutchwork.declare.schema import Spec, inputs, specs
 from clutchwork.elements.plate_contact import PlateContact
 from reference_fields import entry, linked, summary, table
 
@@ -16,16 +17,6 @@ INTRODUCTION = """# Elements
 
 The components of a driveline. Ports name the shafts that an element joins; `torque` is what it applies to its follower,
 or to its shaft, see [signs](../guide/signs.md). Each page has an example that runs."""
-
-ROLES = {
-    Role.CONTACT: "Contacts: friction that sticks",
-    Role.COMPOSITE: "Made of other elements",
-    Role.TORQUE: "Springs, dampers and torque sources",
-    Role.GEAR: "Gears",
-    Role.MOTION: "Prescribed motion",
-    Role.FLOW: "Heat flows",
-    Role.PROCESS: "Processes: states that signals, rates and heats drive",
-}
 
 # what the signals of a result mean that are not inputs or states
 MEANINGS = {
@@ -47,19 +38,19 @@ MEANINGS = {
 def pages() -> Iterator[tuple[str, str]]:
     """Name and text of the overview and of every page."""
     yield "elements", "\n".join(_overview())
-    for role in ROLES:
-        for kind, cls in sorted(REGISTRY[role].items()):
+    for kinds in groups(*ELEMENT_ROLES).values():
+        for kind, cls in kinds.items():
             yield f"elements/{kind}", "\n".join(_page(kind, cls))
 
 
 def _overview() -> Iterator[str]:
     yield INTRODUCTION
-    for role, heading in ROLES.items():
+    for heading, kinds in groups(*ELEMENT_ROLES).items():
         yield f"\n## {heading}\n\n{{.fields}}\n| element | type in files | |\n|---|---|---|"
-        for kind, cls in sorted(REGISTRY[role].items()):
+        for kind, cls in kinds.items():
             yield f"| [{cls.__name__}](elements/{kind}.md) | `{kind}` | {summary(cls)} |"
     yield "\n```{toctree}\n:hidden:\n:maxdepth: 1\n"
-    yield from (f"elements/{kind}" for role in ROLES for kind in sorted(REGISTRY[role]))
+    yield from (f"elements/{kind}" for kinds in groups(*ELEMENT_ROLES).values() for kind in kinds)
     yield "```\n"
 
 
@@ -136,8 +127,8 @@ def _meanings(*known: Any) -> dict[str, str]:
 
 
 def _elements() -> Iterator[Any]:
-    for role in ROLES:
-        yield from REGISTRY[role].values()
+    for kinds in groups(*ELEMENT_ROLES).values():
+        yield from kinds.values()
 
 
 def _optional(cls: type) -> Iterator[tuple[str, Spec]]:

@@ -6,36 +6,22 @@ import contextlib
 import io
 import re
 from collections.abc import Iterator
-from dataclasses import MISSING
 from pathlib import Path
 from typing import Any
 
-from clutchwork.declare.schema import Spec, inputs, specs
+from clutchwork.declare.examples import example
+from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
 
 WORDS = Path(__file__).resolve().parent.parent / "docs" / "elements"
-# ports that are not joined to the shaft "a"
-OTHERS = {
-    "follower": "b",
-    "output": "b",
-    "ring": "b",
-    "carrier": "c",
-    "mass": "m",
-    "cold": "air",
-    "inlet": "air",
-    "hot": "plates",
-    "heat": "plates",
-    "support": "d.housing",
-}
+# how the shafts, masses and thermal nodes of the examples are made
 NODES = {
-    "a": 'a = d.shaft("a", inertia=0.2, speed=100.0)  # kg m2, rad/s',
-    "b": 'b = d.shaft("b", inertia=0.8)',
-    "c": 'c = d.shaft("c", inertia=0.5)',
-    "m": 'm = d.mass("m", mass=10.0)  # kg',
+    "engine": 'engine = d.shaft("engine", inertia=0.2, speed=100.0)  # kg m2, rad/s',
+    "load": 'load = d.shaft("load", inertia=0.8)',
+    "output": 'output = d.shaft("output", inertia=0.5)',
+    "car": 'car = d.mass("car", mass=10.0)  # kg',
     "plates": 'plates = d.thermal("plates", capacity=500.0, temperature=350.0)  # J/K, K',
     "air": 'air = d.ambient("air", temperature=293.0)  # K',
 }
-# what to give where the declaration names no example
-USUAL = {"Pa": 2e5, "N": 100.0, "N m": 10.0, "rad/s": 100.0, "K": 300.0, "s": 0.05, "m3": 5e-4}
 
 
 def words(kind: str) -> str:
@@ -53,7 +39,7 @@ def program(cls: Any) -> str:
 def made(cls: Any) -> str:
     """A program from the declaration alone: one element between shafts, with the examples of its fields."""
     given = dict(_fields(cls))
-    used = [name for name in NODES if name == "a" or name in given.values()]
+    used = [name for name in NODES if name == "engine" or name in given.values()]
     fields = "".join(f"        {name}={value},\n" for name, value in given.items())
     nodes = "".join(f"{NODES[name]}\n" for name in used)
     title = cls.kind.replace("_", " ")
@@ -72,35 +58,18 @@ def performed(source: str, name: str) -> dict[str, Any]:
 
 
 def _fields(cls: Any) -> Iterator[tuple[str, str]]:
-    needed = {names[0] for names, spec in inputs(cls) if spec.otherwise is None}
-    for item, spec in specs(cls):
-        required = item.default is MISSING or item.name in needed or spec.example is not None
-        # teeth may stand in place of a ratio, diameters in place of a radius
-        if required or item.name in ("ratio", "radius"):
-            yield item.name, _value(item.name, spec)
+    sorts = {item.name: spec for item, spec in specs(cls)}
+    for name, value in example(cls).items():
+        yield name, _python(value, sorts[name])
 
 
-def _value(name: str, spec: Spec) -> str:
+def _python(value: Any, spec: Spec) -> str:
+    """A value of a model file as Python writes it."""
     if spec.what in ("port", "thermal"):
-        return OTHERS.get(name, "m" if spec.domain == "translation" else "a")
+        return "d.housing" if value == "housing" else str(value)
     if spec.what == "law":
-        return "cw.Coulomb(static=0.12, kinetic=0.1)"
+        inner = ", ".join(f"{name}={number!r}" for name, number in value.items() if name != "type")
+        return f"cw.{REGISTRY[Role.LAW][value['type']].__name__}({inner})"
     if spec.what == "curve":
-        return repr(list(spec.example or [(0.0, 1.0), (100.0, 0.5)]))
-    if spec.what == "signal":
-        return repr(USUAL.get(spec.unit, 1.0))
-    return repr(spec.example) if spec.example is not None else _number(spec)
-
-
-def _number(spec: Spec) -> str:
-    """A number within the bounds, or the first choice."""
-    if spec.choices or spec.flag:
-        return repr(spec.choices[0] if spec.choices else True)
-    usual = USUAL.get(spec.unit)
-    if usual is not None and spec.allows(usual):
-        return repr(usual)
-    low = max((bound for bound in (spec.above, spec.at_least) if bound is not None), default=0.0)
-    if spec.whole:
-        return repr(int(low) + 30)
-    high = min((bound for bound in (spec.below, spec.at_most) if bound is not None), default=low + 2.0)
-    return repr((low + high) / 2)
+        return repr([tuple(point) for point in value])
+    return repr(tuple(value) if isinstance(value, list) else value)

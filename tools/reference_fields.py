@@ -9,6 +9,7 @@ from dataclasses import MISSING
 from pathlib import Path
 from typing import Any
 
+from clutchwork.declare import docs
 from clutchwork.declare.docs import described, words
 from clutchwork.declare.schema import REGISTRY, specs
 
@@ -17,7 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 def summary(cls: type) -> str:
     """First sentence or two, for a cell of a table."""
-    return words(cls).partition("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+    return docs.summary(cls).replace("|", "\\|")
 
 
 def entry(cls: Any) -> str:

@@ -1,6 +1,6 @@
-"""Run the first program of the README and `clutchwork demo` with the installed package.
+"""Run the first program of the README, `clutchwork demo` and a new model with the installed package.
 
-Usage: PYTHON try_installed.py, where PYTHON has the package, not editable, and matplotlib. Both run in an empty folder,
+Usage: PYTHON try_installed.py, where PYTHON has the package, not editable, and matplotlib. All run in an empty folder,
 with a PATH that holds no compiler, and see no checkout.
 """
 
@@ -58,7 +58,10 @@ def main() -> None:
             raise SystemExit(f"{package} is the checkout: install a wheel")
         (folder / "first.py").write_text(first_program((ROOT / "README.md").read_text("utf-8")), encoding="utf-8")
         run(folder, sys.executable, "first.py")
-        run(folder, str(Path(sysconfig.get_path("scripts"), "clutchwork")), "demo")
+        command = str(Path(sysconfig.get_path("scripts"), "clutchwork"))
+        run(folder, command, "demo")
+        run(folder, command, "new")
+        run(folder, command, "run", "model.toml")
         missing = [file for file in WRITTEN if not (folder / file).is_file()]
         if missing:
             raise SystemExit(f"not written: {', '.join(missing)}")

@@ -2,6 +2,7 @@
 
 #include <new>
 #include "lanes.hpp"
+#include "local.hpp"
 #include "saved.hpp"
 
 using namespace clutchwork;
@@ -137,6 +138,8 @@ int cw_release_input(cw_run* run, std::int64_t input) {
   if (!signal.given) return 1;
   signal.given = false;
   make_knot(run->ws);
+  // a saved state stands on the segment of its time
+  if (run->ws.started) seek(run->ws, int(input), run->ws.time);
   return 1;
 }
 
@@ -208,6 +211,19 @@ int cw_row(cw_run* run, double* row) {
   if (run == nullptr) return -1;
   double t = present(run->ws);
   return cw_advance(run, t, &t, row, 1, 0, nullptr);
+}
+
+void cw_local_size(const cw_run* run, std::int64_t* rows, std::int64_t* columns) {
+  if (run == nullptr || rows == nullptr || columns == nullptr) return;
+  const LocalSizes sizes(run->ws.sys);
+  *rows = sizes.rows, *columns = sizes.columns;
+}
+
+int cw_local(cw_run* run, double* row, double* matrix) {
+  if (run == nullptr || row == nullptr || matrix == nullptr) return -1;
+  const int status = cw_row(run, row);
+  if (status == int(Status::done)) fill_local(run->ws, matrix);
+  return status;
 }
 
 std::int64_t cw_event_size(void) { return event_size; }

@@ -177,12 +177,7 @@ class Check : public Visitor<Check> {
     if (!started_ || sys.input_count[i] == 0) good = good && k == 0 && idle == 0;
     if (!good || !started_ || sys.input_count[i] == 0) return;
     const bool repeats = sys.input_period[i] > 0;
-    if (given != 0) {
-      // it stands where it was left
-      good = (repeats ? k < (std::int64_t(1) << 52) : k < sys.input_count[i]) &&
-             (k == 0 || segment_start(sys, i, k) <= time_);
-      return;
-    }
+    if (given != 0) return left_behind(i, k);
     good = idle != 0 ? repeats && k == 0 : repeats ? k < (std::int64_t(1) << 52) : k < sys.input_count[i];
     if (!good) return;
     if (idle != 0) {
@@ -198,6 +193,13 @@ class Check : public Visitor<Check> {
   const Workspace<double>& ws_;
   Words words_;
   double time_ = 0;
+
+  /// A signal that is held stands on a segment that it was on before.
+  void left_behind(int i, std::int64_t k) {
+    const System& sys = ws_.sys;
+    good = (sys.input_period[i] > 0 ? k < (std::int64_t(1) << 52) : k < sys.input_count[i]) &&
+           (k == 0 || segment_start(sys, i, k) <= time_);
+  }
   bool started_ = false;
   std::int64_t events_ = 0;
 

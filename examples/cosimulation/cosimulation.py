@@ -11,6 +11,8 @@ import numpy as np
 import clutchwork as cw
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "car_launch"))
+import itertools
+
 from pictures import Panel, draw
 
 if TYPE_CHECKING:
@@ -104,7 +106,7 @@ def check(reference: cw.Trajectory, found: list[Coupled]) -> None:
     """What the example claims: the error falls with the step, and so does that of the lock-up."""
     errors = [error(one, reference) for one in found]
     lock = next(event.time for event in reference.events.of("clutch") if event.after == "locked")
-    for (coarse, fine), one in zip(zip(errors, errors[1:], strict=False), found[1:], strict=True):
+    for (coarse, fine), one in zip(itertools.pairwise(errors), found[1:], strict=True):
         # values are held over a step, so half the step is half the error, and a little less before it is small
         assert 1.6 < coarse / fine < 2.6, (one.step, coarse, fine)
     assert errors[-1] < 0.01 * float(np.max(reference["flange.speed"]))

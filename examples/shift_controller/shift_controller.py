@@ -37,29 +37,39 @@ class ShiftController:
 
     def step(self, time: float, slip_on: float, slip_off: float) -> dict[str, float]:
         """Pressures [Pa] for the next 10 ms, from two slips [rad/s] at a time [s]."""
-        getattr(self, f"_{self.state}")(time, slip_on, slip_off)
+        match self.state:
+            case "waiting":
+                self._wait(time)
+            case "filling":
+                self._fill(time)
+            case "torque":
+                self._take_over(time, slip_on, slip_off)
+            case "inertia":
+                self._pull_down(time, slip_on)
+            case "closing":
+                self._close(time)
         return {f"{ON}.pressure": self.on, f"{OFF}.pressure": self.off}
 
     def _enter(self, state: str, time: float) -> None:
         self.state, self.since = state, time
 
-    def _waiting(self, time: float, slip_on: float, slip_off: float) -> None:
+    def _wait(self, time: float) -> None:
         if time >= self.begin - 1e-9:
             self._enter("filling", time)
 
-    def _filling(self, time: float, slip_on: float, slip_off: float) -> None:
+    def _fill(self, time: float) -> None:
         self.on, self.off = 0.08e6, max(0.15e6, self.off - 12e6 * PERIOD)
         if time - self.since >= 0.2:
             self._enter("torque", time)
 
-    def _torque(self, time: float, slip_on: float, slip_off: float) -> None:
+    def _take_over(self, time: float, slip_on: float, slip_off: float) -> None:
         self.on += 0.6e6 * PERIOD
         self.off = max(0.0, self.off - 1.5e6 * PERIOD)
         if abs(slip_off) > 0.5:
             self.off, self.slip, self.base = 0.0, slip_on, self.on
             self._enter("inertia", time)
 
-    def _inertia(self, time: float, slip_on: float, slip_off: float) -> None:
+    def _pull_down(self, time: float, slip_on: float) -> None:
         wanted = self.slip * max(0.0, 1.0 - (time - self.since) / self.duration)
         # more pressure pulls the slip down
         excess = abs(slip_on) - abs(wanted)
@@ -68,13 +78,10 @@ class ShiftController:
         if abs(slip_on) < 0.2:
             self._enter("closing", time)
 
-    def _closing(self, time: float, slip_on: float, slip_off: float) -> None:
+    def _close(self, time: float) -> None:
         self.on = min(FULL, self.on + 10e6 * PERIOD)
         if self.on == FULL:
             self._enter("done", time)
-
-    def _done(self, time: float, slip_on: float, slip_off: float) -> None:
-        """Fourth gear."""
 
 
 def gearbox(**changes: object) -> cw.Simulator:

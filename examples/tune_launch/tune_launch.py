@@ -95,7 +95,9 @@ def episode(env: Any, policy: Array, seed: int | None = None, **options: Any) ->
 
 
 def learn(env: Any, rounds: int = 12, many: int = 24, best: int = 6, seed: int = 1) -> tuple[Array, list[float]]:
-    """Cross-entropy method: draw policies, keep the best, draw around them; the policy, and the best mean of each round.
+    """Cross-entropy method: draw policies, keep the best, draw around them.
+
+    Returns the policy, and the best mean reward of each round.
 
     Source: Rubinstein, Kroese, The Cross-Entropy Method, Springer 2004, doi 10.1007/978-1-4757-4321-0.
     """
@@ -134,9 +136,8 @@ def main(folder: Path) -> None:
     for (name, run), one in zip(runs.items(), (BEGIN, policy), strict=True):
         locks = next((event.time for event in run.events.of("clutch") if event.after == "locked"), math.nan)
         unseen = np.mean([episode(env, one, seed=1000 + number) for number in range(10)])
-        print(
-            f"{name}: locks after {locks:.2f} s, {run['clutch.heat'][-1] / 1e3:.2f} kJ; reward of ten other cars {unseen:.2f}"
-        )
+        heat = run["clutch.heat"][-1] / 1e3
+        print(f"{name}: locks after {locks:.2f} s, {heat:.2f} kJ; reward of ten other cars {unseen:.2f}")
     folder.mkdir(parents=True, exist_ok=True)
     picture(runs["before"], runs["learnt"], folder / "tune_launch.png")
 

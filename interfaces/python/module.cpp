@@ -131,6 +131,20 @@ class Run {
     return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(data, {n}, owner));
   }
 
+  /// Status, the row at this instant, and the derivatives of all components there.
+  std::tuple<int, nb::object, nb::object> local() {
+    std::int64_t lines = 0, columns = 0;
+    cw_local_size(run_, &lines, &columns);
+    const auto n = std::size_t(cw_row_size(run_)), m = std::size_t(lines), k = std::size_t(columns);
+    std::unique_ptr<double[]> row(new double[n > 0 ? n : 1]()), matrix(new double[m * k > 0 ? m * k : 1]());
+    const int status = cw_local(run_, row.get(), matrix.get());
+    auto free = [](void* p) noexcept { delete[] static_cast<double*>(p); };
+    double *r = row.release(), *x = matrix.release();
+    nb::capsule row_owner(r, free), matrix_owner(x, free);
+    return {status, nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(r, {n}, row_owner)),
+            nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<2>>(x, {m, k}, matrix_owner))};
+  }
+
   nb::dict statistics() const {
     constexpr int n = clutchwork::n_statistics;
     std::int64_t counts[n];
@@ -230,6 +244,7 @@ NB_MODULE(_core, m) {
            nb::arg("steps") = 0)
       .def("events", &Run::events)
       .def("row", &Run::row)
+      .def("local", &Run::local)
       .def("statistics", &Run::statistics)
       .def("detail", &Run::detail)
       .def("save", &Run::save)

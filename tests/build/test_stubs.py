@@ -18,7 +18,10 @@ from support import project, samples
 
 ALL = samples.declared(*Role)
 
-HEAD = """import clutchwork as cw
+HEAD = """from typing import Any
+
+import clutchwork as cw
+import pint
 
 d = cw.Driveline("two")
 shaft: cw.Node = d.shaft("engine", inertia=0.2, speed=100.0)
@@ -43,6 +46,13 @@ system: cw.System = d.assemble(["engine"])
 torque = run["c.torque"]
 found: list[cw.Problem] = d.check()
 tables = cw.Table([(0, 1), (1, 2)]), cw.Column("a.csv", "p [bar]"), cw.Sampled(lambda time, readings: 0.0, 0.1)
+ureg: Any = pint.UnitRegistry()
+united = cw.Clutch("u", base=shaft, follower=shaft, friction=law, gain="500 cm3", pressure=2 * ureg.bar)
+gain: float = united.gain
+table = cw.Table([(0, "0 bar"), ("200 ms", 2 * ureg.bar), (1.0, 2e5)])
+hot = d.thermal("hot", capacity="2 kJ/K", temperature="90 degC"), d.shaft("u", speed="955 rpm")
+short = cw.simulate(d, "2 s", dt="1 ms", times=None), d.simulate("2 s", max_step=2 * ureg.s)
+grid = cw.FrictionMap(temperatures=["20 degC", 400.0], speeds=[0, 1], kinetic=[[0.1, 0.2]], static=[0.2, 0.2])
 names: tuple[str, object, object] = (cw.__version__, cw.rig.drift, cw.fit.fit_law)
 """
 
@@ -61,7 +71,7 @@ WRONG = {
     "clutch.sums": '"sums"',
     "clutch.kind": '"kind"',
     'cw.DiskClutch("c", base=shaft, follower=shaft, direction="forward")': '"direction"',
-    'cw.DiskClutch("c", base=shaft, follower=shaft, radius="0.1")': '"radius"',
+    'cw.DiskClutch("c", base=shaft, follower=shaft, radius=[0.1])': '"radius"',
     'cw.DiskClutch("c", base=shaft)': '"follower"',
     "cw.Coulomb(0.1, 0.1)": "positional",
     "d.add(law)": '"add"',

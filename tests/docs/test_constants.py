@@ -40,7 +40,8 @@ def test_lines_of_a_csv_file() -> None:
 
 
 def test_exit_codes() -> None:
-    assert {int(code): words for code, words in table(MODEL_FILES, "exit code")} == EXIT_CODES
+    for text in (MODEL_FILES, page("guide/command-line.md")):
+        assert {int(code): words for code, words in table(text, "exit code")} == EXIT_CODES
 
 
 def test_the_speed_that_the_readme_claims_is_measured() -> None:

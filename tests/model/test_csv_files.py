@@ -111,6 +111,8 @@ def test_errors_never_tell_the_content_of_other_files(tmp_path, content, capsys)
         ("time,c1 [-]", {"column": "c1"}, (2.0, 3.0)),
         ("time,c1 [bar],c1", {"column": "c1"}, (2.0, 3e5 / 1e5)),
         ("time,c1 [bar]", {"column": "c1", "scale": -2.0}, (2.0, -6e5)),
+        ("time [ms],c1 [degC]", {"column": "c1"}, (0.002, 276.15)),
+        ("time [ms],c1 [°F]", {"column": "c1 [°F]"}, (0.002, (3.0 + 459.67) / 1.8)),
     ],
 )
 def test_heads_with_units_are_converted(tmp_path, head, names, points):
@@ -123,7 +125,7 @@ def test_heads_with_units_are_converted(tmp_path, head, names, points):
     ("head", "more", "words"),
     [
         ("time,c1 [baar]", {}, "has the unknown unit 'baar'; did you mean 'bar'?; write one such as [bar]"),
-        ("time,c1 [degC]", {}, "which has another zero; give it in [K]"),
+        ("time,c1 [J/degC]", {}, "is in degC, which has another zero"),
         ("time [bar],c1", {}, "has a unit that does not fit; give it in [s]"),
         ("time,c1 [bar],c1 [kPa]", {}, "has 2 columns 'c1'; name one of them: c1 [bar], c1 [kPa]"),
         ("time,c1 [bar]", {"scale": 1e5}, "repeats the unit of column 'c1 [bar]' of 'p.csv'; remove scale"),
@@ -147,8 +149,10 @@ def test_the_driven_quantity_decides_which_unit_fits(tmp_path):
     assert _braked(_column(tmp_path, "time,p [kNm]\n0,2\n")).check() == []
     (problem,) = _braked(_column(tmp_path, "time,p [bar]\n0,2\n")).check()
     assert str(problem) == (
-        "cw.Torque(\"t\"): torque.column 'p [bar]' has a unit that does not fit; give it in [N m] or [N]"
+        "cw.Torque(\"t\"): torque.column 'p [bar]' has a unit that does not fit; give it in [N m], such as '150 N m'"
     )
+    (problem,) = _braked(_column(tmp_path, "time,p [degC]\n0,2\n")).check()
+    assert "torque.column 'p [degC]' is in degC" in str(problem)
 
 
 def test_what_a_run_writes_drives_another(tmp_path):

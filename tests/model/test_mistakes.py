@@ -90,7 +90,7 @@ CASES = {
         'gain = "0.1 m2/s"',
         "gain = '0.1 m2/s': has a unit that does not fit; give it in [m3]",
     ),
-    "gain of a force at a pressure": ("gain = 0.1", 'gain = "0.1 N m"', "give it in [m3] or [m2]"),
+    "gain of a force at a pressure": ("gain = 0.1", 'gain = "0.1 N m"', "give it in [m3], such as '5e-4 m3'"),
     "unknown unit": ("speed = 100.0", 'speed = "100 rpn"', "unknown unit 'rpn'; did you mean 'rpm'?"),
     "no inertia": (
         "inertia = 0.2",
@@ -110,7 +110,11 @@ CASES = {
         "[0.5, 2e5], [0.4, 1.0]",
         "pressure.points, point 3 = 0.4 s: comes after 0.5 s",
     ),
-    "table with text": ("[0.5, 2e5]", '[0.5, "x"]', "pressure.points, point 2 = 'x': must be a number in [Pa]"),
+    "table with text": (
+        "[0.5, 2e5]",
+        '[0.5, "x"]',
+        "pressure.points, point 2 = 'x': is not a number; write a number in [Pa]",
+    ),
     "table with a triple": ("[0.5, 2e5]", "[0.5, 1.0, 2.0]", "point 2 = [0.5, 1.0, 2.0]: must be a pair of numbers"),
     "empty table": ("[[0.0, 0.0], [0.5, 2e5]]", "[]", "pressure.points = []: must be a list of points"),
     "unknown signal": ('"table"', '"tabel"', "pressure.type = 'tabel': is an unknown type; did you mean 'table'?"),
@@ -357,3 +361,59 @@ def test_temperatures_in_degrees_celsius_are_warned_of():
     d.add(cw.Brake("b", shaft=shaft, friction=law, gain=1.0, pressure=1.0))
     with pytest.warns(cw.ModelWarning, match=r"reaches down to 20 K.*293\.15 K"):
         d.assemble()
+
+
+def test_a_misspelt_head_is_named_where_its_names_are_used(tmp_path):
+    text = """
+name = "x"
+
+[[shaft]]
+name = "a"
+inertia = 1.0
+
+[[element]]
+name = "w"
+type = "rolling_wheel"
+shaft = "a"
+mass = "car"
+radius = "0.3 km/h"
+
+[[mas]]
+name = "car"
+mass = 3
+
+[simulation]
+t_end = "1 bar"
+"""
+    path = tmp_path / "model.toml"
+    path.write_text(text)
+    with pytest.raises(cw.ModelError) as caught:
+        cw.Driveline.load(path)
+    lines = [problem.line for problem in caught.value.problems]
+    # in the order of the file
+    assert lines == sorted(lines) == [12, 13, 15, 20]
+    words = [str(problem) for problem in caught.value.problems]
+    assert "mass = 'car': is not a mass of this model; it stands in [[mas]]: write [[mass]]" in words[0]
+    assert words[2] == "file: mas is an unknown key; did you mean 'mass'?"
+
+
+def test_units_of_signals_in_files():
+    def air(temperature):
+        data = {"shaft": [{"name": "a", "inertia": 1.0}], "ambient": [{"name": "air", "temperature": temperature}]}
+        return cw.Driveline.from_dict(data).thermal_nodes[0].temperature
+
+    assert air({"type": "table", "points": [[0, 20], [1, "30 degC"]], "unit": "degC"}).points == (
+        (0.0, 293.15),
+        (1.0, 303.15),
+    )
+    assert air({"type": "constant", "value": 20, "unit": "degC"}).value == 293.15
+    assert air({"type": "step", "height": "10 K", "offset": "20 degC"}).offset == 293.15
+    for wrong, words in (
+        (
+            {"type": "step", "height": 10, "offset": 20, "unit": "degC"},
+            "give its values as strings, and differences in K",
+        ),
+        ({"type": "step", "height": "10 degC", "offset": 300.0}, "a difference of 1 degC, or of 1.8 degF, is 1 K"),
+    ):
+        with pytest.raises(cw.ModelError, match=words):
+            air(wrong)

@@ -22,12 +22,16 @@ PROPERTIES = (property, cached_property)
 # the public interface beside elements, laws and signals: a name that comes or goes is a line in CHANGELOG.md
 PUBLIC = [
     *("ClutchworkError", "Domain", "Driveline", "Element", "EnergyBalance", "Event", "Events", "FaultWarning"),
-    *("HeatFlow", "Interrupted", "Law"),
+    *("HeatFlow", "Hint", "Hints", "Interrupted", "Law"),
     *("ModelError", "ModelWarning", "Node", "OptionError", "Options", "Problem", "Rate", "Signal", "SimulationError"),
-    *("Simulator", "State", "StateError", "StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
-    *("export_c", "fit", "rig", "simulate"),
+    *("Simulator", "State", "StateError"),
+    *("StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
+    *("compare", "draw", "export_c", "fit", "rig", "simulate"),
     *("Sweep", "SweepInterrupted", "at", "break_away", "integral", "lock", "maximum", "minimum", "peak"),
     *("sweep", "variants"),
+    *("Moment", "environment"),
+    *("Linear", "linearise", "linearize"),
+    *("load_run", "read_columns"),
 ]
 
 

@@ -31,7 +31,7 @@ def _driveline(**changes: object) -> cw.Driveline:
         ("gain", -0.1, "gain = -0.1 m3: must be > 0 m3; give a positive value: torque per unit of pressure"),
         ("tolerance", -1.0, "must be >= 0 rad/s; give zero or a positive value: slip below which"),
         ("heat_share", 2.0, "must be >= 0 and <= 1; lower it: share"),
-        ("gain", "3", "gain = '3': must be a number in [m3]; write a plain number"),
+        ("gain", "3", "gain = '3': has no unit; remove the quotes or add one, such as '3 m3'"),
     ],
 )
 def test_a_bound_comes_with_what_to_do(field: str, value: object, words: str) -> None:

@@ -38,7 +38,7 @@ def driveline(method: str, events: bool) -> cw.Driveline:
 
 def ends(method: str, events: bool, step: float | None) -> tuple[np.ndarray, int]:
     """Speeds at all end times, and the number of events until the last."""
-    fixed: dict[str, Any] = {"rtol": 1e3, "atol": 1e6, "first_step": step, "max_step": step}
+    fixed: dict[str, Any] = {"rtol": 0.1, "atol": 1e6, "first_step": step, "max_step": step}
     exact: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-13}
     found, count = [], 0
     for t in ENDS:

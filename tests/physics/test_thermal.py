@@ -242,7 +242,7 @@ def test_energy_balance_with_thermal_nodes(seed):
     assert abs(balance.residual) <= 1e-8 * balance.turnover
     made = sum(heat * balance.shares.get(name, 0.0) for name, heat in balance.heat.items())
     assert sum(balance.thermal.values()) == pytest.approx(made, abs=1e-8 * balance.turnover)
-    assert set(balance.as_dict()["thermal_J"]) == {"m0", "m1", "m2", "air"}
+    assert set(balance.to_dict()["thermal_J"]) == {"m0", "m1", "m2", "air"}
     assert "in thermal nodes" in str(balance)
 
 

@@ -348,3 +348,40 @@ def test_sweeps_begin_later_too() -> None:
     assert swept["turned"][0] == pytest.approx(98.75 * 0.1 + 0.4 * 87.5, rel=1e-4)
     with pytest.raises(cw.UseError, match=r"before t_start = 0.5 s"):
         cw.sweep(brake(), 1.0, t_start=0.5, vary={"b.gain": [1.0]}, outputs=cw.at("a.speed", 0.2))
+
+
+def test_exported_c_begins_there_too(tmp_path: Path) -> None:
+    folder = cw.export_c(brake(), tmp_path / "c", t_end=1.0, t_start=0.5, dt=0.2)
+    header, tables = ((folder / name).read_text() for name in ("model.h", "model.c"))
+    assert "#define MODEL_T_START 0.5 " in header
+    # 0.5, 0.7, 0.9 and 1 s
+    assert "#define MODEL_INSTANTS 4\n" in header
+    assert 'cw_set_option(run, "t_start", 0.5)' in tables
+    assert all("MODEL_T_START" in (folder / name).read_text() for name in ("main.c", "main.cpp"))
+
+
+def test_a_saved_run_says_what_it_cannot_be_repeated_without(tmp_path: Path) -> None:
+    """A file holds what was computed, but neither states nor steps: to repeat it without them would be another run."""
+    sim = cw.Simulator(brake())
+    sim.advance(0.3)
+    sim.set("b.pressure", 5e4)
+    sim.advance(0.3)
+    runs = {
+        "it was stepped and set from outside": sim.run,
+        "it went on from a state": brake().simulate(1.0, start=sim.save()),
+    }
+    for words, run in runs.items():
+        run.save(tmp_path / "run")
+        loaded = cw.load_run(tmp_path / "run")
+        same(loaded, run)
+        assert loaded.energy.residual == run.energy.residual
+        loaded.save(tmp_path / "again")
+        for one in (loaded, cw.load_run(tmp_path / "again")):
+            with pytest.raises(RuntimeError, match=f"{words}, which a file does not hold"):
+                one.at([0.5])
+            with pytest.raises(RuntimeError, match=words):
+                one.state()
+    late = brake().simulate(1.0, t_start=0.5)
+    late.save(tmp_path / "late")
+    assert cw.load_run(tmp_path / "late").state(0.7).row == late.state(0.7).row
+    assert late.to_pandas(dt=0.2).index.tolist() == pytest.approx([0.5, 0.7, 0.9, 1.0])

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
+import pickle
 from collections.abc import Callable
 
 import numpy as np
@@ -167,6 +169,8 @@ def test_durations_add_up_without_round_off() -> None:
     assert sim.time == 1.0
     sim.advance(0.0)
     assert sim.time == 1.0
+    sim.advance("10 ms")
+    assert sim.time == 1.01
 
 
 @pytest.mark.parametrize("step", [0.002, 0.0047, 0.01, 0.25])
@@ -386,13 +390,14 @@ def test_knots_at_the_end_of_a_step_wait_for_what_is_set() -> None:
     assert sim["c.state"] == "locked"
     sim.advance_to(1.2)
     assert all(event.time < 1.0 for event in sim.events.changes())
+    assert sim.run.events == sim.events
 
 
 @pytest.mark.parametrize(
     ("call", "words"),
     [
         (lambda sim: sim.advance(-0.1), "time does not go back"),
-        (lambda sim: sim.advance("1 s"), "duration is '1 s': give a number in s"),
+        (lambda sim: sim.advance("1 m"), "duration is '1 m': give a number in s"),
         (lambda sim: sim.advance(float("nan")), "give a number in s"),
         (lambda sim: sim.advance_to(0.01), r"time is 0.01 s, before the present time 0.1 s; sim.restore"),
         (lambda sim: sim.advance(), "duration is missing"),
@@ -426,6 +431,17 @@ def test_wrong_options_are_told(fields: dict[str, object], error: type[Exception
         cw.Simulator(rising(), **fields)
     with pytest.raises(cw.UseError, match="is not a model; load a file"):
         cw.Simulator("model.toml")
+
+
+def test_copies_go_by_way_of_a_state() -> None:
+    sim = cw.Simulator(rising())
+    sim.advance(0.2)
+    for make in (copy.copy, copy.deepcopy, pickle.dumps):
+        with pytest.raises(cw.UseError, match=r"begin with cw.Simulator\(model, start=state\)"):
+            make(sim)
+    run = pickle.loads(pickle.dumps(sim.run))
+    assert np.array_equal(run.at([0.1, 0.2]).rows, sim.run.at([0.1, 0.2]).rows)
+    assert run.state().row == sim.save().row
 
 
 def test_unknown_signals_have_near_names() -> None:

@@ -9,33 +9,13 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.command.main import main
-
-MODEL = """
-name = "two discs"
-[[shaft]]
-name = "engine"
-inertia = 0.2
-speed = 100.0
-[[shaft]]
-name = "load"
-inertia = 0.8
-[[element]]
-name = "c1"
-type = "clutch"
-base = "engine"
-follower = "load"
-gain = 1.0
-normal_force = 100.0
-friction = {type = "coulomb", static = 0.1, kinetic = 0.1}
-[simulation]
-t_end = 3.0
-"""
+from support.two_discs import MODEL
 
 
 @pytest.fixture
 def model(tmp_path):
     path = tmp_path / "model.toml"
-    path.write_text(MODEL)
+    path.write_text(MODEL.replace("t_end = 2.0", "t_end = 3.0"))
     return str(path)
 
 
@@ -53,6 +33,22 @@ def test_a_table_of_all_combinations(model, tmp_path, capsys):
     told = capsys.readouterr().out
     assert "8 variants: 8 done" in told
     assert f"wrote {out}" in told
+
+
+def test_values_with_units(model, tmp_path):
+    """A unit stands behind the last value, and counts for all of them."""
+    tables = []
+    for place, (vary, outputs) in enumerate(
+        (
+            (["c1.normal_force=100:200:3", "load.inertia=0.8,1.6"], "at(c1.slip, 0.5)"),
+            (["c1.normal_force=100:200 N:3", "load.inertia=800,1600 g m2"], "at(c1.slip, 500 ms)"),
+        )
+    ):
+        out = tmp_path / f"{place}.csv"
+        line = [part for one in vary for part in ("--vary", one)]
+        assert main(["sweep", model, *line, "--outputs", outputs, "--out", str(out)]) == 0
+        tables.append(out.read_text())
+    assert tables[0] == tables[1]
 
 
 def test_parquet_and_json(model, tmp_path, capsys):
@@ -80,6 +76,8 @@ def test_a_variant_that_stops_early(model, capsys):
     ("arguments", "code", "words"),
     [
         (["--vary", "c1.gain=0.5:2"], 2, "write NAME=FIRST:LAST:COUNT"),
+        (["--vary", "c1.gain=1,2 rpm"], 3, "gain = '1.0 rpm': has a unit that does not fit"),
+        (["--vary", "c1.gain=1 m,2"], 2, "write one unit, behind the last value"),
         (["--vary", "c1.gain"], 2, "write NAME=FIRST:LAST:COUNT"),
         (["--vary", "c1.gian=1,2"], 3, "did you mean 'c1.gain'"),
         (["--vary", "c1.gain=-1,2"], 3, "gain = -1.0 m3: must be > 0 m3"),

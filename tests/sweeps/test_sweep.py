@@ -387,3 +387,18 @@ def test_a_name_that_varies_and_is_an_output():
     assert found.to_xarray()["s.speed"].dims == ("s.speed given",)
     with pytest.raises(cw.UseError, match="an output is called 'status'"):
         cw.sweep(d, 1.0, vary={"s.speed": [1.0]}, outputs={"status": "s.speed"})
+
+
+def test_tables_take_names_and_wildcards(tmp_path):
+    found = table()
+    both = ["c1.gain", "load.inertia"]
+    assert list(found.to_pandas("c1.*").columns) == [*both, "c1.slip at 0.5 s", "c1.slip at 1 s", "c1.state", "status"]
+    assert list(found.to_xarray(["load.*"]).data_vars) == ["load.speed", "status"]
+    found.to_parquet(tmp_path / "x.parquet", names="load.*")
+    frame = pytest.importorskip("pandas").read_parquet(tmp_path / "x.parquet")
+    assert list(frame.columns) == [*both, "load.speed", "status"]
+    assert frame.attrs["units"] == {"load.speed": "rad/s"}
+    found.to_csv(tmp_path / "x.csv", names="load.speed")
+    assert (tmp_path / "x.csv").read_text().splitlines()[0].endswith("load.speed [rad/s],status")
+    with pytest.raises(KeyError, match=r"(?s)no output 'load.sped'; did you mean 'load.speed'.*no output 'x.\*'"):
+        found.to_csv(tmp_path / "y.csv", names=["load.sped", "x.*"])

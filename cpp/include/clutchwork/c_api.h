@@ -22,20 +22,21 @@ int64_t cw_schema_hash(void);
 /* Bytes of memory that a run of this system needs; -1 when the bytes do not fit this core. */
 int64_t cw_size(const void* system, int64_t bytes);
 
-/* Start a run, at time zero or at its setting t_start, in `memory` (aligned to 16 bytes); NULL when system or memory do not fit. */
+/* Start a run, at time zero or at its setting t_start, in `memory` (aligned to 16 bytes); NULL when system or memory do
+ * not fit. */
 cw_run* cw_load(const void* system, int64_t bytes, void* memory, int64_t memory_bytes);
 
 /* Settings by name: rtol, atol, method (0 auto, 1 rodas5p, 2 dopri5), first_step [s] (0: chosen by the solver),
-   max_step [s] (INFINITY: no limit), max_steps, max_events, angles, work (0 or 1), t_start [s] before the first step. Ranges are those of the options of a
-   run. 1: set; 0: unknown, out of range or not a number. */
+   max_step [s] (INFINITY: no limit), max_steps, max_events, angles, work (0 or 1), t_start [s] before the first step.
+   Ranges are those of the options of a run. 1: set; 0: unknown, out of range or not a number. */
 int cw_set_option(cw_run* run, const char* name, double value);
 
-/* Value of a signal, which it holds from the present time on, whatever the system says about it. 1: set; 0: no such
+/* Value of a signal, which it holds from the present time on in place of what the system has for it. 1: set; 0: no such
    signal, or the value is not finite. */
 int cw_set_input(cw_run* run, int64_t input, double value);
 
-/* Let a signal follow the system again. 1: done, also where it did so already; 0: no such signal, or the system says
-   nothing about it. */
+/* Let a signal follow the system again. 1: done, also where it did so already; 0: no such signal, or one that is set
+   from outside alone. */
 int cw_release_input(cw_run* run, int64_t input);
 
 /* Whether values of signals may be set between calls: what all signals do at the very end of cw_advance then waits for
@@ -88,6 +89,15 @@ double cw_time(const cw_run* run);
    filled when it is 0 (done). */
 int64_t cw_row_size(const cw_run* run);
 int cw_row(cw_run* run, double* row);
+
+/* Derivatives of all components at the present time, the modes of all contacts held: rows and columns of the matrix
+   (nothing for null pointers), and the matrix, row by row, with the row of output at this instant, as cw_row gives it;
+   its status. Rows: torque of each element, then of each contact (zero where it is locked or open); rate of each state;
+   static torque of each contact, against the slip that its torque resists; most torque that each contact holds, then
+   least, infinite where there is no bound; value of each flow. Columns: rate of each element and contact, each state,
+   each signal, and last the value itself. docs/theory/linearisation.md (2) */
+void cw_local_size(const cw_run* run, int64_t* rows, int64_t* columns);
+int cw_local(cw_run* run, double* row, double* matrix);
 
 /* Numbers in one event. */
 int64_t cw_event_size(void);

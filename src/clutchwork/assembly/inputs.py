@@ -71,7 +71,8 @@ class Wires:
                 self._link(f"{path}.{name}", unit, *self.refs[-1])
             else:
                 plain = spec.otherwise if value is None else value
-                self.refs.append(("input", self._add(f"{path}.{name}", unit, plain_signal(plain))))
+                number = self._add(f"{path}.{name}", unit, plain_signal(plain), given=value is not None)
+                self.refs.append(("input", number))
 
     def _reference(self, value: Any) -> tuple[str, int]:
         if isinstance(value, ThermalNode) and value.name in self.ambients:
@@ -87,8 +88,8 @@ class Wires:
         units = [_unit(motion, type(motion).__dataclass_fields__["speed"].metadata["spec"]) for motion, _ in motions]
         return [self._add(f"{m.name}.speed", unit, s) for (m, s), unit in zip(motions, units, strict=True)]
 
-    def _add(self, name: str, unit: str, signal: Signal) -> int:
-        self.inputs.append(Input(name, unit, signal))
+    def _add(self, name: str, unit: str, signal: Signal, given: bool = True) -> int:
+        self.inputs.append(Input(name, unit, signal, given))
         return len(self.inputs) - 1
 
     def arrays(self) -> dict[str, Any]:

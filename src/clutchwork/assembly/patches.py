@@ -142,21 +142,21 @@ def _pool(where: Numbered, offset: int, old: Any, new: Any) -> Iterator[Patch]:
 
 def changed_signals(old: Component, new: Component) -> Iterator[tuple[str, Signal]]:
     """Name and value of each signal of an element and its friction law that is another; Unpatched for a reference."""
-    yield from _differing(old, old, new, old.name)
+    yield from _differing(old, new, old.name)
     if old.friction is not new.friction:
-        yield from _differing(old, old.friction, new.friction, f"{old.name}.friction")
+        yield from _differing(old.friction, new.friction, f"{old.name}.friction")
 
 
-def _differing(component: Component, old: Any, new: Any, path: str) -> Iterator[tuple[str, Signal]]:
-    for names, spec in inputs(type(old)):
+def _differing(old: Any, new: Any, path: str) -> Iterator[tuple[str, Signal]]:
+    for names, _ in inputs(type(old)):
         before, after = _given(names, old), _given(names, new)
         was, value = getattr(old, before), getattr(new, after)
         if before == after and was is value:
             continue
-        warming = spec.unit == "K" and old is not component and (value is None or was is None)
-        if before != after or warming or is_reference(value) or is_reference(was):
+        # one that was not given, or no longer is, has no signal in the results
+        if before != after or value is None or was is None or is_reference(value) or is_reference(was):
             raise Unpatched
-        yield f"{path}.{after}", plain_signal(spec.otherwise if value is None else value)
+        yield f"{path}.{after}", plain_signal(value)
 
 
 def _given(names: tuple[str, ...], thing: Any) -> str:

@@ -23,6 +23,7 @@ class Input:
     name: str
     unit: str
     signal: Signal
+    given: bool = True  # false: a feature that nobody asked for, which rests at its value
 
 
 @dataclass(frozen=True)

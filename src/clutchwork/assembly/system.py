@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MAGIC = b"CLUTCHWK"
+# of a file that holds a System
+PARTS = ("content", "model", "independent")
 
 
 class SystemFormatError(ClutchworkError, ValueError):
@@ -74,6 +76,11 @@ class System:
     def __repr__(self) -> str:
         sizes = {name: self.counts[name] for name in ("nodes", "speeds", "elements", "contacts", "inputs")}
         return f"<System {self.name!r}: {', '.join(f'{size} {name}' for name, size in sizes.items())}>"
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from clutchwork.base.rich import bundle
+
+        return bundle(self, "system")
 
     def __getattr__(self, name: str) -> Array:
         try:
@@ -128,7 +135,8 @@ class System:
         """The System of the same driveline with other numbers, initial values and signals.
 
         Parameters: changes, values by name: "engine.inertia", "c1.gain", "row1.ratio", "c1.friction.kinetic", or
-        "c1.pressure", a number or a signal. ModelError names all that is unknown or out of bounds at once.
+        "c1.pressure", a number, one with a unit, "2 bar", or a signal. ModelError names all that is unknown or out of
+        bounds at once.
 
         The result is that of assembling a driveline with these values, bit for bit. What it warns of is new.
         """
@@ -210,9 +218,13 @@ class System:
 
     def save(self, path: str | Path) -> None:
         """Write arrays and model to an archive; nothing in it is code."""
-        import json
-
         from clutchwork.base import archive
+
+        archive.write(path, self.parts())
+
+    def parts(self) -> dict[str, bytes]:
+        """What a file holds of it, by the names of `PARTS`."""
+        import json
 
         if not self.model:
             raise SystemFormatError(
@@ -220,23 +232,37 @@ class System:
             )
         model = {**self.model, "simulation": plain_settings(self.settings)}
         stored = {"model": json.dumps(model, allow_nan=False), "independent": json.dumps(self.independent)}
-        archive.write(path, {"content": self.to_bytes(), **{key: value.encode() for key, value in stored.items()}})
+        return {"content": self.to_bytes(), **{key: value.encode() for key, value in stored.items()}}
 
     @classmethod
     def load(cls, path: str | Path) -> System:
         """Read a file that `save` wrote; SystemFormatError or ModelError for any other."""
-        import json
-
         from clutchwork.base import archive
         from clutchwork.base.regular import reason
-        from clutchwork.files.model_file import from_dict
 
         try:
-            content, *texts = archive.read(path, ("content", "model", "independent"))
-            model, independent = map(json.loads, texts)
-        except (ValueError, RecursionError, OSError) as error:
+            return cls.of_parts(archive.read(path, PARTS), str(path))
+        except (ValueError, OSError) as error:
+            if isinstance(error, ClutchworkError):
+                raise
             why = reason(error) if isinstance(error, OSError) else shortened(str(error))
             raise SystemFormatError(f"{path}: cannot read a System: {why}; write the file with System.save") from None
+
+    @classmethod
+    def of_parts(cls, parts: Sequence[bytes], path: str) -> System:
+        """From what `parts` gave, in the order of `PARTS`; a ValueError where they are damaged.
+
+        Parameters: path, the file that messages name.
+        """
+        import json
+
+        from clutchwork.files.model_file import from_dict
+
+        content, *texts = parts
+        try:
+            model, independent = map(json.loads, texts)
+        except RecursionError as error:
+            raise ValueError(str(error)) from None
         if not isinstance(independent, list) or not all(isinstance(name, str) for name in independent):
             raise SystemFormatError(f"{path}: its independent speeds are not names; write the file with System.save")
         named = cls.of(from_dict(model), independent)

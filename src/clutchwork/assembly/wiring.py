@@ -76,6 +76,7 @@ class Wiring:
     flows: tuple[str, ...] = ()
     links: tuple[Link, ...] = ()
     sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    unused: frozenset[str] = frozenset()  # inputs of features that nobody asked for
 
     @property
     def row_size(self) -> int:
@@ -112,6 +113,7 @@ def wiring(system: System) -> Wiring:
         flows=tuple(flow.name for flow in system.flows),
         links=system.links,
         sums=system.sums,
+        unused=frozenset(item.name for item in system.inputs if not item.given),
     )
 
 

@@ -22,9 +22,13 @@ def write(path: str | Path, parts: Mapping[str, bytes]) -> None:
             archive.writestr(zipfile.ZipInfo(name, EPOCH), data, zipfile.ZIP_DEFLATED)
 
 
-def read(path: str | Path, names: Sequence[str]) -> list[bytes]:
-    """The parts of an archive; ValueError says why there are none, OSError that it cannot be read."""
-    data = read_regular(path, MOST_BYTES)
+def read(path: str | Path, names: Sequence[str], most: int = 0) -> list[bytes]:
+    """The parts of an archive; ValueError says why there are none, OSError that it cannot be read.
+
+    Parameters: most, bytes that it may have, MOST_BYTES by default.
+    """
+    most = most or MOST_BYTES
+    data = read_regular(path, most)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             there = {item.filename: item for item in archive.infolist()}
@@ -32,8 +36,8 @@ def read(path: str | Path, names: Sequence[str]) -> list[bytes]:
             if missing or len(there) != len(names):
                 raise ValueError("it has other parts")
             # a part never gives more than the size that its head says
-            if sum(there[name].file_size for name in names) > MOST_BYTES:
-                raise ValueError(f"it unpacks to more than {MOST_BYTES} bytes")
+            if sum(there[name].file_size for name in names) > most:
+                raise ValueError(f"it unpacks to more than {most} bytes")
             return [archive.read(there[name]) for name in names]
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError):
         raise ValueError("it is damaged or not an archive") from None

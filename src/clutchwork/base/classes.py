@@ -41,6 +41,8 @@ class _Factory:
 
 
 FACTORY = _Factory()
+# types of values that a class with a method `_accept` need not look at; it is called once where one of another is given
+PLAIN: set[type] = {float, int, bool, type(None)}
 _FIELD: Any = dataclasses.fields(_Frozen)[0]
 
 
@@ -53,6 +55,8 @@ class _Call(NamedTuple):
     makers: tuple[tuple[str, Callable[[], Any]], ...]  # functions that make a default anew
     own: tuple[tuple[str, Callable[[], Any]], ...]  # the same of what cannot be given
     checked: bool  # has a __post_init__
+    accepts: bool  # has a method `_accept`
+    named: int  # 1 where the first place is a name
 
 
 @cache
@@ -68,12 +72,14 @@ def _call(cls: Any) -> _Call:
         tuple((item.name, item.default_factory) for item in made if item.init),
         tuple((item.name, item.default_factory) for item in made if not item.init),
         hasattr(cls, "__post_init__"),
+        hasattr(cls, "_accept"),
+        int(given[:1] != [] and given[0].name == "name"),
     )
 
 
 def _init(thing: Any, /, *args: Any, **named: Any) -> None:
     cls: Any = type(thing)
-    places, names, defaults, makers, own, checked = _call(cls)
+    places, names, defaults, makers, own, checked, accepts, named_first = _call(cls)
     values = {**defaults, **named}
     if args:
         if len(args) > len(places) or (named and not named.keys().isdisjoint(places[: len(args)])):
@@ -87,13 +93,21 @@ def _init(thing: Any, /, *args: Any, **named: Any) -> None:
     for name, make in own:
         values[name] = make()
     vars(thing).update(values)
+    if accepts and not (
+        (not named or PLAIN.issuperset(map(type, named.values())))
+        and (len(args) <= named_first or PLAIN.issuperset(map(type, args[named_first:])))
+    ):
+        thing._accept()  # noqa: SLF001, a method that classes have for this
     if checked:
         thing.__post_init__()
 
 
 def _refuse(thing: Any, args: tuple[Any, ...], named: dict[str, Any]) -> None:
-    """TypeError for a call that does not fit; `explain` of declarations says more."""
+    """TypeError for a call that does not fit; `explain` of declarations gives classes a method that says more."""
     cls = type(thing)
+    explained = getattr(cls, "_explained", None)
+    if explained is not None:
+        explained(cls, args, named)
     try:
         signature(cls).bind(*args, **named)
     except TypeError as error:

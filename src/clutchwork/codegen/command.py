@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import warnings
 from pathlib import Path
 from typing import Any
 
+from clutchwork.base import shell
 from clutchwork.declare.options import OPTIONS
 from clutchwork.declare.speech import words_of_files
 from clutchwork.run.flags import DEFAULTS, add_options, given_options
@@ -16,15 +16,26 @@ from clutchwork.run.flags import DEFAULTS, add_options, given_options
 # the grid of an exported run has a spacing
 OF_EXPORT = ("t_end", "dt", *(name for name, row in OPTIONS.items() if row.core))
 
+EXAMPLES = (
+    ("clutchwork export model.toml --out c", "then build and run it: make -C c && c/model > model.csv"),
+    ("clutchwork export model.toml --out c --signals c1.slip,load.speed --dt 1ms", "two signals, each millisecond"),
+)
+
 
 def add_command(subparsers: Any) -> None:
     """Add `export` to the commands of the command line."""
-    export = subparsers.add_parser("export", help="export a model as C and C++ source code that builds without Python")
-    export.set_defaults(command=export_command)
-    export.add_argument("model", type=Path, help="model file, TOML or JSON")
+    export = shell.add_command(
+        subparsers,
+        "export",
+        export_command,
+        "export a model as C and C++ source code",
+        about="It builds and runs without Python, with a C++20 compiler.",
+        examples=EXAMPLES,
+    )
+    shell.add_model(export)
     export.add_argument("--out", type=Path, metavar="DIR", required=True, help="output folder")
     export.add_argument("--signals", metavar="A,B", help="signals to print; default: all")
-    export.add_argument("--json", action="store_true", help="print the result as JSON on standard output")
+    shell.add_json(export)
     add_options(export, OF_EXPORT, {**DEFAULTS, "dt": "a thousandth of the end time"})
 
 
@@ -34,6 +45,7 @@ def export_command(asked: argparse.Namespace) -> int:
     from clutchwork.codegen import export_c
     from clutchwork.face.driveline import Driveline
 
+    shell.writable([asked.out / "model.h"])
     signals = None if asked.signals is None else [name.strip() for name in asked.signals.split(",")]
     with warnings.catch_warnings(record=True) as warned, words_of_files():
         warnings.simplefilter("always", ModelWarning)
@@ -41,9 +53,7 @@ def export_command(asked: argparse.Namespace) -> int:
     for warning in warned:
         sys.stderr.write(f"warning: {warning.message}\n")
     if asked.json:
-        sys.stdout.write(
-            json.dumps({"folder": str(folder), "warnings": [str(w.message) for w in warned]}, indent=2) + "\n"
-        )
+        shell.tell_json({"folder": str(folder), "warnings": [str(w.message) for w in warned]})
     else:
-        sys.stdout.write(f"wrote {folder}; build and run it: make -C {folder} && {folder / 'model'} > model.csv\n")
-    return 0
+        shell.tell(f"wrote {folder}; build and run it: make -C {folder} && {folder / 'model'} > model.csv")
+    return shell.DONE

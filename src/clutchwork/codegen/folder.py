@@ -43,7 +43,7 @@ def export_c(
     if made.times is not None:
         raise ValueError("times cannot be exported: give dt, the spacing of the grid")
     known = channels(system, made.angles, made.work)
-    exported = Exported(system, end, made.dt or end / INTERVALS, made, chosen(signals, known))
+    exported = Exported(system, end, made.dt or (end - made.t_start) / INTERVALS, made, chosen(signals, known))
     _refuse_large(exported)
     return _write(exported, Path(folder))
 

@@ -85,7 +85,8 @@ def header(model: Exported) -> Iterator[str]:
     yield from ("#include <clutchwork/c_api.h>", '#include "model_system.h"', "")
     yield "/* Memory of a run, aligned to 16 bytes; cw_load refuses when another machine needs more. */"
     yield from (f"#define MODEL_MEMORY {memory}", "")
-    yield "/* The grid of main.c: 0, dt, 2 dt ... t_end. */"
+    yield "/* The grid of main.c: t_start, t_start + dt ... t_end. */"
+    yield f"#define MODEL_T_START {literal(model.options.t_start)} /* s */"
     yield f"#define MODEL_T_END {literal(model.t_end)} /* s */"
     yield f"#define MODEL_DT {literal(model.dt)} /* s */"
     yield from (f"#define MODEL_INSTANTS {model.instants}", "")

@@ -1,43 +1,23 @@
-"""A progress bar for runs that take long enough to wait for."""
+"""The progress bar of the command line: that of tqdm where it is installed, for runs that are worth waiting for."""
 
 from __future__ import annotations
 
 import sys
-from time import perf_counter
-from types import TracebackType
-from typing import Self
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
 
-WIDTH = 40
+from clutchwork.base.progress import MEASURED, followed
+from clutchwork.run.record import Progress
+
 PATIENCE = 0.5  # s of real time before anything is shown
-INTERVAL = 0.1  # s of real time between two updates
 
 
-class Bar:
-    """Shows time reached and time left on standard error, on a terminal only."""
-
-    def __init__(self, *, hidden: bool = False) -> None:
-        self._hidden = hidden or not sys.stderr.isatty()
-        self._started = self._shown = perf_counter()
-        self._drawn = False
-
-    def show(self, time: float, t_end: float) -> None:
-        """Draw the bar for a run that has reached `time` of `t_end` [s]."""
-        now = perf_counter()
-        if self._hidden or now - self._started < PATIENCE or now - self._shown < INTERVAL:
-            return
-        share = min(1.0, time / t_end)
-        left = (now - self._started) * (1.0 - share) / share if share > 0.0 else float("inf")
-        full = "#" * round(WIDTH * share)
-        sys.stderr.write(f"\r[{full:<{WIDTH}}] {time:.4g} of {t_end:.4g} s, {left:.0f} s left \x1b[K")
-        sys.stderr.flush()
-        self._shown, self._drawn = now, True
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._drawn:
-            sys.stderr.write("\r\x1b[K")
-            sys.stderr.flush()
+@contextmanager
+def bar(t_end: float, *, hidden: bool = False) -> Iterator[Progress]:
+    """A function of (time, t_end) [s] that shows the time reached on standard error, on a terminal only."""
+    wanted = not hidden and sys.stderr.isatty() and find_spec("tqdm") is not None
+    looks = {"bar_format": MEASURED, "unit": "s", "delay": PATIENCE, "leave": False}
+    with followed(wanted, t_end, "run", "(time, t_end)", **looks) as shown:
+        # a run takes the same stretches whether somebody watches or not
+        yield lambda time, _: shown(time) if shown else None

@@ -5,15 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
+from functools import reduce
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.assembly.wiring import wiring
+from clutchwork.base.shell import paragraphs, width
+from clutchwork.base.shown import LONGEST, shortened
 from clutchwork.base.text import columns, counted
+from clutchwork.model.changes import all_names, targets_of
+from clutchwork.results.channels import channels
+from clutchwork.results.hints.registry import of_model
+from clutchwork.results.overview import number, sizes
 from clutchwork.results.ratios import Gears, Phase, gears
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.results.events import Events
+    from clutchwork.results.hints.hint import Hint, Hints
     from clutchwork.results.trajectory import Trajectory
 
 MOST_LINES = 40
@@ -33,6 +40,7 @@ def run_text(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
     if run.options.work:
         parts.append(str(run.energy))
     parts.append(effort_text(run))
+    parts += hint_text(run.hints)
     return "\n\n".join(parts)
 
 
@@ -71,6 +79,11 @@ def dependent_text(run: Trajectory) -> list[str]:
     return ["locked contacts that depend on each other; they share their load by capacity:\n" + "\n".join(lines)]
 
 
+def hint_text(hints: Hints) -> list[str]:
+    """What may not be meant; nothing where there is none."""
+    return ["\n".join(["hints", *(f"  {hint}" for hint in hints[:MOST_LINES])])] if hints else []
+
+
 def effort_text(run: Trajectory) -> str:
     """Steps and time that the run took."""
     s = run.statistics
@@ -82,38 +95,83 @@ def effort_text(run: Trajectory) -> str:
     )
 
 
-def run_data(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] | None) -> dict[str, Any]:
-    """The same as plain data for JSON."""
-    return {
+def run_data(
+    run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] | None, names: Sequence[str] = ()
+) -> dict[str, Any]:
+    """The same as plain data for JSON, and the named signals over time."""
+    data = {
         "status": run.status,
         "message": run.message,
         "warnings": list(run.system.warnings),
         "time_s": float(run.time[-1]) if len(run) else 0.0,
-        "events": [_finite(asdict(event)) for event in run.events],
+        "events": [asdict(event) for event in run.events],
         "ratio_of": list(shafts) if shafts else None,
-        "phases": [_finite(asdict(phase)) for phase in phases],
+        "phases": [asdict(phase) for phase in phases],
         "dependent": [asdict(phase) for phase in run.dependent] if len(run) else [],
-        "energy": run.energy.as_dict() if run.options.work and len(run) else None,
+        "energy": run.energy.to_dict() if run.options.work and len(run) else None,
         "final": {name: float(run[name][-1]) for name in run.names if name.endswith(FINAL) and len(run)},
         "statistics": dict(run.statistics),
+        "hints": [_hint_data(hint) for hint in run.hints],
     }
+    if not names:
+        return data
+    signals = {name: {"unit": run.units[name], "values": run[name].tolist()} for name in names}
+    return data | {"time": {"unit": "s", "values": run.time.tolist()}, "signals": signals}
 
 
 def model_text(system: System, shafts: tuple[str, str] | None) -> str:
     """Size of a model, the ratios that its contacts can give, and which of these depend on each other."""
-    parts = [", ".join(counted(count, name) for name, count in sizes(system).items())]
-    dependent = "; ".join(" ".join(names) for names in system.dependent)
-    if dependent:
-        parts.append(f"depend on each other when locked together, and share their load by capacity: {dependent}")
+    has = ", ".join(counted(count, name) for name, count in sizes(system).items() if count)
+    parts = [f"{system.name}: no mistakes", paragraphs(has, width())]
+    if system.dependent:
+        sets = [f"  {' '.join(names)}" for names in system.dependent]
+        head = "depend on each other when locked together, and share their load by capacity:"
+        parts.append("\n".join([head, *_first(sets)]))
+    advice = hint_text(of_model(system))
     if shafts is None:
-        return "\n\n".join(parts)
+        return "\n\n".join([*parts, *advice])
     found = gears(system, shafts)
     lines = [(" ".join(closed) or "-", number(value)) for closed, value in found.ratios]
     if lines:
-        parts.append(columns([("closed", f"{shafts[0]}/{shafts[1]}"), *lines], right={1}))
+        table = columns([("closed", f"{shafts[0]}/{shafts[1]}"), *lines], right={1}).split("\n")
+        parts.append("\n".join([table[0], *_first(table[1:])]))
     if found.untried is not None:
         parts.append(f"not tried: {found.untried} or more contacts closed at once, there are too many combinations")
-    return "\n\n".join(parts)
+    return "\n\n".join([*parts, *advice])
+
+
+def _first(lines: Sequence[str]) -> list[str]:
+    """The first ones of many lines."""
+    more = len(lines) - MOST_LINES
+    return [*lines] if more <= 0 else [*lines[:MOST_LINES], f"... and {more} more, which --json lists"]
+
+
+def changeable_values(system: System) -> dict[str, Any]:
+    """What `System.changed` may change, and its value: a number, a word, the type of a law or signal, or None."""
+    model = system.source
+    targets, _ = targets_of(model, all_names(model)) if model is not None else ({}, [])
+    return {name: _plain(reduce(getattr, aim.path, aim.owner)) for name, aim in targets.items()}
+
+
+def _plain(value: Any) -> Any:
+    """A value in short, as a model file says it."""
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    kind, name = getattr(value, "kind", ""), getattr(value, "name", "")
+    return name or kind or shortened(str(value), LONGEST)
+
+
+def in_words(value: Any) -> str:
+    """One of these values for reading."""
+    if value is None or isinstance(value, bool):
+        return "none" if value is None else str(value).lower()
+    return f"{value:.12g}" if isinstance(value, int | float) else str(value)
+
+
+def signal_units(system: System) -> dict[str, str]:
+    """All signals of a run with their units."""
+    integrated = [bool(system.settings.get(name, True)) for name in ("angles", "work")]
+    return {name: channel.unit for name, channel in channels(system, *integrated).items()}
 
 
 def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]:
@@ -126,32 +184,14 @@ def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]
         "gears": [{"closed": list(closed), "ratio": value} for closed, value in found.ratios],
         "gears_untried_from": found.untried,
         "dependent": [list(names) for names in system.dependent],
+        "hints": [_hint_data(hint) for hint in of_model(system)],
     }
 
 
-def sizes(system: System) -> dict[str, int]:
-    """How much of what a model has."""
-    parts = wiring(system)
-    more = {"thermal nodes": parts.thermal, "heat flows": parts.flows, "processes": parts.processes}
-    return {
-        "shafts and masses": len(parts.nodes),
-        "independent speeds": len(system.massless),
-        "gear rows": len(parts.gears),
-        "torque elements": sum(not branch.hidden for branch in parts.elements),
-        "contacts": len(parts.contacts),
-        "prescribed speeds": len(parts.motions),
-        "inputs": len(parts.inputs),
-        **{name: len(things) for name, things in more.items() if things},
-    }
+def _hint_data(hint: Hint) -> dict[str, Any]:
+    return hint.to_dict() | {"numbers": _finite(dict(hint.numbers))}
 
 
 def _finite(data: dict[str, Any]) -> dict[str, Any]:
     """JSON has no infinity."""
     return {name: None if isinstance(x, float) and not math.isfinite(x) else x for name, x in data.items()}
-
-
-def number(value: float | None) -> str:
-    """A ratio in words."""
-    if value is None:
-        return "free"
-    return f"{value:.4f}" if math.isfinite(value) else "held"

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import is_dataclass
 from typing import Any, TypeVar
 
+from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, near, nearest
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import counted
@@ -39,6 +40,10 @@ def explained(call: str) -> Callable[[F], F]:
 
 def explain(cls: Any) -> None:
     """Let the constructor of a declaration do so."""
+    if getattr(cls.__init__, "__module__", "") == dataclass.__module__:
+        # which asks for this where a call does not fit, and costs nothing where it does
+        cls._explained = staticmethod(_explained)
+        return
     made = cls.__init__
 
     @functools.wraps(made)
@@ -46,12 +51,17 @@ def explain(cls: Any) -> None:
         try:
             made(self, *args, **named)
         except TypeError:
-            problems = list(_problems(cls, args, named, _meanings(cls)))
-            if not problems:
-                raise
-            raise UseError(f"cw.{cls.__name__}({_name(args, named)})", problems) from None
+            _explained(cls, args, named)
+            raise
 
     cls.__init__ = construct
+
+
+def _explained(cls: Any, args: tuple[Any, ...], named: Mapping[str, Any]) -> None:
+    """A UseError that names every mistake of a call, where there is one."""
+    problems = list(_problems(cls, args, named, _meanings(cls)))
+    if problems:
+        raise UseError(f"cw.{cls.__name__}({_name(args, named)})", problems) from None
 
 
 def _name(args: tuple[Any, ...], named: Mapping[str, Any]) -> str:
@@ -74,24 +84,28 @@ def _problems(
 ) -> Iterator[str]:
     """What does not fit the parameters of a function; nothing where all does."""
     parameters = list(inspect.signature(function).parameters.values())
-    if any(p.kind is p.VAR_POSITIONAL for p in parameters):
-        return
+    any_number = any(p.kind is p.VAR_POSITIONAL for p in parameters)
     by_place = [p.name for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
     known = [p.name for p in parameters if p.name not in OWNERS and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
     open_ended = any(p.kind is p.VAR_KEYWORD for p in parameters)
     unknown = [] if open_ended else [name for name in named if name not in known]
     given = {*by_place[: len(args)], *named}
     meant = {nearest(name, [other for other in known if other not in given]) for name in unknown}
-    spare = args[len(by_place) :]
+    spare = () if any_number else args[len(by_place) :]
     if spare:
         # those that must be given first
         rest = sorted((p for p in parameters if p.name in known), key=lambda p: p.default is not p.empty)
         yield _spare(spare, [p for p in by_place if p not in OWNERS], [p.name for p in rest if p.name not in given])
     for name in set(by_place[: len(args)]) & set(named):
         yield f"{name} is given twice, by position and by keyword; give it once"
+    fields = f"known fields: {listed(known)}"
     for name in unknown:
-        yield f"unknown field {shown(name)}{near(name, known, f'known fields: {listed(known)}')}"
-    for p in parameters[len(args) :]:
+        # the list of all is only said once, and not where a near one says enough
+        said = near(name, known)
+        yield f"unknown field {shown(name)}{said or (fields and f'; {fields}')}"
+        fields = fields if said else ""
+    filled = min(len(args), len(by_place)) if any_number else len(args)
+    for p in parameters[filled:]:
         lacks = p.default is p.empty and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) and p.name not in named
         # values by place are meant for some of them, and so is a name close to theirs
         if lacks and p.name not in meant and not (spare and p.kind is p.KEYWORD_ONLY):

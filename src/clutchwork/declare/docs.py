@@ -87,6 +87,11 @@ def words(cls: type) -> str:
     return inspect.cleandoc(own.words if isinstance(own, _Docstring) else own)
 
 
+def summary(cls: type) -> str:
+    """The first sentence or two of what a declaration says of itself, on one line."""
+    return words(cls).partition("\n\n")[0].replace("\n", " ")
+
+
 def docstring(cls: type) -> str:
     """The words of a declaration, then its parameters."""
     lines = "\n".join(f"    {name} {text}" for name, text in parameters(cls))

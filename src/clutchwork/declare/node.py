@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import fields
 from enum import Enum, Flag, auto
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeAlias, cast
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base.classes import PLAIN, dataclass
+from clutchwork.declare import given
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -16,6 +17,17 @@ if TYPE_CHECKING:
 
 # what is wrong, as (quantity, what is so, remedy)
 Found: TypeAlias = "list[tuple[str, str, str]]"
+
+
+class Measured(Protocol):
+    """A quantity of pint."""
+
+    @property
+    def magnitude(self) -> Any:
+        """Its number in its unit."""
+
+    def to_root_units(self) -> Any:
+        """The same in the base units of its registry."""
 
 
 class Domain(Enum):
@@ -45,6 +57,12 @@ class Node:
     angle: float = 0.0
     fixed: bool = False
 
+    def _accept(self) -> None:
+        """Values with units are put into SI."""
+        values = vars(self)
+        for name, unit in zip(PLACES, NODE_UNITS[self.domain], strict=True):
+            values[name] = given.Wanted(unit).number(values[name])
+
     def __reduce__(self) -> str | tuple[Any, ...]:
         # there is one housing, copies included
         if self is HOUSING:
@@ -52,6 +70,8 @@ class Node:
         return Node, (self.name, self.domain, self.inertia, self.speed, self.angle, self.fixed)
 
 
+PLACES = ("inertia", "speed", "angle")
+NODE_UNITS = {Domain.ROTATION: ("kg m2", "rad/s", "rad"), Domain.TRANSLATION: ("kg", "m/s", "m")}
 HOUSING = Node("housing", fixed=True)
 
 
@@ -68,6 +88,15 @@ class ThermalNode:
     name: str
     capacity: float | None = None
     temperature: SignalLike = 300.0
+
+    def _accept(self) -> None:
+        """Values with units are put into SI."""
+        values = vars(self)
+        values["capacity"] = given.Wanted("J/K").number(values["capacity"])
+        values["temperature"] = given.driving(given.Wanted("K").number(values["temperature"]), "K")
+
+
+PLAIN |= {Node, ThermalNode, Domain}
 
 
 class Work(Flag):
@@ -107,6 +136,10 @@ class Listed(type):
 
 class Declared(metaclass=Listed):
     """Base of elements, laws and signals."""
+
+    def _accept(self) -> None:
+        """Values with units are put into SI."""
+        given.accept(self)
 
     def __dir__(self) -> list[str]:
         known: Any = self
@@ -244,6 +277,11 @@ class Law(Declared):
         """Kinetic coefficient at vanishing slip; None: the compiled core is asked."""
         return None
 
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from clutchwork.base.rich import bundle
+
+        return bundle(self, "law")
+
 
 class Segment(NamedTuple):
     """One piece of a signal.
@@ -291,6 +329,11 @@ class Signal(Declared):
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return []
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        if given.OPEN in state:
+            given.mark_open(self)
+
     def segments(self) -> tuple[Segment, ...]:
         """Pieces in order of their start.
 
@@ -310,6 +353,11 @@ class Signal(Declared):
     def sampling(self) -> Sampling | None:
         """The controller that sets it in a run; None: its pieces say all."""
         return None
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from clutchwork.base.rich import bundle
+
+        return bundle(self, "signal")
 
 
 @dataclass(frozen=True)
@@ -338,6 +386,9 @@ class HeatFlow:
 SignalLike: TypeAlias = "float | Signal | ThermalNode | Element | tuple[Element, str] | Node | Rate | HeatFlow"
 # (x, y) pairs of a curve
 Points: TypeAlias = "Sequence[tuple[float, float]]"
+# what may be given for a number, and for pairs of them
+Number: TypeAlias = "float | str | Measured"
+PointsWithUnits: TypeAlias = "Sequence[tuple[Number, Number]]"
 # coefficients of friction: one, a table, or rows of one
 Coefficients: TypeAlias = "float | Points | Sequence[float] | Sequence[Sequence[float]]"
 # units of the gain of a contact, on shafts and on masses: torque or force per pressure, per force, per share

@@ -15,7 +15,9 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, advised, near
 from clutchwork.declare.calls import explain
 from clutchwork.declare.docs import document
+from clutchwork.declare.given import is_array
 from clutchwork.declare.layout import METHODS
+from clutchwork.declare.quantity import has_unit
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.setting import Setting, setting
 
@@ -37,6 +39,8 @@ ONE_GRID = "give the spacing or the instants, not both"
 class Options:
     """Options of a run; every one may also be given to `simulate` by name, and in [simulation] of a model file.
 
+    Times may have units, "1 ms" or a quantity of pint; plain numbers are in seconds.
+
     Output: `times` gives exactly these instants, `dt` a uniform grid that ends with t_end. Without
     either, `output` decides: "smooth" gives the solver's steps refined to `points` intervals, with the left
     and the right limit at every event; "steps" gives the bare steps of the solver.
@@ -51,6 +55,7 @@ class Options:
         "relative tolerance of speeds and states (double precision carries no more than 1e-14)",
         default=1e-6,
         at_least=1e-14,
+        at_most=0.1,
         core=True,
     )
     atol: float = setting(
@@ -112,7 +117,10 @@ class Options:
     )
 
     def __post_init__(self) -> None:
-        """Refuse values that make no sense, with what to write instead, all of them at once."""
+        """Put values with units into SI; refuse those that make no sense, with what to write instead, all at once."""
+        for name, row in OPTIONS.items():
+            if (value := getattr(self, name)) is not row.default:
+                vars(self)[name] = row.in_si(value)
         found = [
             fault
             for name, row in OPTIONS.items()
@@ -155,12 +163,24 @@ def known(names: Iterable[str]) -> None:
         raise UseError("simulate", found)
 
 
-def end_time(t_end: float) -> float:
-    """Check the end time of a run [s]."""
-    fault = _told("t_end", T_END, t_end)
+def end_time(t_end: Any) -> float:
+    """The end time of a run [s], checked; it may have a unit."""
+    number = T_END.in_si(t_end)
+    fault = _told("t_end", T_END, number)
     if fault:
         raise OptionError([fault])
-    return float(t_end)
+    return float(number)
+
+
+def instants(times: Any) -> Any:
+    """Instants [s] of a call, one or several, of which any may have a unit; OptionError names what is wrong with it."""
+    row = OPTIONS["times"]
+    given = row.in_si([times] if has_unit(times) and not is_array(times) else times)
+    wrong = [item for item in given if has_unit(item)] if isinstance(given, list | tuple) else []
+    if wrong or is_array(given):
+        fault = row.unit_fault(wrong[0] if wrong else given)
+        raise OptionError([f"times hold {fault.value}: it {advised(fault.message, fault.remedy)}"])
+    return given
 
 
 def _told(name: str, row: Setting, value: object) -> str:

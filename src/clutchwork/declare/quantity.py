@@ -1,20 +1,22 @@
-"""Numbers at the border: plain, as a string with a unit, or as a table {value, unit}, turned into SI."""
+"""Numbers at the border: plain, as a string with a unit, as a quantity of pint, or as a table {value, unit}, into SI.
+
+Python and model files read values here alike. `declare.given` reads whole fields.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from clutchwork.base.errors import ClutchworkError, advised, near
-from clutchwork.base.shown import shown
-from clutchwork.declare import units
+from clutchwork.base.shown import shortened, shown
+from clutchwork.declare import pints, units
+from clutchwork.declare.unit_table import example_of
+from clutchwork.declare.unit_table import unit_table as unit_table
+from clutchwork.declare.units import KELVIN, Scale
 
-if TYPE_CHECKING:
-    from clutchwork.declare.schema import Spec
-
-
-# units of temperature that no factor leads to kelvin from
-OTHER_ZERO = ("degC", "C", "degF", "F")
+# numbers as they are
+PLAIN = Scale(1.0)
 
 
 def within(unit: str) -> str:
@@ -30,11 +32,25 @@ class QuantityError(ClutchworkError, ValueError):
         super().__init__(f"{value}: {advised(message, remedy)}")
 
 
-def in_si(value: Any, unit: str, others: tuple[str, ...] = (), factor: float = 1.0, *, whole: bool = False) -> Any:
-    """The number in SI. What is neither a string nor a table is returned for the checks that follow.
+def has_unit(value: object) -> bool:
+    """Whether a value may be a quantity with a unit: a string, or a quantity of pint."""
+    return isinstance(value, str) or pints.is_quantity(value)
 
-    Parameters: unit, the SI unit that is wanted; others, further ones that the quantity may have; factor, to SI from
-    a plain number; whole, whether an integer stays one.
+
+def in_si(
+    value: Any,
+    unit: str,
+    others: tuple[str, ...] = (),
+    factor: float = 1.0,
+    *,
+    whole: bool = False,
+    difference: bool = False,
+    zero: float = 0.0,
+) -> Any:
+    """The number in SI. Anything but a string, a quantity or a table is returned for the checks that follow.
+
+    Parameters: unit, the SI unit that is wanted; others, further ones that the quantity may have; factor and zero, to
+    SI from a plain number; whole, whether an integer stays one; difference, whether it is one of temperatures.
     """
     if isinstance(value, Mapping):
         unknown = [key for key in value if key not in ("value", "unit")]
@@ -43,87 +59,102 @@ def in_si(value: Any, unit: str, others: tuple[str, ...] = (), factor: float = 1
                 "must be a number", shown(dict(value)), 'write a number, or {value = 1.0, unit = "..."}'
             )
         if "unit" in value:
-            factor = factor_to_si(value["unit"], unit, others, dict(value))
+            factor, zero = scale_to_si(value["unit"], unit, others, dict(value), difference=difference)
         if isinstance(value["value"], Mapping):
             raise QuantityError("holds a table", shown(value), 'write {value = 1.0, unit = "..."}')
-        return in_si(value["value"], unit, others, factor)
+        return in_si(value["value"], unit, others, factor, difference=difference, zero=zero)
     if isinstance(value, str):
-        parts = units.split(value)
-        if parts is None:
-            raise QuantityError(
-                "is not a number", shown(value), f"write a number{within(unit)}, or a string such as '1.5 {unit}'"
-            )
-        if not parts[1]:
-            example = "" if unit == "1" else f" or add one, such as '{parts[0]:g} {unit}'"
-            raise QuantityError("has no unit", shown(value), f"remove the quotes{example}")
-        return parts[0] * factor_to_si(parts[1], unit, others, value) + 0.0
-    return value if whole else _times(value, factor)
+        return _from_text(value, unit, others, difference)
+    if pints.is_quantity(value):
+        return from_pint(value, unit, others, difference=difference)
+    return value if whole else times(value, Scale(factor, zero))
+
+
+def _from_text(value: str, unit: str, others: tuple[str, ...], difference: bool) -> float:
+    parts = units.split(value)
+    if parts is None:
+        remedy = f"write a number{within(unit)}, or a string such as {example_of(unit)!r}"
+        if units.has_comma(value):
+            remedy = f"write a decimal point: {value.replace(',', '.').strip()!r}"
+        raise QuantityError("is not a number", shown(value), remedy)
+    if not parts[1]:
+        example = "" if unit == "1" else f" or add one, such as '{parts[0]:g} {unit}'"
+        raise QuantityError("has no unit", shown(value), f"remove the quotes{example}")
+    found = scale_to_si(parts[1], unit, others, value, difference=difference)
+    return found.si(parts[0])
+
+
+def from_pint(quantity: Any, unit: str, others: tuple[str, ...] = (), *, difference: bool = False) -> Any:
+    """The number in SI of a quantity of pint, or the nested list of those of an array."""
+    value, wanted = shortened(str(quantity), 80), _wanted(unit, others)
+    if not pints.is_list(quantity) and isinstance(quantity.magnitude, bool | str):
+        raise QuantityError("is not a number", value, f"give it in {wanted}")
+    try:
+        powers, other = pints.powers_of(quantity), pints.has_other_zero(quantity)
+        fits = powers in {units.powers_of(name) for name in (unit, *others)}
+        if fits and powers == KELVIN and difference and other:
+            raise _refused(value, "degC", wanted, difference)
+        if fits and powers == KELVIN and not difference and pints.is_difference(quantity):
+            raise QuantityError("is a difference of temperatures", value, "give the temperature itself, in degC or K")
+        if fits:
+            return pints.magnitude(quantity)
+    except pints.Foreign:
+        pass
+    example = "" if unit == "1" else f", such as {example_of(unit)!r}"
+    raise QuantityError("has a unit that does not fit", value, f"give it in {wanted}{example}")
+
+
+def scale_to_si(
+    given: Any, unit: str, others: tuple[str, ...] = (), whole: object = None, *, difference: bool = False
+) -> Scale:
+    """What turns numbers in a given unit into the wanted one of SI; QuantityError, which shows the value, if nothing.
+
+    Parameters: others, further units that may be wanted; whole, the value as it was given; difference, whether numbers
+    are differences, so that a unit with another zero is refused.
+    """
+    value, wanted = shown(given if whole is None else whole), _wanted(unit, others)
+    if not isinstance(given, str):
+        raise QuantityError("must be a unit", value, f"write it as a string, such as {unit!r}")
+    try:
+        found = units.scale(given, (unit, *others), difference=difference)
+    except ValueError as error:
+        word = str(error)
+        if units.other_zero(word):
+            raise _refused(value, word, wanted, difference and units.powers_of(unit) == KELVIN) from None
+        meant = near(word, [*units.known(), "degC", "degF"])
+        raise QuantityError(f"has the unknown unit {shown(word)}{meant}", value, f"give it in {wanted}") from None
+    if found is None:
+        example = "" if unit == "1" else f", such as {example_of(unit)!r}"
+        raise QuantityError("has a unit that does not fit", value, f"give it in {wanted}{example}")
+    return found
+
+
+def _wanted(unit: str, others: tuple[str, ...]) -> str:
+    return " or ".join(f"[{name}]" for name in (unit, *others))
+
+
+def _refused(value: str, word: str, wanted: str, difference: bool) -> QuantityError:
+    """A temperature in degrees where a difference or something else is wanted."""
+    if difference:
+        remedy = "give it in [K]; a difference of 1 degC, or of 1.8 degF, is 1 K"
+        return QuantityError(f"is in {word}, which has another zero, and a difference has none", value, remedy)
+    remedy = f"give it in {wanted}; per kelvin, a degree Celsius is 1 K"
+    return QuantityError(
+        f"is in {word}, which has another zero", value, remedy if "K" in wanted else f"give it in {wanted}"
+    )
 
 
 def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), whole: object = None) -> float:
     """Factor from a given unit to the wanted SI unit; QuantityError, which shows the value, where they do not fit."""
-    value = shown(given if whole is None else whole)
-    wanted = " or ".join(f"[{name}]" for name in (unit, *others))
-    if not isinstance(given, str):
-        raise QuantityError("must be a unit", value, f"write it as a string, such as {unit!r}")
-    try:
-        factor, powers = units.parse(given)
-    except ValueError as error:
-        word = str(error)
-        remedy = f"give it in {wanted}"
-        if word in OTHER_ZERO:
-            remedy = f"{remedy}; temperatures are in K; 0 degC is 273.15 K"
-            raise QuantityError(f"is in {word}, which has another zero", value, remedy) from None
-        raise QuantityError(f"has the unknown unit {shown(word)}{near(word, units.known())}", value, remedy) from None
-    if all(powers != units.parse(name).powers for name in (unit, *others)):
-        raise QuantityError("has a unit that does not fit", value, f"give it in {wanted}")
-    return factor
+    return scale_to_si(given, unit, others, whole, difference=True).factor
 
 
-def curve_in_si(value: Any, spec: Spec, unit: str, factor: float = 1.0) -> Any:
-    """Points in SI from a list of pairs, whose ordinates times `factor` are SI, or a table {points, unit_x, unit}."""
-    if spec.constant and (isinstance(value, str | float | int) or (isinstance(value, Mapping) and "value" in value)):
-        return in_si(value, unit, spec.units, factor)
-    if not isinstance(value, Mapping):
-        return _scaled(value, 1.0, factor)
-    unknown = [key for key in value if key not in ("points", "unit_x", "unit")]
-    if unknown or "points" not in value:
-        raise QuantityError(
-            "must be a list of points", shown(dict(value)), "write {points = [[x, y], ...], unit_x, unit}"
-        )
-    x = factor_to_si(value["unit_x"], spec.unit_x, spec.units_x) if "unit_x" in value else 1.0
-    y = factor_to_si(value["unit"], unit, spec.units) if "unit" in value else factor
-    return _scaled(value["points"], x, y)
-
-
-def numbers_in_si(value: Any, spec: Spec, unit: str) -> Any:
-    """Numbers, or rows of them, in SI from a list, or from a table {values, unit}."""
-    factor = 1.0
-    if isinstance(value, Mapping):
-        unknown = [key for key in value if key not in ("values", "unit")]
-        if unknown or "values" not in value:
-            raise QuantityError("must be a list of numbers", shown(dict(value)), "write {values = [x, y, ...], unit}")
-        factor = factor_to_si(value["unit"], unit, spec.units) if "unit" in value else 1.0
-        value = value["values"]
-    if not isinstance(value, list):
-        return value
-    return [[_times(x, factor) for x in row] if isinstance(row, list) else _times(row, factor) for row in value]
-
-
-def _scaled(value: Any, x: float, y: float) -> Any:
-    """Pairs times factors; what is not a list of pairs of numbers is returned for the checks that follow."""
-    if not isinstance(value, list) or not all(isinstance(point, list) and len(point) == 2 for point in value):
-        return value
-    return [(_times(a, x), _times(b, y)) for a, b in value]
-
-
-def _times(value: Any, factor: float) -> Any:
-    """A number times a factor; true, false and what is not a number stay."""
+def times(value: Any, scale: Scale) -> Any:
+    """A number in SI; true, false and what is not a number stay."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
     try:
-        # minus zero becomes zero, so that what is written reads back to the same bits
-        return value * factor + 0.0
+        return scale.si(value)
     except OverflowError:
         # an integer beyond all floats, which the checks that follow refuse
         return value

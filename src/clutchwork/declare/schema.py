@@ -11,7 +11,7 @@ from dataclasses import MISSING, Field, field, fields
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, dataclass_transform
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base.classes import PLAIN, dataclass
 from clutchwork.declare.hooks import hook_problems
 from clutchwork.declare.registry import REGISTRY as REGISTRY
 from clutchwork.declare.registry import Role as Role
@@ -63,6 +63,7 @@ class Spec:
     choices: tuple[str, ...] = ()  # a text in Python, its place among these in the core
     example: Any = None  # a value that fits the examples of the other fields
     last: bool = False  # stands behind all other fields in files and tables
+    difference: bool = False  # of two values, so that of temperatures it has no zero in degrees Celsius
 
     @property
     def bound(self) -> str:
@@ -111,11 +112,16 @@ def param(
     units: tuple[str, ...] = (),
     whole: bool = False,
     example: float | None = None,
+    difference: bool = False,
     kw_only: bool = True,
 ) -> Any:
-    """A constant number in SI units: one scalar of the C++ `Params`, in order of declaration."""
+    """A constant number in SI units: one scalar of the C++ `Params`, in order of declaration.
+
+    A `difference` of temperatures is never in degrees Celsius.
+    """
     bounds = (above, at_least, below, at_most)
-    spec = Spec("param", unit, doc, default is None, *bounds, units=units, whole=whole, example=example)
+    more: dict[str, Any] = {"units": units, "whole": whole, "example": example, "difference": difference}
+    spec = Spec("param", unit, doc, default is None, *bounds, **more)
     return _field(spec, default, kw_only)
 
 
@@ -226,9 +232,9 @@ def option(
     return _field(spec, default)
 
 
-def text(doc: str, *, default: str = MISSING, kw_only: bool = True) -> Any:  # type: ignore[assignment]
+def text(doc: str, *, default: str | None = MISSING, kw_only: bool = True) -> Any:  # type: ignore[assignment]
     """A path or a name."""
-    return _field(Spec("text", "", doc), default, kw_only)
+    return _field(Spec("text", "", doc, default is None), default, kw_only)
 
 
 def function(doc: str, *, kw_only: bool = True) -> Any:
@@ -290,6 +296,7 @@ def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, .
         _check_work(cls)
         frozen.kind, frozen.role, frozen.states, frozen.hooks = kind, role, states, hooks
         REGISTRY[role].add(kind, frozen)
+        PLAIN.add(frozen)
         schema_hash.cache_clear()
         return cls
 

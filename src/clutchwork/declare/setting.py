@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.shown import shown
+from clutchwork.declare.given import field_in_si
+from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.speech import say
 
@@ -64,9 +66,16 @@ class Setting:
             return self.unset
         return float(self.spec.choices.index(value) if self.spec.choices else value)
 
+    def in_si(self, value: Any) -> Any:
+        """A value in SI where it has a unit that fits; any other as it is."""
+        spec = self.spec
+        if type(value) is float or spec.flag or spec.choices or spec.whole:
+            return value
+        return field_in_si(value, spec)
+
     def fault(self, value: Any) -> Fault | None:
         """What is wrong with a value; lists of numbers are looked at where they are used."""
-        spec = self.spec
+        spec, value = self.spec, self.in_si(value)
         if spec.what == "numbers" or (value is None and spec.optional):
             return None
         if spec.choices:
@@ -77,8 +86,20 @@ class Setting:
             if isinstance(value, bool):
                 return None
             return Fault(shown(value), say("must be true or false", "must be True or False"), f"it says {spec.doc}")
+        if has_unit(value):
+            return self.unit_fault(value)
         message = self._wrong(_as_number(value))
         return Fault(self._shown(value), message, f"it is the {spec.doc}") if message else None
+
+    def unit_fault(self, value: Any) -> Fault:
+        """Why a string or a quantity of pint is not a number of this option."""
+        try:
+            in_si(value, self.spec.unit)
+        except QuantityError as bad:
+            return Fault(bad.value, bad.message, bad.remedy)
+        return Fault(
+            shown(value), f"must be a {'whole ' if self.spec.whole else ''}number", f"it is the {self.spec.doc}"
+        )
 
     def _wrong(self, number: float | None) -> str:
         """What a number must be, empty when it is that."""

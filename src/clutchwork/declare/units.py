@@ -1,54 +1,27 @@
 """Units at the border: text such as "0.2 kg m2" or "30 bar" becomes a number in SI.
 
-Nothing behind the border knows any other unit than SI.
+Nothing behind the border knows any other unit than SI. `declare.unit_words` lists the words.
 """
 
 from __future__ import annotations
 
 import re
-from math import pi
+from functools import cache, lru_cache
 from typing import NamedTuple
 
-# factor to SI, and powers of kg, m, s, rad and K
-_TABLE: dict[str, tuple[float, tuple[int, int, int, int, int]]] = {
-    "1": (1.0, (0, 0, 0, 0, 0)),
-    "%": (0.01, (0, 0, 0, 0, 0)),
-    "kg": (1.0, (1, 0, 0, 0, 0)),
-    "g": (1e-3, (1, 0, 0, 0, 0)),
-    "t": (1e3, (1, 0, 0, 0, 0)),
-    "m": (1.0, (0, 1, 0, 0, 0)),
-    "mm": (1e-3, (0, 1, 0, 0, 0)),
-    "cm": (1e-2, (0, 1, 0, 0, 0)),
-    "km": (1e3, (0, 1, 0, 0, 0)),
-    "s": (1.0, (0, 0, 1, 0, 0)),
-    "ms": (1e-3, (0, 0, 1, 0, 0)),
-    "us": (1e-6, (0, 0, 1, 0, 0)),
-    "min": (60.0, (0, 0, 1, 0, 0)),
-    "h": (3600.0, (0, 0, 1, 0, 0)),
-    "rad": (1.0, (0, 0, 0, 1, 0)),
-    "deg": (pi / 180, (0, 0, 0, 1, 0)),
-    "rev": (2 * pi, (0, 0, 0, 1, 0)),
-    "rpm": (pi / 30, (0, 0, -1, 1, 0)),
-    "Hz": (1.0, (0, 0, -1, 0, 0)),
-    "N": (1.0, (1, 1, -2, 0, 0)),
-    "kN": (1e3, (1, 1, -2, 0, 0)),
-    "Nm": (1.0, (1, 2, -2, 0, 0)),
-    "kNm": (1e3, (1, 2, -2, 0, 0)),
-    "J": (1.0, (1, 2, -2, 0, 0)),
-    "kJ": (1e3, (1, 2, -2, 0, 0)),
-    "W": (1.0, (1, 2, -3, 0, 0)),
-    "kW": (1e3, (1, 2, -3, 0, 0)),
-    "Pa": (1.0, (1, -1, -2, 0, 0)),
-    "kPa": (1e3, (1, -1, -2, 0, 0)),
-    "MPa": (1e6, (1, -1, -2, 0, 0)),
-    "K": (1.0, (0, 0, 0, 0, 1)),
-    "bar": (1e5, (1, -1, -2, 0, 0)),
-}
+from clutchwork.declare.unit_words import OTHER_ZERO, TABLE, TOLERANT, Powers
+
 _FACTOR = re.compile(r"([A-Za-z%]{1,20}|1)\^?(-?\d)?")
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+_COMMA = re.compile(r"\s*[-+]?\d*,\d+([eE][-+]?\d+)?\s*[^\d,;]*")
 # more is no quantity
 LONGEST = 200
-_POWERS = str.maketrans({"²": "2", "³": "3", "·": " ", "*": " ", "°": "deg"})
+_SIGNS = {"·": " ", "⋅": " ", "*": " ", "°": "deg", "µ": "u", "μ": "u", "−": "-", "⁻": "-"}
+_POWERS = str.maketrans(_SIGNS | dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", strict=True)))
+# per minute, of what turns
+_TURNS = re.compile(r"1\s*/\s*min|min\s*\^?\s*-1")
+NONE: Powers = (0, 0, 0, 0, 0)
+KELVIN: Powers = (0, 0, 0, 0, 1)
 
 
 class Unit(NamedTuple):
@@ -58,31 +31,106 @@ class Unit(NamedTuple):
     powers: tuple[int, ...]
 
 
+class Scale(NamedTuple):
+    """What makes a number in a unit one in SI: `number * factor + zero`."""
+
+    factor: float
+    zero: float = 0.0
+
+    def si(self, number: float) -> float:
+        """A number in SI; 35 mm are 0.035 m to the last bit, which no product with 0.001 promises."""
+        parts = 1.0 / self.factor if 0.0 < self.factor < 1.0 else 0.5
+        # minus zero becomes zero, so that what is written reads back to the same bits
+        return number / parts + self.zero if parts.is_integer() else number * self.factor + self.zero
+
+
 def parse(text: str) -> Unit:
     """Read a unit such as "N m s/rad", "kg.m2" or "1/s"; ValueError names the part that is not known."""
-    factor, powers = 1.0, [0, 0, 0, 0, 0]
+    return _parsed(_plain(text))
+
+
+def _plain(text: str) -> str:
+    return text.replace("**", "^").translate(_POWERS)
+
+
+@lru_cache(1000)
+def _parsed(text: str) -> Unit:
+    if text.strip() == "-":
+        return Unit(1.0, NONE)
+    # factors are put together without round-off: a cm3 is 1e-6 m3 to the last bit
+    from fractions import Fraction
+
+    factor, powers = Fraction(1), [0, 0, 0, 0, 0]
     # what follows a slash divides, up to the end: N m/rad, m/s2
-    for side, part in enumerate(text.translate(_POWERS).split("/")):
+    for side, part in enumerate(text.split("/")):
         sign = -1 if side else 1
         for word in re.split(r"[\s.()]+", part.strip()):
             if not word:
                 continue
             match = _FACTOR.fullmatch(word)
-            if match is None or match[1] not in _TABLE:
+            name = match and (match[1] if match[1] in TABLE else TOLERANT.get(match[1].lower(), ""))
+            if match is None or name not in TABLE:
                 raise ValueError(word)
             power = sign * int(match[2] or 1)
-            base, dimension = _TABLE[match[1]]
-            factor *= base**power
+            base, dimension = TABLE[name]
+            factor *= Fraction(repr(base)) ** power
             powers = [p + power * d for p, d in zip(powers, dimension, strict=True)]
-    return Unit(factor, tuple(powers))
+    try:
+        return Unit(float(factor), tuple(powers))
+    except OverflowError:
+        raise ValueError(text) from None
+
+
+@cache
+def powers_of(text: str) -> tuple[int, ...]:
+    """Powers of a unit that is known."""
+    return parse(text).powers
+
+
+def scale(text: str, wanted: tuple[str, ...], *, difference: bool = False) -> Scale | None:
+    """What turns a number in a unit into one in one of those wanted; None where it fits none of them.
+
+    ValueError names the part that is not known. Parameters: difference, whether the number is a difference, which has
+    no other zero.
+    """
+    plain = _plain(text)
+    powers = {powers_of(unit) for unit in wanted}
+    other = other_zero(text)
+    if other and KELVIN in powers and not difference:
+        return Scale(*OTHER_ZERO[other])
+    found = next((unit for unit in _readings(plain) if unit.powers in powers), None)
+    return Scale(found.factor) if found else None
+
+
+def other_zero(text: str) -> str:
+    """The unit of temperature with another zero than kelvin that a word means; empty where it means none."""
+    word = _plain(text).strip()
+    word = TOLERANT.get(word.lower(), word)
+    return word if word in OTHER_ZERO else ""
+
+
+def _readings(text: str) -> list[Unit]:
+    """What a unit may mean: a lb may be the force of one, and 1/min that of what turns."""
+    found = [_parsed(text)]
+    if re.search(r"\blb\b", text):
+        found.append(_parsed(re.sub(r"\blb\b", "lbf", text)))
+    if _TURNS.fullmatch(text.strip()):
+        found.append(_parsed("rpm"))
+    return found
 
 
 def split(text: str) -> tuple[float, str] | None:
     """Number and unit of a string such as "0.2 kg m2"; None when it does not start with a number."""
-    match = _QUANTITY.fullmatch(text.strip()) if len(text) <= LONGEST else None
-    return (float(match[1]), match[2]) if match else None
+    match = _QUANTITY.fullmatch(text.strip().replace("−", "-")) if len(text) <= LONGEST else None
+    # a decimal comma is not the beginning of a unit
+    return (float(match[1]), match[2]) if match and not match[2].startswith(",") else None
+
+
+def has_comma(text: str) -> bool:
+    """Whether a string is a number with a decimal comma, and maybe a unit."""
+    return len(text) <= LONGEST and _COMMA.fullmatch(text) is not None
 
 
 def known() -> list[str]:
     """The unit words that `parse` knows."""
-    return list(_TABLE)
+    return list(TABLE)

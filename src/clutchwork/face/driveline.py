@@ -16,10 +16,14 @@ from clutchwork.model.model import Model
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.declare.options import Options
+    from clutchwork.results.hints.hint import Hints
+    from clutchwork.results.recorded import Recorded
     from clutchwork.results.trajectory import Trajectory
     from clutchwork.run.record import Progress
+    from clutchwork.schematic.picture import Schematic
 
 E = TypeVar("E", bound=Element)
 
@@ -82,21 +86,25 @@ class Driveline:
         return HOUSING
 
     @explained("d.shaft")
-    def shaft(self, name: str, *, inertia: float = 0.0, speed: float | None = None, angle: float = 0.0) -> Node:
+    def shaft(self, name: str, *, inertia: Number = 0.0, speed: Number | None = None, angle: Number = 0.0) -> Node:
         """Add a shaft.
+
+        Numbers may have units, here and everywhere: speed="955 rpm", or a quantity of pint.
 
         Parameters: inertia [kg m2], 0 only where gears or damped springs determine the motion; speed [rad/s] and
         angle [rad] at the start. A shaft without a given speed takes the one that gears give it, else starts at rest.
         """
-        return self.add_node(Node(name, Domain.ROTATION, inertia, speed, angle))
+        values: Any = (inertia, speed, angle)
+        return self.add_node(Node(name, Domain.ROTATION, *values))
 
     @explained("d.mass")
-    def mass(self, name: str, *, mass: float = 0.0, speed: float | None = None, position: float = 0.0) -> Node:
+    def mass(self, name: str, *, mass: Number = 0.0, speed: Number | None = None, position: Number = 0.0) -> Node:
         """Add a mass that moves along a line.
 
         Parameters: mass [kg]; speed [m/s] and position [m] at the start. All else is as for a shaft.
         """
-        return self.add_node(Node(name, Domain.TRANSLATION, mass, speed, position))
+        values: Any = (mass, speed, position)
+        return self.add_node(Node(name, Domain.TRANSLATION, *values))
 
     @explained("d.add_node")
     def add_node(self, node: Node) -> Node:
@@ -107,17 +115,19 @@ class Driveline:
         return node
 
     @explained("d.thermal")
-    def thermal(self, name: str, *, capacity: float, temperature: float = 300.0) -> ThermalNode:
+    def thermal(self, name: str, *, capacity: Number, temperature: Number = 300.0) -> ThermalNode:
         """Add a mass that holds heat and has one temperature.
 
-        Parameters: capacity [J/K], mass times specific heat; temperature [K] at the start.
+        Parameters: capacity [J/K], mass times specific heat; temperature [K] at the start, or "90 degC".
         """
-        return self.add_thermal(ThermalNode(name, capacity, temperature))
+        values: Any = (capacity, temperature)
+        return self.add_thermal(ThermalNode(name, *values))
 
     @explained("d.ambient")
-    def ambient(self, name: str, *, temperature: float | Signal = 300.0) -> ThermalNode:
+    def ambient(self, name: str, *, temperature: Number | Signal = 300.0) -> ThermalNode:
         """Add surroundings whose temperature [K], a number or a signal, does not depend on the heat they take."""
-        return self.add_thermal(ThermalNode(name, None, temperature))
+        given: Any = temperature
+        return self.add_thermal(ThermalNode(name, None, given))
 
     @explained("d.add_thermal")
     def add_thermal(self, node: ThermalNode) -> ThermalNode:
@@ -147,6 +157,26 @@ class Driveline:
             warn(one)
         return list(found.problems)
 
+    def hints(self) -> Hints:
+        """What an expert would say of the model before it runs, with numbers and a remedy; print it to read it.
+
+        Hints are neither the mistakes that `check` lists nor warnings. Those that a run shows are in
+        `Trajectory.hints`. ModelError lists all mistakes.
+        """
+        from clutchwork.assembly.system import System
+        from clutchwork.model.findings import findings
+        from clutchwork.model.problems import TOO_FAR_APART
+        from clutchwork.results.hints.registry import of_model
+
+        with words_of_files(self._model.from_file):
+            found = findings(self._model)
+            if found.problems:
+                raise ModelError(found.problems, self.name)
+            try:
+                return of_model(System.of(self._model))
+            except ArithmeticError:
+                raise ModelError([TOO_FAR_APART], self.name) from None
+
     @explained("d.assemble")
     def assemble(self, independent: Sequence[str] = ()) -> System:
         """Reduce the driveline to its independent speeds.
@@ -169,19 +199,46 @@ class Driveline:
     @explained("d.simulate")
     def simulate(
         self,
-        t_end: float | None = None,
+        t_end: Number | None = None,
         *,
         options: Options | None = None,
-        progress: Progress | None = None,
+        progress: Progress | bool | None = None,
         **changes: Unpack[OptionFields],
     ) -> Trajectory:
-        """Assemble and run up to t_end [s]; options as for `clutchwork.simulate`.
+        """Assemble and run up to t_end [s], or "500 ms"; options as for `clutchwork.simulate`.
 
         What is left out is that of `simulation`, so a driveline from a model file runs with the settings of its file.
         """
         from clutchwork.run.simulation import simulate
 
         return simulate(self.assemble(), t_end, options=options, progress=progress, **changes)
+
+    @explained("d.draw")
+    def draw(
+        self,
+        path: str | Path | None = None,
+        *,
+        run: Recorded | None = None,
+        at: Number | None = None,
+        values: bool = True,
+        power: bool = False,
+        width: float = 310.0,
+    ) -> Schematic:
+        """Schematic of the driveline, with mistakes or without; notebooks show it. Needs the extra `draw`.
+
+        Parameters: path, SVG, PNG or PDF by its ending, written when given; run, a result whose states, speeds and
+        torques are shown at the time `at` [s, or with a unit], by default its end; values, whether inertias, ratios
+        and the like are shown; power, whether the power [W] of elements is; width [mm], from which on a long driveline
+        is folded into rows. UseError for what does not fit, such as a time outside of the run.
+        """
+        from clutchwork.schematic.draw import drawn
+
+        return drawn(self._model, path, run=run, at=at, values=values, power=power, width=width)
+
+    def _repr_html_(self) -> str:
+        from clutchwork.schematic.notebook import html
+
+        return html(self._model)
 
     @classmethod
     @explained("cw.Driveline.load")

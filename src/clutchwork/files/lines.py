@@ -52,4 +52,7 @@ class Lines:
             number = names.index(match[3]) + 1 if match[3] in names else -1
         key = re.split(r"[., ]", problem.quantity, maxsplit=1)[0]
         line = self._keys.get((kind, number, key)) or self._heads.get((kind, number), 0)
+        if kind == "file":
+            # a table with an unknown head
+            line = line or self._heads.get((key, 1)) or self._heads.get((key, 0), 0)
         return replace(problem, line=line)

@@ -31,6 +31,7 @@ import json
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,8 @@ from clutchwork.signals.bases.sheets import one_reading
 # more belongs into CSV files
 MOST_BYTES = 10_000_000
 ENDINGS = (".toml", ".json")
+# what nobody means when a model file is missing
+NO_MODELS = ("pyproject.toml", "package.json", "package-lock.json", "tsconfig.json", "Cargo.toml")
 
 
 def load(path: str | Path) -> Model:
@@ -71,11 +74,14 @@ def _elsewhere(path: Path) -> str:
     """Where a file that is missing may be."""
     if not path.parent.is_dir():
         return f"check the path: there is no folder {shown(str(path.parent))}"
-    others = {other.stem: other.name for other in sorted(path.parent.iterdir()) if other.suffix.lower() in ENDINGS}
+    files = [other for other in sorted(path.parent.iterdir()) if other.name not in NO_MODELS]
+    others = {other.stem: other.name for other in files if other.suffix.lower() in ENDINGS}
     found = nearest(path.stem, others)
     if found:
         return f"did you mean {others[found]!r}?"
-    return f"check the path; in its folder: {listed([*others.values()][:5])}" if others else "check the path"
+    if others:
+        return f"check the path; in its folder: {listed([*others.values()][:5])}"
+    return f"check the path, or write a model to start from: clutchwork new {path}"
 
 
 def _from_text(path: Path, text: str) -> Model:
@@ -130,6 +136,8 @@ def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines
         problems = reader.problems + findings(model, reader.incomplete).problems
     if problems:
         placed = [lines.placed(problem, data) for problem in problems] if lines else problems
+        # those without a line come last, sorting keeps the order of equals
+        placed.sort(key=lambda problem: problem.line or inf)
         raise ModelError(placed, source or model.name)
     model.from_file = True
     return model

@@ -45,6 +45,7 @@ class Reader(Values):
             self._report(At("file", ""), "must be a table", remedy="see the guide on model files")
             return Model()
         self._unknown(data, TOP, At("file", ""))
+        self.strays = _named_in({key: value for key, value in data.items() if key not in TOP})
         if data.get("format", FORMAT) != FORMAT:
             remedy = f"this version reads format {FORMAT}"
             self._report(At("file", "format"), "is an unknown format", shown(data["format"]), remedy)
@@ -132,3 +133,10 @@ class Reader(Values):
             # an unknown name is reported with the other mistakes of the settings
             made[key] = value if row is None else self._value(value, row.spec, at, key)
         return {key: value for key, value in made.items() if value is not BROKEN}
+
+
+def _named_in(tables: Mapping[str, Any]) -> dict[str, str]:
+    """The table of each name in lists of tables."""
+    lists = [(str(key), value) for key, value in tables.items() if isinstance(value, list)]
+    entries = [(key, entry.get("name")) for key, value in lists for entry in value if isinstance(entry, Mapping)]
+    return {name: key for key, name in entries if isinstance(name, str)}

@@ -4,20 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from functools import cache
 from typing import Any, TypeVar
 
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import listed, shown
-from clutchwork.declare.node import HOUSING, Node, ThermalNode
-from clutchwork.declare.quantity import QuantityError, curve_in_si, factor_to_si, in_si, numbers_in_si
+from clutchwork.declare.given import settled
+from clutchwork.declare.node import HOUSING, Domain, Node, ThermalNode
+from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
 from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
+from clutchwork.files.lists import curve_in_si, list_in_si
 from clutchwork.files.references import References, is_named, referred
 from clutchwork.model.fields import BROKEN, mark_sound, value_problems
 from clutchwork.model.numbers import At
 from clutchwork.signals.column import Column
 
 T = TypeVar("T")
+
+
+# what a port of a domain may be
+PORTS = {"rotation": "shaft", "translation": "mass", "": "shaft or mass"}
 
 
 class Values:
@@ -29,26 +34,32 @@ class Values:
         self.problems: list[Problem] = []
         self.nodes: dict[str, Node] = {HOUSING.name: HOUSING}
         self.thermal: dict[str, ThermalNode] = {}
+        self.strays: dict[str, str] = {}  # names in tables whose heads are misspelt
 
     def _report(self, at: At, message: str, value: str = "", remedy: str = "") -> Any:
         self.problems.append(at.problem(message, value, remedy))
         return BROKEN
 
     def _unknown(self, data: Iterable[str], known: Any, at: At) -> None:
+        rest = f"known keys: {listed(known)}"
         for key in data:
             if key not in known:
-                remedy = f"known keys: {listed(known)}"
-                self._report(at.inner(str(key)), "is an unknown key" + near(key, known), remedy=remedy)
+                # the list of all is only said once, and not where a near one says enough
+                meant = near(key, known)
+                self._report(at.inner(str(key)), "is an unknown key" + meant, remedy="" if meant else rest)
+                rest = rest if meant else ""
 
     def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
         """Values of the fields of a declaration, in SI; mistakes are reported."""
         known = {item.name: spec for item, spec in specs(cls)}
         self._unknown([key for key in entry if key not in taken], known, at)
-        values = {
-            key: self._value(entry[key], _with_gain(key, spec, cls, entry), at, key)
-            for key, spec in known.items()
-            if key in entry
-        }
+        values = {}
+        for key, spec in known.items():
+            if key in entry:
+                value = entry[key]
+                if spec.units and type(value) is not float:
+                    spec = settled(key, spec, cls, self._joined(entry, known))
+                values[key] = self._value(value, spec, at, key)
         self.problems += value_problems(cls, values, at)
         # lists could be changed by their owner, and the reader has none
         return {key: _in_tuples(value) if type(value) is list else value for key, value in values.items()}
@@ -68,9 +79,9 @@ class Values:
             is_signal = isinstance(value, Mapping) and "type" in value
             return self._signal(value, spec, at) if is_signal else self._number(value, spec, at)
         if spec.what == "curve":
-            return self._converted(lambda: curve_in_si(value, spec, at.unit, at.factor), at)
+            return self._converted(lambda: curve_in_si(value, spec, at), at)
         if spec.what == "numbers":
-            return self._converted(lambda: numbers_in_si(value, spec, at.unit), at)
+            return self._converted(lambda: list_in_si(value, spec, at), at)
         if spec.what == "function":
             return self._report(at, "is not allowed in a model file", remedy="build this model in Python")
         if spec.what == "text" or spec.flag or spec.choices:
@@ -78,16 +89,44 @@ class Values:
         return self._number(value, spec, at)
 
     def _number(self, value: Any, spec: Spec, at: At) -> Any:
+        scale = at.scale
+        if spec.difference and scale.zero:
+            remedy = "give its values as strings, and differences in K: 10 K"
+            return self._report(at, "is a difference of temperatures, which degrees have no zero for", remedy=remedy)
         if type(value) is float and not spec.whole:
             # minus zero becomes zero, so that what is written reads back to the same bits
-            return value * at.factor + 0.0
-        return self._converted(lambda: in_si(value, at.unit, spec.units, at.factor, whole=spec.whole), at)
+            return value + 0.0 if scale is PLAIN else scale.si(value)
+        others = (*spec.units, *at.units)
+        return self._converted(
+            lambda: in_si(
+                value,
+                at.unit,
+                others,
+                scale.factor,
+                whole=spec.whole,
+                difference=spec.difference,
+                zero=scale.zero,
+            ),
+            at,
+        )
 
     def _converted(self, convert: Any, at: At) -> Any:
         try:
             return convert()
         except QuantityError as bad:
             return self._report(at, bad.message, bad.value, bad.remedy)
+
+    def _joined(self, entry: Mapping[str, Any], known: Mapping[str, Spec]) -> dict[str, Any]:
+        """The entries of fields, nodes at the ports."""
+        return {
+            key: self._node_of(value) if known[key].what == "port" else value
+            for key, value in entry.items()
+            if key in known
+        }
+
+    def _node_of(self, name: Any) -> Any:
+        """The shaft or mass of a name; nothing where there is none."""
+        return self.nodes.get(name) if isinstance(name, str) else None
 
     def _port(self, value: Any, spec: Spec, at: At) -> Any:
         known: Mapping[str, Any] = self.nodes if spec.what == "port" else self.thermal
@@ -96,9 +135,15 @@ class Values:
         part = self.elements.thermal_part(value) if spec.what == "thermal" else None
         if part is not None:
             return part
-        what = "shaft" if spec.what == "port" else "thermal node"
-        remedy = f"known {what}s: {listed(known)}" if known else "add one: [[thermal]] or [[ambient]]"
-        return self._report(at, f"is not a {what} of this model" + near(value, known), shown(value), remedy)
+        moving = any(node.domain is Domain.TRANSLATION for node in self.nodes.values())
+        what = PORTS[spec.domain if moving else spec.domain or "rotation"] if spec.what == "port" else "thermal node"
+        if isinstance(value, str) and value in self.strays:
+            remedy = f"it stands in [[{self.strays[value]}]]: write [[{what.partition(' ')[0]}]]"
+            return self._report(at, f"is not a {what} of this model", shown(value), remedy)
+        fits = [name for name in known if _is_of(known[name], spec)]
+        many = {"mass": "masses", "shaft or mass": "shafts and masses"}.get(what, f"{what}s")
+        remedy = f"known {many}: {listed(fits)}" if fits else "add one: [[thermal]] or [[ambient]]"
+        return self._report(at, f"is not a {what} of this model" + near(value, fits), shown(value), remedy)
 
     def _other(self, value: Any, at: At) -> Any:
         """An input that a thermal node, an element or a shaft gives."""
@@ -135,17 +180,25 @@ class Values:
 
     def _signal(self, value: Mapping[str, Any], spec: Spec, at: At) -> Any:
         """A signal; with `unit` its plain numbers are in that unit."""
-        factor: Any = 1.0
+        scale: Any = PLAIN
         if "unit" in value:
-            factor = self._converted(lambda: factor_to_si(value["unit"], at.unit, spec.units), at.inner("unit"))
-        place = At(at.path, at.quantity, at.unit, 1.0 if factor is BROKEN else factor)
+            scale = self._converted(lambda: scale_to_si(value["unit"], at.unit, spec.units), at.inner("unit"))
+        place = At(at.path, at.quantity, at.unit, PLAIN if scale is BROKEN else scale, spec.units)
         signal = self._typed(value, Role.SIGNAL, place, ("type", "unit"))
         if isinstance(signal, Column):
-            signal = replace(signal, scale=signal.scale * place.factor, folder=self.folder)
-            if "unit" in value and place.factor != 1.0 and (unit := replace(signal, scale=1.0).unit()):
+            signal = replace(signal, scale=signal.scale * place.scale.factor, folder=self.folder)
+            if place.scale.zero:
+                remedy = "write the unit into the head of the column: temperature [degC]"
+                return self._report(at.inner("unit"), "has another zero than kelvin", shown(value["unit"]), remedy)
+            if "unit" in value and place.scale != PLAIN and (unit := replace(signal, scale=1.0).unit()):
                 fault = f"cannot be given: the head of the column has the unit [{unit}]"
                 return self._report(at.inner("unit"), fault, shown(value["unit"]), "remove unit")
-        return BROKEN if factor is BROKEN else signal
+        return BROKEN if scale is BROKEN else signal
+
+
+def _is_of(node: Any, spec: Spec) -> bool:
+    """Whether a port may be on a node."""
+    return spec.what != "port" or not spec.domain or node.fixed or node.domain.value == spec.domain
 
 
 def _in_tuples(value: Any) -> Any:
@@ -153,16 +206,7 @@ def _in_tuples(value: Any) -> Any:
 
 
 def _place(at: At, key: str, spec: Spec) -> At:
-    """Place of a field; one in the unit of what a signal drives takes over that unit and its factor."""
-    return At(at.path, at.inner(key).quantity, at.unit, at.factor) if spec.unit == "*" else at.inner(key, spec.unit)
-
-
-def _with_gain(name: str, spec: Spec, cls: type, entry: Mapping[str, Any]) -> Spec:
-    """The spec of a gain with only the units that fit what it multiplies: a pressure or a force."""
-    gains = [other.gain for item, other in specs(cls) if other.gain and item.name in entry] if name == "gain" else []
-    return _in_units(spec, gains[0]) if len(gains) == 1 else spec
-
-
-@cache
-def _in_units(spec: Spec, units: tuple[str, ...]) -> Spec:
-    return replace(spec, unit=units[0], units=units[1:])
+    """Place of a field; one in the unit of what a signal drives takes over that unit and its scale."""
+    if spec.unit == "*":
+        return At(at.path, at.inner(key).quantity, at.unit, at.scale, at.units)
+    return at.inner(key, spec.unit)

@@ -99,19 +99,20 @@ def _reference(value: Any) -> Any:
 
 def toml(data: Mapping[str, Any]) -> str:
     """A model as TOML text."""
-    lines = [f"{key} = {_toml(value)}" for key, value in data.items() if not isinstance(value, list | Mapping)]
+    lines = [f"{key} = {toml_value(value)}" for key, value in data.items() if not isinstance(value, list | Mapping)]
     for key, value in data.items():
         for table in value if isinstance(value, list) else [value] if isinstance(value, Mapping) else []:
             head = f"[[{key}]]" if isinstance(value, list) else f"[{key}]"
-            lines += ["", head, *(f"{name} = {_toml(entry)}" for name, entry in table.items())]
+            lines += ["", head, *(f"{name} = {toml_value(entry)}" for name, entry in table.items())]
     return "\n".join(lines) + "\n"
 
 
-def _toml(value: Any) -> str:
+def toml_value(value: Any) -> str:
+    """A value as TOML text, a table on one line."""
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{key} = {_toml(entry)}" for key, entry in value.items()) + "}"
+        return "{" + ", ".join(f"{key} = {toml_value(entry)}" for key, entry in value.items()) + "}"
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(map(_toml, value)) + "]"
+        return "[" + ", ".join(map(toml_value, value)) + "]"
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
 import re
-import sys
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from clutchwork.base import shell
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Law
@@ -17,18 +17,31 @@ if TYPE_CHECKING:
     from clutchwork.fit.unknown import Bounds
 
 DETERMINED, OPEN = 0, 1
+EXAMPLES = (
+    (
+        "clutchwork fit measured.csv --law stribeck --slip slip --torque M --start static=0.15,kinetic=0.1,speed=2",
+        "a Stribeck curve; units stand in the head of the file",
+    ),
+    (
+        "clutchwork fit measured.csv --law coulomb --slip slip --torque M --load load --start "
+        "static=0.15,kinetic=0.1 --bounds kinetic=0.05:0.2",
+        "coefficients under a measured load, within bounds",
+    ),
+)
 _LISTS = re.compile(r"[-+.\de]+(//?[-+.\de]+)+", re.IGNORECASE)
 _POINTS = re.compile(r"[^:/]+:[^:/]+(/[^:/]+:[^:/]+)*")
 
 
 def add_command(subparsers: Any) -> None:
     """Add `fit` to the commands of the command line."""
-    fit = subparsers.add_parser(
+    fit = shell.add_command(
+        subparsers,
         "fit",
-        help="parameters of a friction law from measured slip and torque",
-        epilog="Exit code 1: the samples do not determine all free parameters; the results are written all the same.",
+        fit_command,
+        "parameters of a friction law from measured slip and torque",
+        examples=EXAMPLES,
+        codes="Exit code 1: the samples do not determine all free parameters; the results are written all the same.",
     )
-    fit.set_defaults(command=fit_command)
     fit.add_argument("file", type=Path, help="CSV file; a unit in brackets after the name of a column is converted")
     fit.add_argument("--law", required=True, metavar="KIND", help="friction law, such as stribeck")
     fit.add_argument("--slip", required=True, metavar="COL", help="column of the slip [rad/s or m/s]")
@@ -51,13 +64,14 @@ def add_command(subparsers: Any) -> None:
     fit.add_argument("--rest", type=float, metavar="SLIP", help="abs(slip) below which a sample counts as at rest")
     fit.add_argument("--confidence", type=float, default=0.95, help="confidence of the intervals, default 0.95")
     fit.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "fit"), help="default: out/fit")
-    fit.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
+    shell.add_json(fit)
 
 
 def fit_command(asked: argparse.Namespace) -> int:
     """Fit, report, write; the exit code."""
     from clutchwork.fit.law import fit_csv
 
+    shell.writable([asked.out / "fit.json"])
     result = fit_csv(
         asked.file,
         law_from_text(asked.law, asked.start),
@@ -74,10 +88,10 @@ def fit_command(asked: argparse.Namespace) -> int:
     data = result.data() | {"friction": law_data(result.law)}
     files = list(_write(result, data, asked.out))
     if asked.json:
-        text = json.dumps(_finite(data | {"files": [str(path) for path in files]}), indent=2, allow_nan=False)
+        text = shell.as_json(data | {"files": [str(path) for path in files]})
     else:
-        text = "\n".join([str(result), "", _model_line(result.law), "", *(f"wrote {path}" for path in files)])
-    sys.stdout.write(text + "\n")
+        text = "\n".join([str(result), "", _model_line(result.law), "", *shell.wrote(files)])
+    shell.tell(text)
     return DETERMINED if result.determined else OPEN
 
 
@@ -181,7 +195,7 @@ def _write(result: FitResult, data: dict[str, Any], folder: Path) -> Iterator[Pa
 
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "fit.json"
-    path.write_text(json.dumps(_finite(data), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    path.write_text(shell.as_json(data) + "\n", encoding="utf-8")
     yield path
     path, samples = folder / "samples.csv", result.samples
     force, speed = ("N", "m/s") if samples.translation else ("N m", "rad/s")
@@ -194,12 +208,3 @@ def _write(result: FitResult, data: dict[str, Any], folder: Path) -> Iterator[Pa
     yield path
     result.plot(folder / "fit.png")
     yield folder / "fit.png"
-
-
-def _finite(value: Any) -> Any:
-    """The same with None in place of what JSON cannot say."""
-    if isinstance(value, dict):
-        return {key: _finite(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(entry) for entry in value]
-    return None if isinstance(value, float) and not abs(value) < float("inf") else value

@@ -1,9 +1,7 @@
-"""Measurements from a CSV file; the heads of the columns may say their units."""
+"""Measurements from a file; the heads of the columns may say their units."""
 
 from __future__ import annotations
 
-import csv
-import io
 from pathlib import Path
 
 import numpy as np
@@ -11,18 +9,20 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.regular import open_regular
 from clutchwork.base.shown import listed
 from clutchwork.declare.quantity import QuantityError
 from clutchwork.declare.units import parse
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.measurement import Measurement, measurement
-from clutchwork.signals.bases.column_file import MOST_BYTES
+from clutchwork.signals.bases.column_file import names_of
 from clutchwork.signals.bases.column_heads import meant, split
+from clutchwork.signals.bases.measured import read_columns
+from clutchwork.signals.bases.measured.formats import format_of
 from clutchwork.signals.column import Column
 
 Array = NDArray[np.float64]
 
+CLOCK = "time"
 UNITS = {"time": ("s",), "slip": ("rad/s", "m/s"), "torque": ("N m", "N"), "load": ("N m", "N"), "temperature": ("K",)}
 
 
@@ -35,7 +35,7 @@ class Head:
 
 
 def read(path: str | Path, columns: dict[str, str | float]) -> Measurement:
-    """Samples from a CSV file.
+    """Samples from a CSV, MDF, MAT, Parquet or NetCDF file.
 
     Parameters: columns, the head of the column of time, slip, torque, load and, where it counts, temperature, with or
     without its unit; load and temperature may be numbers. A head such as `slip [rpm]` is converted to
@@ -49,19 +49,27 @@ def read(path: str | Path, columns: dict[str, str | float]) -> Measurement:
         raise FitError(
             "columns", f"mix rotation and translation: {found}", "give all in rad/s and N m, or in m/s and N"
         )
-    rows = {name: _column(path, head, heads["time"]) for name, head in heads.items() if name != "time"}
-    time = np.array(Column(str(path), heads["torque"].text, time=heads["time"].text).points)[:, 0]
+    tables = {name: _table(path, head, heads["time"]) for name, head in heads.items() if name != "time"}
+    time = tables["torque"][:, 0]
+    for name, samples in tables.items():
+        if not np.array_equal(samples[:, 0], time):
+            remedy = "give columns that were recorded together, or put them on one raster"
+            raise FitError(name, "has other times than the torque", remedy)
+    rows = {name: samples[:, 1] for name, samples in tables.items()}
     load, temperature = (rows.get(name, columns.get(name)) for name in ("load", "temperature"))
     slip, torque = rows["slip"], rows["torque"]
     return measurement(time, slip, torque, load, temperature=temperature, translation=domains == {True})
 
 
 def _heads(path: Path) -> list[str]:
-    """The first line of the file; other defects show when the columns are read."""
+    """The heads of all columns, with their units; other defects show when the columns are read."""
     try:
-        with open_regular(path, MOST_BYTES) as file, io.TextIOWrapper(file, "utf-8-sig", newline="") as stream:
-            return [name.strip() for name in next(csv.reader(stream), [])]
-    except (OSError, UnicodeDecodeError, csv.Error):
+        if not format_of(path):
+            return names_of(path)
+        called = [(name, one.unit) for one in read_columns(path) for name in (one.name, *one.aliases)]
+        # times of a group of channels are no channel
+        return [CLOCK, *(f"{name} [{unit}]" if unit else name for name, unit in called if name != CLOCK)]
+    except (OSError, ValueError):
         return []
 
 
@@ -73,12 +81,10 @@ def _head(name: str, wanted: str, known: list[str]) -> Head:
             return Head(wanted, None)
         hint = near(wanted, known) or near(split(wanted)[0], [split(head)[0] for head in known])
         remedy = f"the columns are {listed(known)}{hint}"
-        if len(known) == 1 and ";" in known[0]:
-            remedy = "separate the columns with commas, not with semicolons"
         raise FitError(name, f"has no column {wanted!r}", remedy)
     head, units = found[0], UNITS[name]
     try:
-        head.factor(units)
+        head.scale(units)
     except QuantityError as bad:
         raise FitError(name, f"column {head.text!r} {bad.message}", bad.remedy) from None
     # a name with a unit gives it to a head without
@@ -88,5 +94,6 @@ def _head(name: str, wanted: str, known: list[str]) -> Head:
     return Head(text, parse(head.unit).powers != parse(units[0]).powers)
 
 
-def _column(path: str | Path, head: Head, time: Head) -> Array:
-    return np.array(Column(str(path), head.text, time=time.text).points)[:, 1]
+def _table(path: str | Path, head: Head, time: Head) -> Array:
+    """Times and values of a column, a row each."""
+    return np.array(Column(str(path), head.text, time=time.text).points)

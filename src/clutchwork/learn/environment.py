@@ -41,21 +41,14 @@ def environment(
 
     Use it to learn a controller, or to tune one: any optimiser over episodes.
 
-    Parameters:
-        model: a Driveline or a System.
-        t_end: end of an episode [s], which then is `truncated`.
-        actions: what the agent sets, signals or parameters by name, each with (low, high) in its unit: an action of -1
-            is low, 1 is high.
-        observations: signals by name with (low, high): seen as -1 to 1, and held there beyond it, as by a sensor; names
-            alone, or None as the range, are seen as they are.
-        reward: a function of a `Moment`, what the step was like; a finite number.
-        period: time between two actions [s].
-        ends: a function of a `Moment`: whether the episode is over, `terminated`. A run that cannot go on is too.
-        vary: what differs from one episode to the next, by names of `System.changed`: (low, high), drawn evenly, a list
-            to choose from, or a function of a numpy Generator.
-        start: a `State` to begin at, in place of the start of the model; nothing can vary then.
-        render_mode: "rgb_array" for pictures of the episode so far, by `render`; None for none.
-        changes: options of a run, by name.
+    Parameters: t_end, end of an episode [s], which then is `truncated`; actions, signals or parameters by name, each
+    with (low, high) in its unit, where an action of -1 is low and 1 is high; observations, signals by name with (low,
+    high), seen as -1 to 1 and held there beyond it, as by a sensor, or names alone, or None as the range: seen as they
+    are; reward, a function of a `Moment`, what the step was like, that returns a finite number; period, time between
+    two actions [s]; ends, a function of a `Moment`: whether the episode is over, `terminated`, as it also is when the
+    run cannot go on; vary, what differs from one episode to the next, by names of `System.changed`: (low, high), drawn
+    evenly, a list to choose from, or a function of a numpy Generator; start, a `State` to begin at, where nothing
+    varies; render_mode, "rgb_array" for pictures of the episode so far by `render`; changes, options of a run.
 
     UseError and ModelError name what is wrong with all of them.
     """

@@ -106,6 +106,6 @@ class DrivelineEnv(Env[Observation, Observation]):
             return None
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-        canvas = FigureCanvasAgg(self.sim.run.plot())
+        canvas: Any = FigureCanvasAgg(self.sim.run.plot())
         canvas.draw()
         return np.asarray(canvas.buffer_rgba())[..., :3].copy()

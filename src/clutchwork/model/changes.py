@@ -12,6 +12,7 @@ from typing import Any
 
 from clutchwork.base.errors import ModelError, Problem, near
 from clutchwork.base.shown import shown
+from clutchwork.declare.given import Wanted, field_in_si, settled
 from clutchwork.declare.node import (
     Component,
     HeatFlow,
@@ -22,10 +23,12 @@ from clutchwork.declare.node import (
     ThermalNode,
     is_reference,
 )
-from clutchwork.declare.schema import specs
+from clutchwork.declare.schema import Spec, specs
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
 from clutchwork.model.problems import NODE_FIELDS
+from clutchwork.model.thermal import NODE_FIELDS as THERMAL_FIELDS
+from clutchwork.model.thermal import node_kind
 
 # sorts of fields that are joined, named or called, and make another driveline
 FIXED = ("port", "thermal", "text", "function")
@@ -83,6 +86,31 @@ def changeable(thing: Any) -> dict[str, str]:
     if isinstance(thing, Component | Law | Signal):
         return {item.name: item.name for item, spec in specs(type(thing)) if spec.what not in FIXED}
     return {}
+
+
+def in_si(aim: Target, value: Any) -> Any:
+    """A value for a target in SI where it has a unit that fits; any other as it is."""
+    thing, driven = aim.owner, None
+    for name in aim.path[:-1]:
+        spec = _spec(thing, name)
+        if spec.what in ("signal", "alternative"):
+            fits = settled(name, spec, type(thing), vars(thing))
+            driven = Wanted(fits.unit, fits.units)
+        thing = getattr(thing, name)
+    name = aim.path[-1]
+    spec = _spec(thing, name)
+    if spec.what == "law" or spec.flag or spec.choices:
+        return value
+    return field_in_si(value, settled(name, spec, type(thing), vars(thing)), driven)
+
+
+def _spec(thing: Any, name: str) -> Spec:
+    """What is declared of a field."""
+    if isinstance(thing, Node):
+        return [*NODE_FIELDS[thing.domain].values()][PLACES.index(name)]
+    if isinstance(thing, ThermalNode):
+        return THERMAL_FIELDS[node_kind(thing)][name]
+    return next(spec for item, spec in specs(type(thing)) if item.name == name)
 
 
 def all_names(model: Model) -> Iterator[str]:

@@ -9,10 +9,12 @@ from typing import Any
 
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import shown
+from clutchwork.declare.given import settled
 from clutchwork.declare.node import Component, Domain, Law, Node, Signal, ThermalNode, is_reference
-from clutchwork.declare.quantity import within
+from clutchwork.declare.quantity import has_unit, within
 from clutchwork.declare.schema import Role, Spec, inputs, specs
 from clutchwork.declare.speech import kinds_of, say
+from clutchwork.declare.units import has_comma, split
 from clutchwork.declare.wanted import wanted
 from clutchwork.model.numbers import At as At
 from clutchwork.model.numbers import curve_problems, instead, is_right, list_problems
@@ -81,7 +83,11 @@ def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Pro
             continue
         if spec.what == "port" and type(value) is Node and not spec.domain:
             continue
-        place = at.inner(item.name, at.unit if spec.unit == "*" else spec.unit)
+        if spec.unit == "*":
+            place = At(at.path, at.inner(item.name).quantity, at.unit, units=at.units)
+        else:
+            spec = settled(item.name, spec, cls, values) if has_unit(value) or isinstance(value, Signal) else spec
+            place = at.inner(item.name, spec.unit)
         if value is MISSING:
             yield place.problem("is missing", remedy=f"give {wanted(spec, place.unit)}: {spec.doc}")
         else:
@@ -138,12 +144,12 @@ def _shown(value: Any) -> str:
 
 def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if isinstance(value, Signal):
-        found = list(object_problems(value, at))
+        found = list(object_problems(value, at._replace(units=spec.units)))
         yield from found
         for name, message, remedy in () if found else value.unit_problems((at.unit, *spec.units)):
             yield at.inner(name).problem(message, remedy=remedy)
         yield from () if found else _beyond_bounds(value, spec, at)
-    elif isinstance(value, Real) and not isinstance(value, bool):
+    elif (isinstance(value, Real) and not isinstance(value, bool)) or _is_measured(value):
         yield from number_problems(value, spec, at)
     # whether a reference leads to something of that unit is checked where the driveline is known
     elif not is_reference(value):
@@ -153,6 +159,11 @@ def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         if callable(value):
             remedy = "a function is a controller: give cw.Sampled(function, period), with the period in s"
         yield at.problem(f"must be a number{within(at.unit)} or a signal", value=shown(value), remedy=remedy)
+
+
+def _is_measured(value: Any) -> bool:
+    """Whether a value is a number with a unit, or meant as one."""
+    return has_unit(value) and (not isinstance(value, str) or split(value) is not None or has_comma(value))
 
 
 def _beyond_bounds(signal: Signal, spec: Spec, at: At) -> Iterator[Problem]:
@@ -195,7 +206,7 @@ def _peak(law: Law, at: At) -> Iterator[Problem]:
 
 
 def _text(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
-    if not isinstance(value, str) or not value:
+    if not (value is None and spec.optional) and (not isinstance(value, str) or not value):
         yield at.problem("must be a string", value=shown(value), remedy=spec.doc)
 
 

@@ -9,17 +9,22 @@ from typing import Any, NamedTuple
 
 from clutchwork.base.errors import Problem
 from clutchwork.base.shown import listed, shown
-from clutchwork.declare.quantity import within
+from clutchwork.declare.quantity import PLAIN, QuantityError, has_unit, in_si, within
 from clutchwork.declare.schema import Spec
+from clutchwork.declare.units import Scale
 
 
 class At(NamedTuple):
-    """Place of a value: path of the element, name of the quantity, its SI unit, factor to SI from plain numbers."""
+    """Place of a value: path of the element, name of the quantity, its SI unit, and what puts plain numbers into SI.
+
+    `units` are further ones that the values of a signal may have.
+    """
 
     path: str
     quantity: str
     unit: str = ""
-    factor: float = 1.0
+    scale: Scale = PLAIN
+    units: tuple[str, ...] = ()
 
     def problem(self, message: str, value: str = "", remedy: str = "") -> Problem:
         """A problem at this place."""
@@ -34,6 +39,9 @@ def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A finite number within its bounds."""
     if is_right(value, spec):
         return
+    if has_unit(value):
+        yield unit_problem(value, spec, at)
+        return
     if isinstance(value, bool) or not isinstance(value, Real):
         yield at.problem(f"must be a number{within(at.unit)}", value=shown(value), remedy="write a plain number")
         return
@@ -46,6 +54,16 @@ def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield at.problem(f"must be {spec.bound} {unit}".rstrip(), value=given, remedy=instead(number, spec))
     elif spec.whole and number != int(number):
         yield at.problem("must be a whole number", value=given, remedy=_for("round it", spec))
+
+
+def unit_problem(value: Any, spec: Spec, at: At) -> Problem:
+    """Why a string or a quantity of pint is not one of this place."""
+    try:
+        in_si(value, at.unit, (*spec.units, *at.units), difference=spec.difference)
+    except QuantityError as bad:
+        return at.problem(bad.message, bad.value, bad.remedy)
+    # put in after the object was made, such as into a list of points
+    return at.problem(f"must be a number{within(at.unit)}", shown(value), "write a plain number")
 
 
 def is_right(value: Any, spec: Spec) -> bool:
@@ -77,17 +95,17 @@ def _for(remedy: str, spec: Spec) -> str:
 
 def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A list of numbers, or of equally long lists of them."""
-    if isinstance(value, str) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:
+    if has_unit(value) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:
         yield at.problem("must be a list of numbers", value=shown(value), remedy=f"write [x, y, ...]: {spec.doc}")
         return
-    rows = [row if hasattr(row, "__len__") and not isinstance(row, str) else [row] for row in value]
+    rows = [row if hasattr(row, "__len__") and not has_unit(row) else [row] for row in value]
     if len({len(row) for row in rows}) > 1:
         lengths = listed(len(row) for row in rows)
         yield at.problem("has rows of different lengths", value=lengths, remedy="give every row as many numbers")
         return
     before = None
     for number, item in enumerate((item for row in rows for item in row), 1):
-        place = At(at.path, f"{at.quantity}, number {number}", at.unit)
+        place = At(at.path, f"{at.quantity}, number {number}", at.unit, units=at.units)
         found = list(number_problems(item, spec, place))
         if not found and spec.rising == "strictly" and before is not None and float(item) <= before:
             message = f"comes after {before:g} {at.unit}" if float(item) < before else "appears twice"
@@ -104,12 +122,12 @@ def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if spec.constant and isinstance(value, Real):
         yield from number_problems(value, spec, at)
         return
-    if isinstance(value, str) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:
+    if has_unit(value) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:
         yield at.problem("must be a list of points", value=shown(value), remedy=f"write [[x, y], ...]: {spec.doc}")
         return
     before = None
     for number, point in enumerate(value, 1):
-        place = At(at.path, f"{at.quantity}, point {number}", at.unit)
+        place = At(at.path, f"{at.quantity}, point {number}", at.unit, units=at.units)
         # one mistake is enough: those behind it often follow from it
         found = list(_point(point, spec, place)) or list(_order(before, point, spec, place))
         if found:
@@ -120,10 +138,11 @@ def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
 
 def _point(point: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A pair of finite numbers."""
-    if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
+    if has_unit(point) or not hasattr(point, "__len__") or len(point) != 2:
         yield at.problem("must be a pair of numbers", value=shown(point), remedy="write [x, y]")
         return
-    plain, bounded = Spec("param", spec.unit_x, ""), Spec("param", at.unit, "", at_least=spec.at_least)
+    plain = Spec("param", spec.unit_x, "", units=spec.units_x)
+    bounded = Spec("param", at.unit, "", at_least=spec.at_least, units=(*spec.units, *at.units))
     for number, part in zip(point, (plain, bounded), strict=True):
         yield from number_problems(number, part, At(at.path, at.quantity, part.unit))
 

@@ -24,7 +24,7 @@ def settings_problems(settings: Mapping[str, Any]) -> Iterator[Problem]:
                 "is an unknown key" + near(name, SIMULATION), remedy=f"known keys: {listed(SIMULATION)}"
             )
         elif row.spec.what == "numbers" and value is not None:
-            yield from _instants(value, row.spec, at.inner(name, row.spec.unit))
+            yield from _instants(row.in_si(value), row.spec, at.inner(name, row.spec.unit))
         elif fault := row.fault(value):
             yield place.problem(fault.message, fault.value, fault.remedy)
     if settings.get("dt") is not None and settings.get("times") is not None:
@@ -42,8 +42,8 @@ def _instants(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
 
 
 def plain_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Settings without mistakes as a model file holds them; what is None is left out."""
-    return {name: _plain(value) for name, value in settings.items() if value is not None}
+    """Settings without mistakes in SI, as a model file holds them; what is None is left out."""
+    return {name: _plain(SIMULATION[name].in_si(value)) for name, value in settings.items() if value is not None}
 
 
 def _plain(value: Any) -> Any:

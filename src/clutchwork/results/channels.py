@@ -75,7 +75,7 @@ class Channels(Mapping[str, Channel]):
         try:
             return self._channels[name]
         except KeyError:
-            raise UnknownName(self._unknown(name)) from None
+            raise UnknownName(self.fault(name)) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._channels)
@@ -86,7 +86,8 @@ class Channels(Mapping[str, Channel]):
     def __contains__(self, name: object) -> bool:
         return name in self._channels
 
-    def _unknown(self, name: str) -> str:
+    def fault(self, name: str) -> str:
+        """Why there is no signal of a name."""
         for ending, option in self._left_out.items():
             if isinstance(name, str) and name.endswith(ending):
                 return f"{name} was not computed: run with {option}=True"
@@ -103,7 +104,8 @@ class Channels(Mapping[str, Channel]):
         yield from self._thermal()
         start = self._start("input")
         for index, (name, unit) in enumerate(self._wiring.inputs):
-            yield name, _column(start + index, unit)
+            if name not in self._wiring.unused:
+                yield name, _column(start + index, unit)
 
     def _start(self, part: str) -> int:
         return int(self._wiring.columns[part].start)

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import Branch, Wiring
 from clutchwork.base.classes import dataclass
+from clutchwork.base.extras import need
 from clutchwork.base.text import columns
 from clutchwork.declare.node import Component, Work
 from clutchwork.results.events import Events
@@ -62,8 +63,8 @@ class EnergyBalance:
         parts = [*self.sources.values(), *self.heat.values(), self.kinetic, self.elastic]
         return 0.5 * sum(abs(part) for part in parts)
 
-    def as_dict(self) -> dict[str, Any]:
-        """Plain numbers for JSON."""
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers for JSON, the unit at the end of each name."""
         return {
             "input_J": self.input,
             "sources_J": dict(self.sources),
@@ -76,8 +77,29 @@ class EnergyBalance:
             "residual_J": self.residual,
         }
 
+    def to_pandas(self) -> Any:
+        """A pandas DataFrame with one line for each energy: its kind, whose it is, and how much [J]. Needs pandas."""
+        pandas = need("pandas", "tables", "a table")
+        lines = [("source", name, work) for name, work in self.sources.items()]
+        lines += [("kinetic", "", self.kinetic), ("elastic", "", self.elastic)]
+        lines += [("heat", name, heat) for name, heat in self.heat.items()]
+        lines += [("thermal", name, heat) for name, heat in self.thermal.items()]
+        lines += [("impulses", "", self.impulses), ("untracked", "", self.untracked), ("residual", "", self.residual)]
+        frame = pandas.DataFrame(lines, columns=["kind", "name", "energy"])
+        frame.attrs["units"] = {"energy": "J"}
+        return frame
+
     def __str__(self) -> str:
         """A table for reading."""
+        return columns([("energy", "J"), *self._lines()], right={1})
+
+    def _repr_html_(self) -> str:
+        """A table for a notebook."""
+        from clutchwork.base import html
+
+        return html.table(("energy", "J"), self._lines(), right={1}, most=10 * html.MOST_ROWS)
+
+    def _lines(self) -> list[tuple[str, str]]:
         lines = [(f"  {name}", f"{work:z.3f}") for name, work in self.sources.items() if work]
         lines.insert(0, ("work of sources", f"{self.input:z.3f}"))
         lines += [
@@ -93,7 +115,7 @@ class EnergyBalance:
             lines += [("heat not assigned to a thermal node", f"{self.untracked:z.3f}")]
         share = self.residual / self.turnover if self.turnover else 0.0
         lines += [("residual", f"{self.residual:.3e}"), ("residual / turnover", f"{share:.1e}")]
-        return columns([("energy", "J"), *lines], right={1})
+        return lines
 
 
 def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> EnergyBalance:

@@ -4,19 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import astuple, fields
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
+from clutchwork.base.extras import need
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import columns
 from clutchwork.declare.layout import CAUSES, EVENT, MODES
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+
+# units of the fields of an event that have one
+UNITS = {
+    "time": "s",
+    "slip_acceleration": "rad/s2",
+    "torque_before": "N m",
+    "torque_after": "N m",
+    "energy_before": "J",
+    "energy_after": "J",
+}
 
 
 @dataclass(frozen=True)
@@ -94,23 +106,45 @@ class Events(Sequence[Event]):
 
     def __str__(self) -> str:
         """A table for reading."""
-        head = ("time s", "element", "from", "to", "cause", "slip acc rad/s2", "torque before", "torque after N m")
+        head = ("time s", "element", "from", "to", "cause", "slip acc rad/s2", "torque before N m", "torque after N m")
         lines = [tuple(_cells(event)) for event in self]
         return columns([head, *lines], right={0, 5, 6, 7}) if lines else "no events"
 
     __repr__ = __str__
+
+    def to_pandas(self) -> Any:
+        """A pandas DataFrame with one line for each event; `frame.attrs["units"]` holds the units. Needs pandas."""
+        pandas = need("pandas", "tables", "a table")
+        words = ("element", "before", "after", "cause")
+        frame = pandas.DataFrame(
+            {
+                item.name: pandas.Series(
+                    [getattr(e, item.name) for e in self], dtype=str if item.name in words else float
+                )
+                for item in fields(Event)
+            }
+        )
+        frame.attrs["units"] = dict(UNITS)
+        return frame
+
+    def _repr_html_(self) -> str:
+        """A table for a notebook."""
+        from clutchwork.base import html
+
+        head = ("time, s", "element", "from", "to", "cause", "slip acceleration, rad/s2")
+        torques = ("torque before, N m", "torque after, N m")
+        lines = map(_cells, self)
+        return html.table((*head, *torques), lines, right={0, 5, 6, 7}) if self else html.paragraph("no events")
 
     def to_csv(self, path: str | Path) -> None:
         """Write every field of every event; the head of each column has its unit."""
         import csv
         from pathlib import Path
 
-        units = {"time": "s", "slip_acceleration": "rad/s2", "torque_before": "N m", "torque_after": "N m"}
-        units |= {"energy_before": "J", "energy_after": "J"}
         names = [item.name for item in fields(Event)]
         with Path(path).open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([f"{name} [{units[name]}]" if name in units else name for name in names])
+            writer.writerow([f"{name} [{UNITS[name]}]" if name in UNITS else name for name in names])
             writer.writerows([_exact(value) for value in astuple(event)] for event in self)
 
 

@@ -48,7 +48,7 @@ def ratio(system: System, closed: Collection[str], shafts: tuple[str, str]) -> f
 
     None when it is not determined; infinite when the second shaft is held.
     """
-    free = _free_motions(system, closed)
+    free = free_motions(system, closed)
     names = [node.name for node in system.nodes]
     upper, lower = (free[names.index(name)] for name in shafts)
     size = float(np.max(np.abs(np.concatenate([upper, lower])), initial=0.0))
@@ -103,7 +103,7 @@ def phases(run: Recorded, shafts: tuple[str, str]) -> list[Phase]:
     return made
 
 
-def _free_motions(system: System, closed: Collection[str]) -> NDArray[np.float64]:
+def free_motions(system: System, closed: Collection[str]) -> NDArray[np.float64]:
     """Node speeds of all motions that closed contacts and rigid springs leave, one per column."""
     rigid = [contact.name in closed for contact in system.contacts]
     springs = [branch.component.elastic for branch in wiring(system).elements]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -38,8 +39,28 @@ class Recorded(Protocol):
         """What happened to the contacts."""
 
     @property
+    def t_end(self) -> float:
+        """The end that was asked for [s]."""
+
+    @property
+    def status(self) -> str:
+        """Word for how it ended: "done", or why the run stopped early."""
+
+    @property
+    def message(self) -> str:
+        """What is to be said of the status; empty when done."""
+
+    @property
     def finished(self) -> bool:
         """Whether the run reached its end time."""
+
+    @property
+    def statistics(self) -> Mapping[str, float]:
+        """What the solver did."""
+
+    @property
+    def repeat(self) -> Callable[[Any], Any]:
+        """Computes it again at other instants [s]."""
 
     @property
     def wiring(self) -> Wiring:

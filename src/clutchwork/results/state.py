@@ -104,7 +104,7 @@ class State:
 
 @kept
 def fingerprint(system: System) -> str:
-    """What tells a System from all others, found once."""
+    """What a System is recognised by, found once."""
     return hashlib.sha256(system.to_bytes()).hexdigest()
 
 
@@ -125,7 +125,7 @@ def _refuse_no_path(call: str, path: object) -> None:
 
 
 def _read_head(data: bytes) -> dict[str, Any]:
-    """The fields that are no bytes; ValueError where they are not what they must be."""
+    """The fields beside the bytes; ValueError where they are not what they must be."""
     import json
 
     head = json.loads(data)

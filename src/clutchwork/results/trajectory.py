@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -19,16 +19,17 @@ from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, NAMES
 from clutchwork.results.channels import Channels, Units, channels
 from clutchwork.results.events import Events
+from clutchwork.results.exchange.exports import Exports
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from matplotlib.figure import Figure
 
     from clutchwork.assembly.system import System
     from clutchwork.results.dependence import DependentPhase
     from clutchwork.results.energy import EnergyBalance
     from clutchwork.results.events import Event
+    from clutchwork.results.hints.hint import Hints
+    from clutchwork.results.plot.canvas import Picture
     from clutchwork.results.state import State
 
 Array = NDArray[np.float64]
@@ -46,12 +47,12 @@ class SimulationError(ClutchworkError, RuntimeError):
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory:
+class Trajectory(Exports):
     """The result of a run.
 
     `run.time` [s] and `run["engine.speed"]` are arrays over the same instants; an instant that appears twice gives
     the left and the right limit at an event. `run.names` lists all signals, `run.units` their units,
-    `run.events`, `run.energy` and `run.statistics` what else is known.
+    `run.events`, `run.energy` and `run.statistics` what else is known, `run.hints` what may not be meant.
     """
 
     system: System
@@ -106,6 +107,18 @@ class Trajectory:
         """A signal over `time`; KeyError with near names when there is none of that name."""
         return self.channels[name].evaluate(self.rows)
 
+    def in_units(self, name: str, unit: str) -> NDArray[Any]:
+        """A signal over `time` in another unit: `run.in_units("engine.speed", "rpm")`.
+
+        UseError, a TypeError, where the unit is not one of the signal, with those that are; KeyError with near names
+        where there is no such signal.
+        """
+        from clutchwork.results.units import converter
+
+        self.channels[name]
+        found: NDArray[Any] = converter(self, {name: unit}).values(self, name)
+        return found
+
     def __contains__(self, name: object) -> bool:
         return name in self.channels
 
@@ -153,43 +166,73 @@ class Trajectory:
 
         return dependent_phases(self)
 
-    def to_csv(self, path: str | Path, names: Any = None) -> None:
-        """Write signals (all by default) as columns `name [unit]` with 17 digits, the time first."""
-        from pathlib import Path
+    @cached_property
+    def hints(self) -> Hints:
+        """What an expert would say of this run and its model, with numbers and a remedy; print it to read it.
 
-        from clutchwork.results.export import to_csv
+        Looked for when it is first asked for. A run whose output has instants of its own is repeated for that.
+        """
+        from clutchwork.results.hints.registry import of_run
 
-        to_csv(self, Path(path), self._chosen(names))
-
-    def to_pandas(self, names: Any = None) -> Any:
-        """A pandas DataFrame over time; needs pandas."""
-        from clutchwork.results.export import to_pandas
-
-        return to_pandas(self, self._chosen(names))
-
-    def to_xarray(self, names: Any = None) -> Any:
-        """An xarray Dataset with units as attributes; needs xarray."""
-        from clutchwork.results.export import to_xarray
-
-        return to_xarray(self, self._chosen(names))
+        return of_run(self)
 
     @explained("plot")
-    def plot(self, path: str | Path | None = None, *, lockup: Event | None = None) -> Figure:
-        """Picture of speeds, lock-up, inputs and torques; written to `path` when given. Needs matplotlib.
+    def plot(
+        self,
+        *signals: str | Sequence[str] | Path,
+        unit: str | Sequence[str] | None = None,
+        path: str | Path | None = None,
+        zoom: tuple[float, float] | None = None,
+        events: bool | str | Sequence[str] | Events | Event = True,
+        lockup: Event | None = None,
+        measured: Mapping[str, Any] | None = None,
+    ) -> Picture:
+        """Picture of some signals, or of speeds, lock-up, inputs, torques, states and temperatures. Needs matplotlib.
 
-        Parameters: lockup, the event to look at closely, by default the last one in which a contact locks.
+        Parameters: signals, names such as "c1.torque" and wildcards such as "c1.*", drawn with a panel for each unit; a
+        list of names is a panel of its own, with a second axis where it has two units. A string that ends in .png, .svg
+        or .pdf is the path. unit, takes only signals in it ("N m"), of all where none is named; path, where the picture
+        is written: png, svg or pdf by its ending; zoom, (begin, end) [s], computed anew on a fine grid; events, which
+        ones are marked: True for all unless there are more than 30, False, contacts by name, or events of the run;
+        lockup, the event to look at closely where nothing is named, by default the last one in which a contact locks;
+        measured, samples by the name of the signal: (times [s], values in SI), a `Column`, or a pandas Series.
+
+        The figure of matplotlib that it returns shows itself in a notebook. docs/guide/pictures.md
         """
-        from clutchwork.results.plot import picture
+        from clutchwork.results.plot.chosen import Chosen
+        from clutchwork.results.plot.run import plot
 
-        return picture(self, path, lockup=lockup)
+        chosen = Chosen(signals, unit, path, zoom, events, measured)
+        return plot(self, chosen, lockup)
 
-    def _chosen(self, names: Any) -> tuple[str, ...]:
-        if names is None:
-            return self.names
-        chosen = (names,) if isinstance(names, str) else tuple(names)
-        for name in chosen:
-            self.channels[name]
-        return chosen
+    @explained("explore")
+    def explore(
+        self,
+        *signals: str | Sequence[str] | Path,
+        unit: str | Sequence[str] | None = None,
+        path: str | Path | None = None,
+        zoom: tuple[float, float] | None = None,
+        events: bool | str | Sequence[str] | Events | Event = True,
+        measured: Mapping[str, Any] | None = None,
+        points: int | None = 20_000,
+    ) -> Any:
+        """The same as `plot`, to zoom into and to hover over in a browser or a notebook. Needs plotly.
+
+        Parameters: those of `plot`; path, one html file that needs no network; points, the most of each curve, none of
+        whose peaks is lost, or None for all of them. What is left out stays out when you zoom in;
+        zoom=(begin, end) shows every detail of a stretch.
+
+        Returns a figure of plotly.
+        """
+        from clutchwork.results.plot.chosen import Chosen
+        from clutchwork.results.plot.explore import explore
+
+        return explore(self, Chosen(signals, unit, path, zoom, events, measured), points)
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from clutchwork.base.rich import bundle
+
+        return bundle(self, "trajectory")
 
     def __repr__(self) -> str:
         end = self.time[-1] if len(self) else 0

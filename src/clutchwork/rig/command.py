@@ -3,53 +3,60 @@
 from __future__ import annotations
 
 import argparse
-import json
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.base import shell
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
+from clutchwork.base.shell import DONE, STOPPED
 
 if TYPE_CHECKING:
     from clutchwork.rig.experiment import Experiment, Result
 
-DONE, STOPPED = 0, 1
+EXAMPLES = (
+    ("clutchwork rig list", "experiments with their settings, laws, presets"),
+    ("clutchwork rig breakaway --laws stribeck,lugre", "two laws in one experiment"),
+    ("clutchwork rig stick_slip --set speed=0.05 --out out/slow", "with another setting, into a folder of your own"),
+)
 EVERY, LIST = "all", "list"
 
 
 def add_command(subparsers: Any) -> None:
     """Add `rig` to the commands of the command line."""
-    rig = subparsers.add_parser(
+    rig = shell.add_command(
+        subparsers,
         "rig",
-        help="experiments that distinguish friction laws",
-        epilog="Exit code 1: a run stopped early, other than by the chatter of a law that cannot rest.",
+        rig_command,
+        "experiments that distinguish friction laws",
+        examples=EXAMPLES,
+        codes="Exit code 1: a run stopped early, other than by the chatter of a law that cannot rest.",
     )
-    rig.set_defaults(command=rig_command)
     rig.add_argument("experiment", help="drift, stick_slip, judder ...; all; list prints experiments, laws and presets")
     rig.add_argument("--laws", metavar="A,B", help="laws to compare, or all; default: those of the experiment")
     rig.add_argument("--preset", metavar="NAME", help="where the laws take their parameters from")
     rig.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a setting")
     rig.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "rig"), help="default: out/rig")
     rig.add_argument("--signals", action="store_true", help="also write all signals of every run")
-    rig.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
+    shell.add_json(rig)
 
 
 def rig_command(asked: argparse.Namespace) -> int:
     """Perform, report, write; the exit code."""
     if asked.experiment == LIST:
-        sys.stdout.write(listing() + "\n")
+        shell.tell(listing())
         return DONE
+    shell.writable([asked.out / "table.csv"])
     done, data = True, []
     for outcome in outcomes(asked.experiment, asked.laws, asked.preset, asked.set, asked.out, asked.signals):
         done &= outcome.result.complete
         data.append(outcome.data)
         if not asked.json:
-            sys.stdout.write(outcome.text + "\n")
+            shell.tell(outcome.text)
     if asked.json:
-        sys.stdout.write(json.dumps({"experiments": data}, indent=2) + "\n")
+        shell.tell_json({"experiments": data})
     return DONE if done else STOPPED
 
 
@@ -63,7 +70,7 @@ class Outcome:
     @property
     def text(self) -> str:
         """The report."""
-        return "\n".join([str(self.result), "", *(f"wrote {path}" for path in self.files), ""])
+        return "\n".join([str(self.result), "", *shell.wrote(self.files), ""])
 
     @property
     def data(self) -> dict[str, Any]:

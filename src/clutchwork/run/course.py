@@ -31,10 +31,10 @@ class Act(NamedTuple):
     kind: str  # "input", "release", "param" or "control"
     name: str
     value: Any  # None: that of the model
-    numbers: Numbers  # what the core is told, by place
+    numbers: Numbers  # what the core is given, by place
 
     def apply(self, run: Any) -> None:
-        """Tell the core."""
+        """Do it in the core."""
         for place, value in self.numbers:
             if self.kind == "param":
                 run.set_param(place, value)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,33 +9,21 @@ from numpy.typing import NDArray
 
 from clutchwork.base.errors import OptionError
 from clutchwork.base.shown import shown
-from clutchwork.declare.options import MOST_COUNTED, MOST_ROWS, Options
+from clutchwork.declare.options import Options, instants
+from clutchwork.results.raster import uniform
 
 
 def output_grid(options: Options, t_end: float) -> NDArray[np.float64] | None:
     """The wanted output instants [s], or None when the solver's steps decide."""
     if options.dt is not None:
-        return _uniform(options.dt, options.t_start, t_end)
+        return uniform(options.dt, options.t_start, t_end)
     return None if options.times is None else _given(options.times, options.t_start, t_end)
 
 
-def _uniform(dt: float, begin: float, t_end: float) -> NDArray[np.float64]:
-    """begin, begin + dt ... and t_end; a last interval that is only round-off long is dropped."""
-    instants = (t_end - begin) / dt * (1.0 + 1e-12)
-    count = math.floor(instants) if math.isfinite(instants) else MOST_COUNTED
-    if count > MOST_ROWS:
-        fault = f"dt is {dt:g} s: {count:.6g} instants up to {t_end:g} s do not fit into memory; use a larger dt"
-        raise OptionError([fault])
-    grid: NDArray[np.float64] = np.minimum(begin + np.arange(count + 1) * dt, t_end)
-    if t_end - grid[-1] > 1e-9 * dt:
-        return np.append(grid, t_end)
-    grid[-1] = t_end
-    return grid
-
-
 def _given(times: Sequence[float] | NDArray[np.float64], begin: float, t_end: float) -> NDArray[np.float64]:
+    given = times if isinstance(times, str) else instants(times)
     try:
-        grid = np.array(times, dtype=float)
+        grid = np.array(given, dtype=float)
     except (TypeError, ValueError):
         raise OptionError([f"times are {shown(times)}: they must be a sequence of numbers [s]"]) from None
     if grid.ndim != 1 or grid.size == 0:

@@ -15,6 +15,7 @@ from clutchwork.run.course import Course
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, float], None]
+Told = Callable[[float], None]
 
 FIRST_CHUNK = 512
 LARGEST_CHUNK = 16_384
@@ -79,7 +80,7 @@ def _joined(parts: list[Array], nothing: Array) -> Array:
     return parts[0] if len(parts) == 1 else np.concatenate([nothing, *parts])
 
 
-def record(recording: Recording, t_end: float, grid: Array | None, course: Course, progress: Progress | None) -> None:
+def record(recording: Recording, t_end: float, grid: Array | None, course: Course, progress: Told | None) -> None:
     """Run to the end, or until the core stops; a grid of None records the solver's steps."""
     run = recording.run
     start = begin = run.time
@@ -87,15 +88,15 @@ def record(recording: Recording, t_end: float, grid: Array | None, course: Cours
     for number, stop in enumerate(course.stops(begin, t_end)):
         acted = course.act(run, begin, number) or (number == 0 and recording.continued)
         if grid is None:
-            _steps(recording, stop, t_end, acted, progress)
+            _steps(recording, stop, acted, progress)
         else:
-            _grid(recording, stop, t_end, _part(grid, begin, stop, begin == start, stop == t_end), progress)
+            _grid(recording, stop, _part(grid, begin, stop, begin == start, stop == t_end), progress)
         if recording.status != DONE:
             return
         begin = stop
 
 
-def _steps(recording: Recording, stop: float, t_end: float, acted: bool, progress: Progress | None) -> None:
+def _steps(recording: Recording, stop: float, acted: bool, progress: Told | None) -> None:
     """Record every step of the solver, in buffers that grow."""
     run, size = recording.run, FIRST_CHUNK
     skip_at = -1.0
@@ -109,13 +110,13 @@ def _steps(recording: Recording, stop: float, t_end: float, acted: bool, progres
         first = int(np.searchsorted(times[:filled], skip_at, "right"))
         recording.add(times[first:filled].copy(), rows[first:filled].copy())
         if progress is not None:
-            progress(run.time, t_end)
+            progress(run.time)
         if recording.status not in (ROWS_FULL, EVENTS_FULL):
             return
         size = min(2 * size, LARGEST_CHUNK)
 
 
-def _grid(recording: Recording, stop: float, t_end: float, times: Array, progress: Progress | None) -> None:
+def _grid(recording: Recording, stop: float, times: Array, progress: Told | None) -> None:
     """Record the given instants, all of them up to the stop."""
     # each stretch ends in a step of its own, so that there are stretches only where somebody is told of them
     told = progress is not None and len(times) > LONG_GRID
@@ -124,7 +125,7 @@ def _grid(recording: Recording, stop: float, t_end: float, times: Array, progres
     for cut in cuts:
         _stretch(recording, float(times[cut]), times[first:cut])
         if progress is not None:
-            progress(recording.run.time, t_end)
+            progress(recording.run.time)
         if recording.status != DONE:
             return
         first = cut

@@ -17,9 +17,10 @@ from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, caller
+from clutchwork.base.progress import MEASURED, followed
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
-from clutchwork.declare.options import Options
+from clutchwork.declare.options import Options, instants
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES, NOT_FINITE
 from clutchwork.results.channels import channels
 from clutchwork.results.events import from_rows
@@ -32,10 +33,11 @@ from clutchwork.run.effort import refuse_endless
 from clutchwork.run.failure import Interrupted, StoppedEarly, explain, report_faults
 from clutchwork.run.grid import output_grid
 from clutchwork.run.jumps import jump_times
-from clutchwork.run.record import Progress, Recording, record
+from clutchwork.run.record import Progress, Recording, Told, record
 from clutchwork.run.settings import merged
 
 if TYPE_CHECKING:
+    from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
 
 Array = NDArray[np.float64]
@@ -63,10 +65,16 @@ class Job:
         """Time at which it begins [s]."""
         return self.options.t_start
 
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What it cannot be repeated without beside model and options, but for Python functions."""
+        stepped = () if isinstance(self.course, Control) else ("it was stepped and set from outside",)
+        return (*(("it went on from a state",) if self.start is not None else ()), *stepped)
+
     def again(self, times: Any) -> Trajectory:
         """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
-        instants = np.sort(np.atleast_1d(np.asarray(times, dtype=float)))
-        return trajectory(replace(self, options=self.options.changed({"times": instants, "dt": None})), None)
+        wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
+        return trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
 
     def state(self, at: float) -> State:
         """Repeat it up to a time [s], and save what it is there."""
@@ -84,18 +92,19 @@ class Job:
 @explained("simulate")
 def simulate(
     model: Assembles | System,
-    t_end: float | None = None,
+    t_end: Number | None = None,
     *,
     start: State | None = None,
     options: Options | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     **changes: Unpack[OptionFields],
 ) -> Trajectory:
     """Compute the motion of a Driveline or a System from 0, or from t_start or a state on, to t_end.
 
-    Parameters: t_end [s], a point in time, wherever the run begins; start, a `State` of the same model, from which the
-    run goes on at the time of it; options, an `Options`, or its fields by name (rtol=, dt=, t_start= ...); progress, a
-    function of (time reached [s], t_end [s]) that is called now and then.
+    Parameters: t_end [s], or with a unit, "500 ms", a point in time, wherever the run begins; start, a `State` of the
+    same model, from which the run goes on at the time of it; options, an `Options`, or its fields by name (rtol=, dt=,
+    t_start= ...); progress, True for a bar of tqdm in a terminal or a notebook, or a function of (time reached [s],
+    t_end [s]) that is called now and then.
 
     What is left out is that of the settings of the model, `Driveline.simulation`, which a model file holds in its
     [simulation] table; `options` replaces all of them but t_end.
@@ -113,7 +122,8 @@ def simulate(
     refuse_endless(system.inputs, chosen.t_start, end, chosen.max_steps)
     held, changed = (start.held, start.changed) if start else ({}, {})
     control = Control(controllers(system.inputs, held), partial(channels, system), held=held, changed=changed)
-    run = trajectory(Job(system, end, chosen, control, start), progress)
+    with followed(progress, end, "simulate", "(time, t_end)", bar_format=MEASURED, unit="s") as told:
+        run = trajectory(Job(system, end, chosen, control, start), told)
     report_faults(run)
     return run
 
@@ -147,7 +157,7 @@ def _no_model(given: object) -> str:
     return f"{shown(given)} is not a model; {remedy}"
 
 
-def trajectory(job: Job, progress: Progress | None) -> Trajectory:
+def trajectory(job: Job, progress: Told | None) -> Trajectory:
     """Run, and report how it ended."""
     started = time.perf_counter()
     recording, failure = _collect(job, progress)
@@ -163,7 +173,7 @@ def trajectory(job: Job, progress: Progress | None) -> Trajectory:
     return made
 
 
-def _collect(job: Job, progress: Progress | None) -> tuple[Recording, SimulationError | None]:
+def _collect(job: Job, progress: Told | None) -> tuple[Recording, SimulationError | None]:
     """Record a run; smooth output repeats it on a grid that is known to hold every step and event."""
     grid = output_grid(job.options, job.t_end)
     first, failure = _once(job, grid, progress)
@@ -182,7 +192,7 @@ def _collect(job: Job, progress: Progress | None) -> tuple[Recording, Simulation
     return second, failure
 
 
-def _once(job: Job, grid: Array | None, progress: Progress | None) -> tuple[Recording, SimulationError | None]:
+def _once(job: Job, grid: Array | None, progress: Told | None) -> tuple[Recording, SimulationError | None]:
     run = begun(job.system, job.options, job.start)
     # what was stepped or goes on from a state is looked at without a trace
     plain = job.start is None and isinstance(job.course, Control)

@@ -1,4 +1,4 @@
-"""Column of a CSV file over time."""
+"""Column of a file over time."""
 
 from __future__ import annotations
 
@@ -14,29 +14,36 @@ from clutchwork.signals.table import pieces
 
 @component(Role.SIGNAL)
 class Column(Signal):
-    """Measured or prepared values: one column of a CSV file, linear over its time column, held outside.
+    """Measured or prepared values: one column of a file, linear over its times, held outside.
 
-    The first line of the file names the columns; the separator is a comma. Equal times make a jump. Values below a head
-    with a unit, such as `c1 [bar]`, are converted to SI, and so are times; it must fit the driven quantity. A name
-    without its unit finds that column too. Without a unit they are in SI.
+    The file is CSV, MDF (INCA, CANape), MAT (MATLAB), Parquet or NetCDF; `cw.read_columns(path)` lists what it holds.
+    Equal times make a jump. Values with a unit are converted to SI, and so are times; it must fit the driven
+    quantity. Without a unit they are in SI. The first line of a CSV file names the columns, with units such as
+    `c1 [bar]` or `oil [degC]`; the separator is a comma. A name without its unit finds that column too. A channel of
+    an MDF file has the times of its group, a vector of a MAT file those named `time` or `t` beside it, or in a
+    structure around it.
     In a model file the path is relative to that file. A file that cannot be used raises `FileError`.
     """
 
-    path: str = text("path of the CSV file", kw_only=False)
+    path: str = text("path of the file", kw_only=False)
     column: str = text("name of the column with the values", kw_only=False)
     time: str = text("name of the column with the times", default="time", kw_only=False)
     scale: float = param(
         "1", "factor on the values in SI; 1e5 for values in bar below a head without a unit", default=1.0
     )
+    group: str | None = text("group of the channel, where an MDF file has several of its name", default=None)
     folder: str = field(default="", kw_only=True, repr=False)
 
     @cached_property
     def _read(self) -> Any:
         """Times and values of the file in SI, a row each, and the head of the column."""
         # numpy is no need of the build, which imports this declaration
-        from clutchwork.signals.bases.column_file import Wanted, read
+        from clutchwork.signals.bases.column_file import Wanted
+        from clutchwork.signals.bases.measured.reading import read
 
-        return read(Path(self.folder, self.path), Wanted(self.path, self.time, self.column, self.scale))
+        return read(
+            Path(self.folder, self.path), Wanted(self.path, self.time, self.column, self.scale, self.group or "")
+        )
 
     @cached_property
     def points(self) -> tuple[tuple[float, float], ...]:
@@ -60,7 +67,7 @@ class Column(Signal):
         from clutchwork.declare.quantity import QuantityError
 
         try:
-            _ = self._read.head.factor(units)
+            _ = self._read.head.scale(units)
         except FileError:
             # its mistakes are reported as those of the file
             return []

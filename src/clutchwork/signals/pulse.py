@@ -9,7 +9,7 @@ from clutchwork.declare import Role, Segment, Signal, component, param
 class Pulse(Signal):
     """`offset`, and `offset + height` for `width` seconds once in every `period`, for the first time at `start`."""
 
-    height: float = param("*", "height of a pulse")
+    height: float = param("*", "height of a pulse", difference=True)
     period: float = param("s", "time from one pulse to the next", above=0.0)
     width: float = param("s", "duration of a pulse, shorter than the period", above=0.0)
     start: float = param("s", "time of the first pulse", default=0.0)

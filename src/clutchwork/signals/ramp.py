@@ -9,7 +9,7 @@ from clutchwork.declare import Role, Segment, Signal, component, param
 class Ramp(Signal):
     """From `offset` at `start` linearly to `offset + height` after `duration`, constant before and after."""
 
-    height: float = param("*", "change over the whole ramp")
+    height: float = param("*", "change over the whole ramp", difference=True)
     duration: float = param("s", "time that the change takes", above=0.0)
     start: float = param("s", "time at which the change starts", default=0.0)
     offset: float = param("*", "value before the ramp", default=0.0)

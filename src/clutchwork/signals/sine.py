@@ -14,7 +14,7 @@ class Sine(Signal):
     Before `start` it is `offset`.
     """
 
-    amplitude: float = param("*", "amplitude")
+    amplitude: float = param("*", "amplitude", difference=True)
     frequency: float = param("Hz", "frequency", at_least=0.0)
     phase: float = param("rad", "phase at the start", default=0.0)
     offset: float = param("*", "mean value, and value before the start", default=0.0)

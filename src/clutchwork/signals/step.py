@@ -9,7 +9,7 @@ from clutchwork.declare import Role, Segment, Signal, component, param
 class Step(Signal):
     """`offset` before `start`, `offset + height` from then on."""
 
-    height: float = param("*", "size of the jump")
+    height: float = param("*", "size of the jump", difference=True)
     start: float = param("s", "time of the jump", default=0.0)
     offset: float = param("*", "value before the jump", default=0.0)
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.errors import Problem
 from clutchwork.base.shown import shown
-from clutchwork.declare.quantity import QuantityError, in_si
+from clutchwork.declare.quantity import has_unit
 from clutchwork.declare.schema import Spec, specs
-from clutchwork.model.changes import named, target
+from clutchwork.model.changes import Target, in_si, named, target
 from clutchwork.run.course import Act, put
 from clutchwork.stepping.parameters import NEW_RUN, NOTHING, Change, changed
 from clutchwork.stepping.signals import Settable, given_by_others, signals, unknown
@@ -33,6 +33,7 @@ class Plan(NamedTuple):
 class Found(NamedTuple):
     """Where the name of a parameter leads to: its present value and its declaration."""
 
+    aim: Target
     value: Any
     spec: Spec
 
@@ -96,7 +97,7 @@ class Outside:
             faults = [unknown(self._base, name)] if known is None else list(self._faults(name, value, known))
             problems += faults
             if known is not None and not faults:
-                values[name] = in_si(value, known.spec.unit) if isinstance(value, str) else value
+                values[name] = in_si(known.aim, value) if has_unit(value) else value
         change, found = changed(self._base, self._present, self.changed, values) if values else (None, [])
         if change is None or problems:
             return Plan([], problems + found)
@@ -113,22 +114,21 @@ class Outside:
             thing = getattr(thing, word)
         known = {item.name: spec for item, spec in specs(type(thing))} if hasattr(type(thing), "kind") else {}
         spec = known.get(aim.path[-1], Spec("param", "", "value"))
-        return Found(getattr(thing, aim.path[-1]), spec)
+        return Found(aim, getattr(thing, aim.path[-1]), spec)
 
     def _faults(self, name: str, value: Any, found: Found) -> Iterator[Problem]:
         """What is wrong with a value beside what a model says of it."""
         if any(name.startswith(f"{signal}.") for signal in self.signals):
             yield Problem(name, "", PART_OF_SIGNAL[0], remedy=PART_OF_SIGNAL[1])
-        elif isinstance(value, str) and not found.spec.choices:
-            try:
-                in_si(value, found.spec.unit)
-            except QuantityError as bad:
-                yield Problem(name, "", bad.message, bad.value, bad.remedy)
-        elif found.spec.what in ("signal", "alternative", "law") and not isinstance(value, int | float | None):
+        elif (
+            not has_unit(value)
+            and found.spec.what in ("signal", "alternative", "law")
+            and not isinstance(value, int | float | None)
+        ):
             yield Problem(name, "", NOT_A_NUMBER[0], shown(value), NOT_A_NUMBER[1])
 
     def _acts(self, values: Mapping[str, Any], change: Change) -> Plan:
-        """Acts of a change that can be done; the numbers of all are told with the first."""
+        """Acts of a change that can be done; the first has the numbers of all."""
         acts, problems = list[Act](), list[Problem]()
         for name, value in values.items():
             known = self._value(name)

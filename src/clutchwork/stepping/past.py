@@ -68,7 +68,7 @@ class Past:
         return from_rows(rows, self._contacts)
 
     def trajectory(self, end: float, options: Options) -> Trajectory:
-        """All of it, repeated; how it ended is for the caller to tell."""
+        """All of it, repeated; how it ended is known to the caller."""
         job = Job(self._system, end, options.changed({"t_start": self._begin}), self._tape.copy(), self._start)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", StoppedEarly)

@@ -10,7 +10,7 @@ from clutchwork.base.errors import Problem, near
 from clutchwork.base.kept import kept
 from clutchwork.base.shown import shown
 from clutchwork.declare.node import Component, is_reference
-from clutchwork.declare.quantity import QuantityError, in_si
+from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.declare.schema import Spec, inputs, specs
 from clutchwork.declare.speech import path_of
 from clutchwork.model.fields import number_problems
@@ -38,14 +38,14 @@ class Settable(NamedTuple):
         """A number in SI, and what is wrong with it."""
         at = At(self.path, self.quantity, self.unit)
         try:
-            given = in_si(value, self.unit) if isinstance(value, str) else value
+            given = in_si(value, self.unit, self.spec.units) if has_unit(value) else value
         except QuantityError as bad:
             return 0.0, [at.problem(bad.message, bad.value, bad.remedy)]
         found = list(number_problems(given, self.spec, at))
         return (0.0 if found else float(given)), found
 
     def told(self, value: float) -> tuple[tuple[int, float], ...]:
-        """What the core is told."""
+        """What the core is given."""
         return tuple([(number, value) for number in self.numbers])
 
 
@@ -111,7 +111,7 @@ def _of(thing: Any, component: Any, inside: str) -> Iterator[tuple[str, tuple[st
 
 
 def given_by_others(system: System, name: str) -> Problem | None:
-    """Why a signal that another component gives cannot be set; None where it is no such signal."""
+    """Why a signal that another component gives cannot be set; None where it is another name."""
     linked = next((link for link in system.links if link.name == name), None)
     if linked is None:
         return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from math import inf, isfinite
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
+from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.declare.status import DONE, EVENTS_FULL
 from clutchwork.results.state import State, StateError
 from clutchwork.results.trajectory import SimulationError
@@ -40,7 +41,7 @@ OF_A_STATE = "give what sim.save(), run.state() or cw.State.load(path) returned"
 
 
 class Simulator:
-    """A run that goes on when it is told to: `advance` by a time, `set` what acts on it, read what it does.
+    """A run that goes on when it is asked to: `advance` by a time, `set` what acts on it, read what it does.
 
     Use it where something outside of the model decides: a controller, a user, another simulator. Where all is known
     before, `simulate` does it in one call. Between the steps everything is as in `simulate`: contacts lock and let go
@@ -141,7 +142,7 @@ class Simulator:
             self._stop(status, stop, raised)
 
     def _stop(self, status: int, stop: float, raised: BaseException | None) -> None:
-        """The core did not get there: tell why, with the run so far. After Ctrl-C it can go on."""
+        """The core did not get there: say why, with the run so far. After Ctrl-C it can go on."""
         self._time, self._stale = self._run.time, True
         self._past.stepped(self._time if raised is not None else stop)
         if raised is not None:
@@ -189,8 +190,8 @@ class Simulator:
     def set(self, name: str | Mapping[str, Any], value: Any = None) -> None:
         """Set a signal or a parameter from the present time on, or several at once by name.
 
-        A signal, such as "c1.pressure", holds the value [in its unit] whatever the model says, until it is set again or
-        `release` is called. A parameter, such as "c1.gain" or "c1.friction.static", keeps it too; what a run cannot
+        A signal, such as "c1.pressure", holds the value [in its unit] in place of that of the model, until it is set
+        again or released. A parameter, such as "c1.gain" or "c1.friction.static", keeps it too; what a run cannot
         change, such as an inertia, is refused. ModelError names all that is wrong at once, and nothing is set then.
         """
         if isinstance(value, float) and isinstance(name, str):
@@ -368,6 +369,11 @@ class Simulator:
             self._readout.rows[0] = state.values
         self._find_controllers()
 
+    def __reduce__(self) -> NoReturn:
+        """Refuse to be copied or pickled, with what to do instead."""
+        remedy = "keep the model and sim.save(), and begin with cw.Simulator(model, start=state)"
+        raise UseError("cw.Simulator", [f"it cannot be copied or pickled; {remedy}"])
+
     def __repr__(self) -> str:
         status = "" if self._failure is None else f", {self._failure}"
         return f"<Simulator of {shown(self._system.name)} at {self._time:g} s{status}>"
@@ -382,6 +388,14 @@ def _seconds(call: str, name: str, value: object) -> float:
     """A finite time [s]; UseError for anything else."""
     if type(value) is float and isfinite(value):
         return value
-    if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(float(value)):
+    given = _in_seconds(value) if has_unit(value) else value
+    if isinstance(given, bool) or not isinstance(given, Real) or not isfinite(float(given)):
         raise UseError(call, [f"{name} is {shown(value)}: give a number in s"])
-    return float(value)
+    return float(given)
+
+
+def _in_seconds(value: object) -> object:
+    try:
+        return in_si(value, "s")
+    except QuantityError:
+        return None

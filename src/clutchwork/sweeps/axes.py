@@ -19,8 +19,10 @@ from numpy.typing import NDArray
 from clutchwork.assembly.changes import UNKNOWN_SOURCE
 from clutchwork.assembly.patches import PLAIN, Patch, Unpatched, patches
 from clutchwork.base.errors import ModelError, Problem
+from clutchwork.declare.given import settled
 from clutchwork.declare.layout import COUNTS, FIELDS
 from clutchwork.declare.node import Component, Law, Signal, ThermalNode
+from clutchwork.declare.quantity import has_unit
 from clutchwork.declare.schema import specs
 from clutchwork.declare.speech import path_of
 from clutchwork.model.changes import Target, renewed, targets_of
@@ -314,6 +316,8 @@ def _plain_number(aim: Target) -> Any:
 def _number_problems(value: Any, spec: Any, aim: Target) -> Iterable[Problem]:
     if is_right(value, spec):
         return ()
+    if has_unit(value):
+        spec = settled(aim.path[-1], spec, type(aim.owner), vars(aim.owner))
     return list(number_problems(value, spec, At(path_of(aim.owner), ".".join(aim.path), spec.unit)))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import re
 import sys
 from pathlib import Path
@@ -11,10 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base import shell
 from clutchwork.base.errors import UseError, near
+from clutchwork.base.shell import DONE, INTERRUPTED, STOPPED
 from clutchwork.base.text import columns
-from clutchwork.declare.options import SIMULATION
+from clutchwork.declare.options import SIMULATION, instants
 from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.units import split
 from clutchwork.face.driveline import Driveline
 from clutchwork.run.flags import add_options, given_options
 from clutchwork.sweeps import outputs as made
@@ -22,40 +24,66 @@ from clutchwork.sweeps.result import Sweep, SweepInterrupted
 from clutchwork.sweeps.sweep import ROWS, sweep
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
-DONE, STOPPED, INTERRUPTED = 0, 1, 130
-CALLS = ("at", "maximum", "minimum", "peak", "integral", "lock", "break_away")
-KNOWN = f"known: {', '.join(CALLS)}"
+# what may follow the name of a signal or contact
+CALLS = {
+    "at": "INSTANT[, INSTANT ...]",
+    "maximum": "",
+    "minimum": "",
+    "peak": "",
+    "integral": "",
+    "lock": "NUMBER",
+    "break_away": "NUMBER",
+}
+FORMS = [
+    *(f"{call}(SIGNAL{f', {more}' if more else ''})" for call, more in CALLS.items() if more != "NUMBER"),
+    *(f"{call}(CONTACT[, {more}])" for call, more in CALLS.items() if more == "NUMBER"),
+]
+KNOWN = f"known: {', '.join(FORMS)}"
+EXAMPLES = (
+    ("clutchwork sweep model.toml --vary c1.gain=4e-4:8e-4:5", "five gains: speeds at the end, and when it locks"),
+    (
+        "clutchwork sweep model.toml --vary c1.gain=4e-4:8e-4:21 --vary load.inertia=0.6,0.8 --out sweep.csv",
+        "all combinations, in a table",
+    ),
+    (
+        "clutchwork sweep model.toml --vary c1.gain=4e-4,8e-4 --outputs 'lock(c1), at(c1.slip, 0.5, 1)'",
+        "first lock-up, slip at 0.5 s and at 1 s",
+    ),
+)
+CODES = "Exit code 1: a variant stopped early, 130: interrupted; what was asked for is written all the same."
 WRITERS = {".parquet": Sweep.to_parquet, ".csv": Sweep.to_csv}
 
 
 def add_command(subparsers: Any) -> None:
     """Add `sweep` to the commands of the command line."""
-    parser = subparsers.add_parser(
+    parser = shell.add_command(
+        subparsers,
         "sweep",
-        help="run a model with many sets of values",
-        epilog="Exit code 1: a variant stopped early, 130: interrupted; what was asked for is written all the same.",
+        sweep_command,
+        "run a model with many sets of values",
+        examples=EXAMPLES,
+        codes=CODES,
     )
-    parser.set_defaults(command=sweep_command)
-    parser.add_argument("model", type=Path, help="model file, TOML or JSON")
+    shell.add_model(parser)
     parser.add_argument(
         "--vary",
         metavar="NAME=VALUES",
         action="append",
         default=[],
-        help="values in SI: FIRST:LAST:COUNT or A,B,C; given several times: all combinations",
+        help="values: FIRST:LAST:COUNT or A,B,C, in SI or with a unit behind the last one: 'c1.pressure=1,2,3 bar'; "
+        "given several times: all combinations; clutchwork check MODEL --names lists the names",
     )
     parser.add_argument(
         "--outputs",
         metavar="A,B",
-        help=f"signals at the end, or {', '.join(f'{call}(NAME)' for call in CALLS)}; "
-        "default: speeds at the end, and when contacts lock",
+        help=f"signals at the end, or {', '.join(FORMS)}; default: speeds at the end, and when contacts lock",
     )
     parser.add_argument("--threads", type=int, metavar="N", help="default: as many as there are cores")
     parser.add_argument("--out", type=Path, metavar="FILE", help="table of all variants, .parquet or .csv")
-    parser.add_argument("--json", action="store_true", help="print the results as JSON on standard output")
-    parser.add_argument("--quiet", action="store_true", help="print no report")
+    shell.add_json(parser)
+    shell.add_quiet(parser)
     add_options(parser, [name for name in SIMULATION if name not in ROWS])
 
 
@@ -63,6 +91,7 @@ def sweep_command(asked: argparse.Namespace) -> int:
     """Run, report, write; the exit code."""
     if asked.out is not None and asked.out.suffix not in WRITERS:
         raise UseError("sweep", [f"--out {asked.out}: must end in .parquet or .csv"])
+    shell.writable([asked.out])
     given = [_varied(text) for text in asked.vary]
     vary = dict(given)
     twice = [name for name in vary if [one for one, _ in given].count(name) > 1]
@@ -87,9 +116,9 @@ def _report(found: Sweep, asked: argparse.Namespace) -> None:
         WRITERS[asked.out.suffix](found, asked.out)
     files = [str(asked.out)] if asked.out is not None else []
     if asked.json:
-        sys.stdout.write(json.dumps(_data(found) | {"files": files}, indent=2) + "\n")
+        shell.tell_json(_data(found) | {"files": files})
     elif not asked.quiet:
-        sys.stdout.write("\n".join([*_text(found), *(f"wrote {path}" for path in files)]) + "\n")
+        shell.tell("\n".join([*_text(found), *shell.wrote([asked.out] if asked.out is not None else [])]))
     stopped = [number for number in np.flatnonzero(~found.finished.reshape(-1)).tolist() if found.message(number)]
     for number in stopped[:1]:
         sys.stderr.write(f"clutchwork: variant {number} {found.message(number)}\n")
@@ -122,20 +151,25 @@ def _ranges(found: Sweep) -> Iterator[tuple[str, float, float]]:
 
 
 def _varied(text: str) -> tuple[str, Any]:
-    """c1.gain=4e-4:8e-4:21, or c1.gain=4e-4,8e-4."""
+    """c1.gain=4e-4:8e-4:21, c1.gain=4e-4,8e-4, or with units, c1.pressure=1:3 bar:5."""
     name, sign, values = text.partition("=")
+    spaced = values.count(":") == 2
+    words = values.split(":")[:2] if spaced else values.split(",")
+    parts = [split(word) for word in words]
+    numbers = [part[0] for part in parts if part is not None]
+    units = {part[1] for part in parts if part is not None and part[1]}
     try:
-        if values.count(":") == 2:
-            first, last, count = values.split(":")
-            numbers: Sequence[float] = np.linspace(float(first), float(last), int(count)).tolist()
-        else:
-            numbers = [float(value) for value in values.split(",")]
-    except ValueError:
-        sign, numbers = "", []
-    if not sign or not name or not numbers:
-        remedy = "write NAME=FIRST:LAST:COUNT or NAME=A,B,C, such as c1.gain=4e-4:8e-4:21"
+        if spaced:
+            first, last = numbers
+            numbers = np.linspace(first, last, int(values.split(":")[2])).tolist()
+    except (ValueError, TypeError):
+        numbers = []
+    if not sign or not name or not numbers or None in parts or (":" in values and not spaced):
+        remedy = "write NAME=FIRST:LAST:COUNT or NAME=A,B,C, such as c1.gain=4e-4:8e-4:21 or 'c1.pressure=1:3 bar:5'"
         raise UseError("sweep", [f"--vary {text}: {remedy}"])
-    return name, numbers
+    if len(units) > 1 or (units and not parts[-1][1]):  # type: ignore[index]
+        raise UseError("sweep", [f"--vary {text}: write one unit, behind the last value: 'c1.pressure=1,2,3 bar'"])
+    return name, [f"{number!r} {unit}" for number in numbers for unit in units] or numbers
 
 
 def _outputs(text: str) -> list[Any]:
@@ -151,10 +185,18 @@ def _output(text: str) -> Any:
     if call not in CALLS:
         raise UseError("sweep", [f"--outputs {text}: no output {call!r}{near(call, CALLS, KNOWN)}"])
     try:
-        numbers = [float(part) if call == "at" else int(part) for part in rest]
+        numbers = [_instant(part) if call == "at" else int(part) for part in rest]
     except ValueError:
         raise UseError("sweep", [f"--outputs {text}: {', '.join(rest)} must be numbers"]) from None
     return getattr(made, call)(name, *([numbers] if call == "at" else numbers))
+
+
+def _instant(text: str) -> float:
+    """A time in s, or with a unit."""
+    try:
+        return float(text)
+    except ValueError:
+        return float(instants([text])[0])
 
 
 def _by_default(model: Driveline) -> list[Any]:

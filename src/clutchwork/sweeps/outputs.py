@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
+from clutchwork.declare.options import instants
 
 if TYPE_CHECKING:
     from clutchwork.results.events import Event
@@ -157,10 +158,10 @@ def at(signal: str, times: Sequence[float] | float) -> AtTimes:
 
     Parameters: signal, its name; times [s], one or several that rise.
     """
-    instants = tuple(float(time) for time in np.atleast_1d(np.asarray(times, dtype=float)))
-    if not instants or not all(0.0 <= time < np.inf for time in instants) or list(instants) != sorted(instants):
+    found = tuple(float(time) for time in np.atleast_1d(np.asarray(instants(times), dtype=float)))
+    if not found or not all(0.0 <= time < np.inf for time in found) or list(found) != sorted(found):
         raise UseError("at", [f"times are {shown(times)}: give instants [s] from zero on that rise"])
-    return AtTimes(_named("at", signal), instants)
+    return AtTimes(_named("at", signal), found)
 
 
 def maximum(signal: str) -> Extreme:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,12 +12,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import html
 from clutchwork.base.errors import ModelError, UnknownName, near
 from clutchwork.base.extras import need
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES
 from clutchwork.results.channels import Channels, channels
+from clutchwork.results.selection import chosen
 from clutchwork.run.simulation import told
 from clutchwork.sweeps.outputs import AtTimes, Computed, Integral, Output, When
 from clutchwork.sweeps.single import single
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
     from clutchwork.sweeps.variants import Variants
 
 Array = NDArray[Any]
+MOST_SHOWN = 12  # lines of the table in a notebook
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,14 +185,29 @@ class Sweep:
         told_of = ", ".join(f"{count} {name}" for name, count in ends.most_common())
         return f"<Sweep of {counted(len(self), 'variants')}: {told_of}; {', '.join(self.names)}>"
 
+    def _repr_html_(self) -> str:
+        """The first lines of the table for a notebook."""
+        units, table = self.units, dict(self.columns())
+        # the unit of a value at several instants is that of its output
+        heads = [f"{name}, {unit}" if (unit := units.get(name)) else name for name in table]
+        lines = zip(*(column[:MOST_SHOWN].tolist() for column in table.values()), strict=True)
+        cells = [[f"{cell:.6g}" if isinstance(cell, float) else str(cell) for cell in line] for line in lines]
+        more = len(self) - len(cells)
+        words = [html.paragraph(f"... and {counted(more, 'more variants')}")] if more else []
+        return html.page(html.heading(repr(self)), html.table(heads, cells, right=range(len(heads) - 1)), *words)
+
     # --------------------------------------------------------------------------------------------------------- tables
 
-    def columns(self) -> Iterator[tuple[str, Array]]:
-        """Columns of a table with one line for each variant: values that vary, outputs, the status."""
+    def columns(self, names: Any = None) -> Iterator[tuple[str, Array]]:
+        """Columns of a table with one line for each variant: values that vary, outputs, the status.
+
+        Parameters: names, outputs by name, or wildcards such as "*.heat", all by default.
+        """
+        picked = self._picked(names)
         for one in self.swept.variants.varied:
             yield self._given(one.name), one.column
-        for name, output in self.swept.outputs.items():
-            values = self.flat(name)
+        for name in picked:
+            values, output = self.flat(name), self.swept.outputs[name]
             if isinstance(output, AtTimes):
                 for time, column in zip(output.times, values.T, strict=True):
                     yield f"{name} {time:g} s", column
@@ -196,9 +215,19 @@ class Sweep:
                 yield name, values
         yield "status", np.array(NAMES)[self.codes]
 
-    def to_pandas(self) -> Any:
-        """A pandas DataFrame with one line for each variant; `attrs["units"]` holds the units. Needs pandas."""
-        frame = need("pandas", "tables", "a table").DataFrame(dict(self.columns()))
+    def _picked(self, names: Any) -> tuple[str, ...]:
+        return chosen(names, self.swept.outputs, self._unknown)
+
+    def _unknown(self, name: str) -> str:
+        known = self.swept.outputs
+        return f"no output {shown(name)}{near(name, known, '`names` lists all outputs')}"
+
+    def to_pandas(self, names: Any = None) -> Any:
+        """A pandas DataFrame with one line for each variant; `attrs["units"]` holds the units. Needs pandas.
+
+        Parameters: names, outputs by name, or wildcards such as "*.heat", all by default.
+        """
+        frame = need("pandas", "tables", "a table").DataFrame(dict(self.columns(names)))
         frame.attrs["units"] = self.units
         return frame
 
@@ -206,16 +235,19 @@ class Sweep:
         """What a table calls a value that varies: an initial speed and the speed at the end have one name."""
         return f"{name} given" if name in self.swept.outputs else name
 
-    def to_xarray(self) -> Any:
-        """An xarray Dataset over the axes of the grid, or over the variants, with units as attributes. Needs xarray."""
+    def to_xarray(self, names: Any = None) -> Any:
+        """An xarray Dataset over the axes of the grid, or over the variants, with units as attributes. Needs xarray.
+
+        Parameters: names, outputs by name, or wildcards such as "*.heat", all by default.
+        """
         xarray, units, swept = need("xarray", "tables", "a Dataset"), self.units, self.swept
         grid = swept.variants.shape is not None and len(swept.variants.varied) > 0
         axes = tuple(map(self._given, self.varied)) if grid else ("variant",)
         named = {self._given(name): axis for name, axis in self.coords.items()}
         coords: dict[str, Any] = {name: (name if grid else "variant", axis) for name, axis in named.items()}
         shape, data = self.shape if grid else (len(self),), dict[str, Any]()
-        for name, output in swept.outputs.items():
-            values, dims = self.flat(name), axes
+        for name in self._picked(names):
+            values, dims, output = self.flat(name), axes, swept.outputs[name]
             if isinstance(output, AtTimes):
                 dims = (*axes, f"{name} time")
                 coords[dims[-1]] = (dims[-1], np.array(output.times), {"units": "s"})
@@ -223,16 +255,25 @@ class Sweep:
         data["status"] = (axes, np.array(NAMES)[self.codes].reshape(shape))
         return xarray.Dataset(data, coords=coords)
 
-    def to_parquet(self, path: str | Path) -> None:
-        """Write the table of `to_pandas` as a Parquet file, with the units as metadata. Needs pyarrow."""
-        pyarrow = need("pyarrow", "exchange", "a Parquet file")
-        table = pyarrow.table({name: pyarrow.array(column.tolist()) for name, column in self.columns()})
-        units = {f"unit {name}": unit for name, unit in self.units.items()}
-        need("pyarrow.parquet", "exchange").write_table(table.replace_schema_metadata(units), str(path))
+    def to_parquet(self, path: str | Path, names: Any = None) -> None:
+        """Write the table of `to_pandas` as a Parquet file, with the units as metadata. Needs pyarrow.
 
-    def to_csv(self, path: str | Path) -> None:
-        """Write the table with all digits; heads are `name [unit]` where there is one."""
-        units, table = self.units, dict(self.columns())
+        Parameters: names, outputs by name, or wildcards such as "*.heat", all by default.
+        """
+        pyarrow = need("pyarrow", "exchange", "a Parquet file")
+        table = pyarrow.table({name: pyarrow.array(column.tolist()) for name, column in self.columns(names)})
+        units = {name: unit for name, unit in self.units.items() if name in table.column_names}
+        words = {f"unit {name}": unit for name, unit in units.items()}
+        # where pandas looks for `attrs`
+        words["PANDAS_ATTRS"] = json.dumps({"units": units})
+        need("pyarrow.parquet", "exchange").write_table(table.replace_schema_metadata(words), str(path))
+
+    def to_csv(self, path: str | Path, names: Any = None) -> None:
+        """Write the table with all digits; heads are `name [unit]` where there is one.
+
+        Parameters: names, outputs by name, or wildcards such as "*.heat", all by default.
+        """
+        units, table = self.units, dict(self.columns(names))
         heads = [f"{name} [{units[name]}]" if units.get(name) else name for name in table]
         with Path(path).open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")

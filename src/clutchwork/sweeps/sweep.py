@@ -12,6 +12,7 @@ import numpy as np
 
 from clutchwork.assembly.system import System
 from clutchwork.base.errors import ModelWarning, UseError
+from clutchwork.base.progress import followed
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.node import Signal
@@ -24,24 +25,25 @@ from clutchwork.run.simulation import Assembles
 from clutchwork.sweeps.axes import Plan
 from clutchwork.sweeps.batch import Batch, Wanted, Way
 from clutchwork.sweeps.outputs import Asked, Computed, Output, asked
-from clutchwork.sweeps.progress import Shown, shown_by
 from clutchwork.sweeps.result import Sweep, SweepInterrupted, Swept
-from clutchwork.sweeps.variants import given
+from clutchwork.sweeps.variants import given, in_si
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
 
 # options that say which rows a single run has
 ROWS = ("dt", "times", "output", "points")
 Told = Callable[[int, int], None]
+Shown = Callable[[int], None]
 
 
 @explained("sweep")
 def sweep(
     model: Assembles | System,
-    t_end: float | None = None,
+    t_end: Number | None = None,
     *,
     vary: Any,
     outputs: Mapping[str, Asked] | Sequence[Asked] | Asked,
@@ -52,19 +54,20 @@ def sweep(
 ) -> Sweep:
     """Run a Driveline or a System with many sets of values, and keep what is asked for of each run.
 
-    Parameters: t_end [s], options and their fields by name are those of `simulate`; vary, values by name (all
-    combinations), a list with the values of each variant, `cw.variants` or a DataFrame; outputs, what is kept; threads,
-    how many run at once, by default as many as there are cores; progress, True for a bar of tqdm, or a function of
-    (variants done, variants).
+    Parameters: t_end [s], or with a unit, options and their fields by name are those of `simulate`; vary, values by
+    name (all combinations), a list with the values of each variant, `cw.variants` or a DataFrame; outputs, what is
+    kept; threads, how many run at once, by default as many as there are cores; progress, True for a bar of tqdm, or a
+    function of (variants done, variants).
 
-    Names are those of `System.changed`. An output is the name of a signal, for its value at the end, `cw.at`,
-    `cw.maximum`, `cw.minimum`, `cw.peak`, `cw.integral`, `cw.lock` or `cw.break_away`, or a function of the Trajectory;
+    Names are those of `System.changed`; values may have units, "2 bar", and are kept in SI. An output is the name of a
+    signal, for its value at the end, `cw.at`, `cw.maximum`, `cw.minimum`, `cw.peak`, `cw.integral`, `cw.lock` or
+    `cw.break_away`, or a function of the Trajectory;
     a mapping gives them names.
 
     A variant that stops early has its status, and hurts no other. Ctrl-C ends the sweep with what is done.
     """
     system, wanted = _system(model), asked(outputs)
-    variants = given(vary)
+    variants = given(vary) if system.source is None else in_si(given(vary), system.source)
     chosen = {**changes} if t_end is None else {**changes, "t_end": t_end}
     useless = [name for name in ROWS if name in changes]
     if useless:
@@ -76,10 +79,18 @@ def sweep(
     count = _threads(threads)
     _refuse_clashes(wanted)
     swept = Swept(system, variants, wanted, end, plain)
-    with shown_by(progress, len(variants)) as told, warnings.catch_warnings():
+    looks = {"unit": " runs"}
+    with (
+        followed(progress, len(variants), "sweep", "(done, variants)", **looks) as told,
+        warnings.catch_warnings(),
+    ):
         # a value may be rarely wanted; that of a single run is given there
         warnings.simplefilter("ignore", ModelWarning)
-        return _swept(swept, count, told)
+        return _swept(swept, count, told or _silent)
+
+
+def _silent(done: int) -> None:
+    """Nobody asked."""
 
 
 def _refuse_clashes(wanted: Mapping[str, Output]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import prod
 from typing import Any
 
@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
+from clutchwork.model import changes
+from clutchwork.model.changes import Target, named, target
+from clutchwork.model.model import Model
 
 Codes = NDArray[np.int64]
 
@@ -92,6 +95,19 @@ def given(vary: Any) -> Variants:
         return _of_list(vary)
     remedy = "give values by name, a list of variants, cw.variants({...}) or a DataFrame"
     raise UseError("sweep", [f"vary is {shown(vary)}: {remedy}"])
+
+
+def in_si(variants: Variants, model: Model) -> Variants:
+    """The variants with values of SI where they have units that fit; others stay, to be refused with all mistakes."""
+    owners = named(model)
+    return replace(variants, varied=tuple(_in_si(one, target(owners, one.name)) for one in variants.varied))
+
+
+def _in_si(one: Varied, aim: Target | None) -> Varied:
+    if aim is None or {float, int}.issuperset(map(type, one.values)):
+        return one
+    values = tuple(changes.in_si(aim, value) for value in one.values)
+    return replace(one, values=values, labels=_labels(values) if one.labels == _labels(one.values) else one.labels)
 
 
 def _of_list(rows: Sequence[Mapping[str, Any]]) -> Variants:

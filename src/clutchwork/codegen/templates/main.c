@@ -36,7 +36,7 @@ int main(void) {
     fprintf(stderr, "the system does not fit this core or this machine\n");
     return 2;
   }
-  for (int64_t k = 0; k + 1 < MODEL_INSTANTS; ++k) times[k] = fmin((double)k * MODEL_DT, MODEL_T_END);
+  for (int64_t k = 0; k + 1 < MODEL_INSTANTS; ++k) times[k] = fmin(MODEL_T_START + (double)k * MODEL_DT, MODEL_T_END);
   times[MODEL_INSTANTS - 1] = MODEL_T_END;
 
   /* inputs that are set from outside stay at zero here: cw_set_input(run, MODEL_INPUT_..., value) sets one */

@@ -39,7 +39,7 @@ int main() {
   int status = MODEL_STATUS_DONE;
   double row[MODEL_ROW_SIZE];
   for (int k = 0; k < MODEL_INSTANTS && status == MODEL_STATUS_DONE; ++k) {
-    const double time = k + 1 < MODEL_INSTANTS ? fmin(k * MODEL_DT, MODEL_T_END) : MODEL_T_END;
+    const double time = k + 1 < MODEL_INSTANTS ? fmin(MODEL_T_START + k * MODEL_DT, MODEL_T_END) : MODEL_T_END;
     status = step(run, time);
     if (status != MODEL_STATUS_DONE) break;
     cw_row(run, row);

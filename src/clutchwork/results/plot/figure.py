@@ -1,31 +1,35 @@
-"""An empty figure in the look of this package; matplotlib is imported here and nowhere else."""
+"""An empty figure in the look of this package; with `picture.py` the only place where matplotlib is imported."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clutchwork.results.plot.style import MILLIMETRE, RC, WIDTH
+from clutchwork.base.extras import need
+from clutchwork.results.plot.style import MILLIMETRE, WIDTH, settings
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from clutchwork.results.plot.canvas import Picture
 
 
 @contextmanager
-def figure_of(height: float, *, formulas: bool = True) -> Iterator[Figure]:
+def figure_of(height: float, *, formulas: bool = True, width: float = WIDTH) -> Iterator[Picture]:
     """A figure as wide as two columns of a journal; what is drawn inside the `with` has the look.
 
-    Parameters: height [mm]; formulas, whether text between dollars is one, as on logarithmic axes.
+    Parameters: height [mm]; formulas, whether text between dollars is one, as on logarithmic axes; width [inch].
     """
-    try:
-        from matplotlib import rc_context
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise ImportError('pictures need matplotlib: pip install "clutchwork[plot]"') from error
+    matplotlib = need("matplotlib", "plot", "a picture")
+    from clutchwork.results.plot.canvas import Picture
 
-    with rc_context({**RC, "text.parse_math": formulas}):
-        figure = Figure(figsize=(WIDTH, height * MILLIMETRE), layout="constrained")
-        FigureCanvasAgg(figure)
-        yield figure
+    with matplotlib.rc_context(settings(formulas)):
+        yield Picture.sized(width, height * MILLIMETRE, formulas)
+
+
+def written(figure: Picture, path: Path | None) -> Picture:
+    """The same figure, written to a path where there is one; folders are made."""
+    if path is not None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        figure.savefig(path)
+    return figure

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from clutchwork.declare.node import Domain
 from clutchwork.declare.schema import specs
 from clutchwork.results.channels import LOCKED
-from clutchwork.results.plot.style import COLOURS, EVENT_LINE, looks
+from clutchwork.results.plot.style import COLOURS, DASHES, EVENT_LINE, looks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,10 +21,16 @@ if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
 MOST_CURVES = 24
+# in a zoom; of more only those that the contact joins
+MOST_IN_ZOOM = 10
+MOST_ROWS = 15  # of one column of a legend
 # what presses contacts together where they have different words for it
 SEVERAL = "actuating force"
 # (unit in the result, from this size on, unit in the picture, factor)
-SCALES = (("Pa", 1e5, "MPa", 1e-6), ("N m", 5e3, "kN m", 1e-3), ("N", 5e3, "kN", 1e-3))
+SCALES = (
+    ("Pa", 1e5, "MPa", 1e-6), ("N m", 5e3, "kN m", 1e-3), ("N", 5e3, "kN", 1e-3), ("W", 5e3, "kW", 1e-3),
+    ("J", 5e6, "MJ", 1e-6), ("J", 5e3, "kJ", 1e-3),
+)  # fmt: skip
 
 
 def speeds(axes: Axes, run: Recorded, domain: Domain) -> None:
@@ -51,10 +57,15 @@ def zoom(axes: Axes, run: Recorded, event: Event) -> None:
     part = fine(run, left, right)
     low, high = _meeting(part, event)
     domain = domain_of(run, event)
-    for name, look in member_looks(run, domain).items():
-        speed = part[f"{name}.speed"]
-        if np.max(speed) >= low and np.min(speed) <= high:
-            axes.plot(part.time, speed, label=named(name), **look)
+    # of many members, those that the contact joins may be none of the first
+    first = member_looks(run, domain)
+    styles = first | {name: {"color": "#000000"} for name in _ends(run, event) if name not in first}
+    speeds = {name: part[f"{name}.speed"] for name in styles}
+    seen = [name for name, speed in speeds.items() if np.max(speed) >= low and np.min(speed) <= high]
+    if len(seen) > MOST_IN_ZOOM:
+        seen = [name for name in _ends(run, event) if name in seen]
+    for name in seen:
+        axes.plot(part.time, speeds[name], label=named(name), **styles[name])
     axes.axvline(event.time, **EVENT_LINE)
     axes.annotate(
         f"{event.element} locks at {event.time:.4f} s", (event.time, 1.0), (4, -4), xycoords=("data", "axes fraction"),
@@ -90,6 +101,16 @@ def torques(axes: Axes, run: Recorded, names: list[str]) -> None:
     legend(axes, "thick: locked")
 
 
+def temperatures(axes: Axes, run: Recorded) -> None:
+    """Temperatures of thermal nodes and ambients."""
+    names = [node.name for node in run.wiring.thermal][:MOST_CURVES]
+    for name, look in zip(names, looks(len(names)), strict=True):
+        axes.plot(run.time, run[f"{name}.temperature"], label=named(name), **look)
+    axes.margins(y=0.08)
+    axes.set_ylabel("temperature, K")
+    legend(axes)
+
+
 def locks(axes: Axes, run: Recorded) -> None:
     """Bars over time: full while locked, pale while slipping under load, none while open."""
     names = busy(run)
@@ -117,14 +138,26 @@ def member_looks(run: Recorded, domain: Domain) -> dict[str, dict[str, Any]]:
 
 def contact_looks(run: Recorded, names: Any) -> dict[str, dict[str, Any]]:
     """Colour of the chosen contacts, the same in all panels."""
-    colours = {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(busy(run))}
-    return {name: {"color": colours[name]} for name in names}
+    places = {name: place for place, name in enumerate(busy(run))}
+    count = len(COLOURS)
+    return {
+        name: {"color": COLOURS[i % count], "linestyle": DASHES[i // count]} for name in names for i in [places[name]]
+    }
 
 
 def busy(run: Recorded) -> list[str]:
-    """Contacts that carry torque at some time."""
+    """Contacts that carry torque at some time, the first ones where there are many."""
+    return _carriers(run)[:MOST_CURVES]
+
+
+def carriers(run: Recorded) -> int:
+    """How many contacts carry torque at some time."""
+    return len(_carriers(run))
+
+
+def _carriers(run: Recorded) -> list[str]:
     names = [branch.name for branch in run.wiring.contacts]
-    return [name for name in names if np.any(run[f"{name}.torque"] != 0.0)][:MOST_CURVES]
+    return [name for name in names if np.any(run[f"{name}.torque"] != 0.0)]
 
 
 def loaded(run: Recorded) -> list[list[str]]:
@@ -139,7 +172,10 @@ def carrying(run: Recorded, names: list[str]) -> str:
 
 def driven(run: Recorded) -> list[dict[str, str]]:
     """Contacts that carry torque, with the signal that presses each, those of one unit together."""
-    names = {*(name for name, _ in run.wiring.inputs), *(link.name for link in run.wiring.links)}
+    names = {
+        *(name for name, _ in run.wiring.inputs if name not in run.wiring.unused),
+        *(link.name for link in run.wiring.links),
+    }
     found = {
         name: [f"{name}.{word}" for word in _pressing(run, name) if f"{name}.{word}" in names] for name in busy(run)
     }
@@ -190,7 +226,7 @@ def legend(axes: Axes, title: str = "") -> None:
     """Legend to the right of the axes, where it covers nothing."""
     handles, _ = axes.get_legend_handles_labels()
     if handles:
-        columns = 1 + (len(handles) - 1) // 9
+        columns = 1 + (len(handles) - 1) // MOST_ROWS
         axes.legend(
             loc="upper left", bbox_to_anchor=(1.0, 1.02), borderaxespad=0.3, title=title or None, title_fontsize=7.5,
             alignment="left", ncols=columns, handlelength=2.4, labelspacing=0.3, columnspacing=0.8,
@@ -213,10 +249,15 @@ def fine(run: Recorded, left: float, right: float) -> Recorded:
 
 def _meeting(part: Recorded, event: Event) -> tuple[float, float]:
     """Range of speed that holds the members of a contact around its lock-up."""
-    names = [part.wiring.nodes[i].name for i in _branch(part, event.element).direction if i >= 0]
+    names = _ends(part, event)
     values = np.concatenate([part[f"{name}.speed"] for name in names])
     pad = 0.12 * (float(np.ptp(values)) or 1.0)
     return float(np.min(values)) - pad, float(np.max(values)) + pad
+
+
+def _ends(run: Recorded, event: Event) -> list[str]:
+    """Members that the contact of an event joins."""
+    return [run.wiring.nodes[i].name for i in _branch(run, event.element).direction if i >= 0]
 
 
 def domain_of(run: Recorded, event: Event) -> Domain:

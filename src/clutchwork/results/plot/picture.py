@@ -1,28 +1,25 @@
-"""One picture of a run: speeds, zoom at a lock-up, inputs, torques and locked phases."""
+"""One picture of a run: speeds, zoom at a lock-up, inputs, torques, locked phases and temperatures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from string import ascii_lowercase
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
-from clutchwork.declare.calls import explained
 from clutchwork.declare.node import Domain
 from clutchwork.results.events import Event
 from clutchwork.results.plot import panels, style
-from clutchwork.results.plot.figure import figure_of
+from clutchwork.results.plot.figure import figure_of, written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from clutchwork.results.plot.canvas import Picture
+    from clutchwork.results.plot.view import View
     from clutchwork.results.recorded import Recorded
 
 
@@ -36,24 +33,19 @@ class Panel:
     draw: Callable[[Axes], None]
 
 
-@explained("plot")
-def picture(run: Recorded, path: str | Path | None = None, *, lockup: Event | None = None) -> Figure:
-    """Draw a run and write it to `path` (PNG, SVG or PDF by its ending) when given.
+def picture(view: View, path: Path | None = None, *, lockup: Event | None = None) -> Picture:
+    """The picture of a run in which nothing is named, and write it where there is a path.
 
     `lockup` is the event to look at closely, by default the last one in which a contact locks.
     """
-    if lockup is not None and not isinstance(lockup, Event):
-        raise UseError("plot", [f"lockup is {shown(lockup)}: it must be an event, such as run.events.of('c1')[-1]"])
+    (run,) = view.runs.values()
     lockup = lockup or last_lockup(run)
     chosen = _panels(run, lockup)
     height = sum(panel.height + (9.0 if panel.whole else 14.0) for panel in chosen) + 12.0
     # a dollar in a name is a dollar
     with figure_of(height, formulas=False) as figure:
-        _draw(figure, run, lockup, chosen)
-        if path is not None:
-            Path(path).parent.mkdir(parents=True, exist_ok=True)
-            figure.savefig(path)
-    return figure
+        _draw(figure, view, lockup, chosen)
+        return written(figure, path)
 
 
 def last_lockup(run: Recorded) -> Event | None:
@@ -65,32 +57,62 @@ def last_lockup(run: Recorded) -> Event | None:
 def _panels(run: Recorded, lockup: Event | None) -> list[Panel]:
     chosen: list[Panel] = []
     for domain, members in ((Domain.ROTATION, "shafts"), (Domain.TRANSLATION, "masses")):
-        if any(node.domain is domain for node in run.wiring.nodes):
-            chosen.append(Panel(f"speeds of all {members}", 52.0, True, partial(panels.speeds, run=run, domain=domain)))
+        count = sum(node.domain is domain for node in run.wiring.nodes)
+        if count:
+            words = f"speeds of {_all(count)} {members}"
+            chosen.append(
+                Panel(
+                    words, _height(min(count, panels.MOST_CURVES)), True, partial(panels.speeds, run=run, domain=domain)
+                )
+            )
     if lockup is not None:
         chosen.append(Panel("zoom at lock-up", 42.0, False, partial(panels.zoom, run=run, event=lockup)))
     for group in panels.driven(run):
-        words = f"{panels.pressing(run, group)}s of clutches and brakes"
-        chosen.append(Panel(words, 28.0, True, partial(panels.inputs, run=run, names=group)))
+        words = f"{panels.pressing(run, group)}s of {_contacts(run, len(group))}"
+        height = _height(len(group), 28.0)
+        chosen.append(Panel(words, height, True, partial(panels.inputs, run=run, names=group)))
     for contacts in panels.loaded(run):
-        words = f"{panels.carrying(run, contacts)}s of clutches and brakes"
-        chosen.append(Panel(words, 46.0, True, partial(panels.torques, run=run, names=contacts)))
+        words = f"{panels.carrying(run, contacts)}s of {_contacts(run, len(contacts))}"
+        # its legend has a title
+        height = _height(len(contacts), 46.0, 5.0)
+        chosen.append(Panel(words, height, True, partial(panels.torques, run=run, names=contacts)))
     if panels.busy(run):
         rows = len(panels.busy(run))
-        chosen.append(Panel("states of clutches and brakes", 5.0 + 4.0 * rows, True, partial(panels.locks, run=run)))
+        words = f"states of {_contacts(run, rows)}"
+        chosen.append(Panel(words, 5.0 + 4.0 * rows, True, partial(panels.locks, run=run)))
+    if run.wiring.thermal:
+        count = len(run.wiring.thermal)
+        words, height = f"temperatures of {_all(count)} thermal nodes", _height(min(count, panels.MOST_CURVES), 36.0)
+        chosen.append(Panel(words, height, True, partial(panels.temperatures, run=run)))
     return chosen
 
 
-def _draw(figure: Figure, run: Recorded, lockup: Event | None, chosen: list[Panel]) -> None:
+def _all(count: int) -> str:
+    return "all" if count <= panels.MOST_CURVES else f"the first {panels.MOST_CURVES} of {count}"
+
+
+def _height(curves: int, least: float = 52.0, title: float = 0.0) -> float:
+    """Tall enough for the legend [mm]."""
+    rows = -(-curves // -(-curves // panels.MOST_ROWS))
+    return max(least, 3.9 * rows + 2.0 + title)
+
+
+def _contacts(run: Recorded, drawn: int) -> str:
+    """Contacts in words, with how many are drawn of those that carry torque, where these are many."""
+    count = panels.carriers(run)
+    return "clutches and brakes" if count <= panels.MOST_CURVES else f"{drawn} of {count} clutches and brakes"
+
+
+def _draw(figure: Figure, view: View, lockup: Event | None, chosen: list[Panel]) -> None:
+    (run,) = view.runs.values()
     grid = figure.add_gridspec(len(chosen), 1, height_ratios=[panel.height for panel in chosen])
-    begin, end = float(run.time[0]), float(run.time[-1])
-    instants = np.unique(run.events.changes().times)
+    instants = list(dict.fromkeys(event.time for _, event in view.marks))
     for row, panel in enumerate(chosen):
         axes = figure.add_subplot(grid[row])
         panel.draw(axes)
         axes.set_title(f"{ascii_lowercase[row]})  {panel.title}", loc="left")
         if panel.whole:
-            axes.set_xlim(begin, end)
+            axes.set_xlim(*view.limits)
             _mark(axes, instants)
         # one label is enough for panels over the same time
         if row + 1 < len(chosen) and panel.whole and chosen[row + 1].whole:
@@ -109,8 +131,7 @@ def _frame(figure: Figure, run: Recorded, lockup: Event, chosen: list[Panel]) ->
     panels.frame(figure.axes[zoomed - 1 if translates else 0], run, lockup, ascii_lowercase[zoomed])
 
 
-def _mark(axes: Axes, instants: Any) -> None:
-    """Thin lines at events, unless there are so many that they hide the rest."""
-    if len(instants) <= 30:
-        for instant in instants:
-            axes.axvline(instant, **style.EVENT_LINE)
+def _mark(axes: Axes, instants: Sequence[float]) -> None:
+    """Thin lines at events."""
+    for instant in instants:
+        axes.axvline(instant, **style.EVENT_LINE)

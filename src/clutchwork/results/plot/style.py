@@ -35,15 +35,24 @@ RC: Any = {
     "pdf.fonttype": 42,
 }
 
+# of curves beyond those that colours and DASHES tell apart
+MORE_DASHES: tuple[Any, ...] = ((0, (6, 1.5, 1, 1.5)), (0, (3, 1, 1, 1, 1, 1)))
+
 MILLIMETRE = 1.0 / 25.4  # inch
 WIDTH = 180.0 * MILLIMETRE  # two columns of a journal
 
 EVENT_LINE: dict[str, Any] = {"color": "#9A9A9A", "linewidth": 0.6, "linestyle": (0, (3, 2)), "zorder": 1}
 
 
+def settings(formulas: bool) -> Any:
+    """Settings of matplotlib; whether text between dollars is a formula."""
+    return {**RC, "text.parse_math": formulas}
+
+
 def looks(count: int) -> list[dict[str, Any]]:
     """Colours and dashes of `count` curves: later ones have more gaps, so that a curve below stays visible."""
+    dashes = DASHES if count <= len(COLOURS) * len(DASHES) else DASHES + MORE_DASHES
     return [
-        {"color": COLOURS[i % len(COLOURS)], "linestyle": DASHES[min(len(DASHES) * i // count, len(DASHES) - 1)]}
+        {"color": COLOURS[i % len(COLOURS)], "linestyle": dashes[min(len(dashes) * i // count, len(dashes) - 1)]}
         for i in range(count)
     ]

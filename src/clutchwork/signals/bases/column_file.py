@@ -24,9 +24,11 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import FileError, near
 from clutchwork.base.regular import open_regular, reason
 from clutchwork.base.shown import listed, shown
-from clutchwork.declare.quantity import QuantityError
+from clutchwork.declare.quantity import PLAIN, QuantityError
+from clutchwork.declare.units import Scale
 from clutchwork.signals.bases import sheets
 from clutchwork.signals.bases.column_heads import Head, meant, split
+from clutchwork.signals.bases.semicolons import with_commas
 from clutchwork.signals.bases.sheets import Sheet
 
 Array = NDArray[np.float64]
@@ -48,6 +50,7 @@ class Wanted:
     time: str
     column: str
     scale: float = 1.0
+    group: str = ""  # what the column stands in, where a file of another format has several of its name
 
     def error(self, quantity: str, message: str, remedy: str) -> FileError:
         """A single mistake."""
@@ -69,8 +72,8 @@ def read(path: Path, wanted: Wanted) -> Values:
     if made is not None:
         return made
     try:
-        with open_regular(path, MOST_BYTES) as file:
-            return _read(file, wanted, path)
+        with open_regular(path, MOST_BYTES) as file, with_commas(file) as plain:
+            return _read(plain, wanted, path)
     except FileNotFoundError:
         raise wanted.error("path", "does not exist", f"put the file into {_folder(path)}") from None
     except OSError as error:
@@ -84,10 +87,12 @@ def _folder(path: Path) -> str:
     return shown(str(path.absolute().parent))
 
 
-def _scaled(table: Array, factors: tuple[float, float], wanted: Wanted) -> Array:
-    """Times and values times a factor each, all finite and so are the slopes between them."""
+def _scaled(table: Array, scales: tuple[Scale, Scale], wanted: Wanted) -> Array:
+    """Times and values in SI, all finite and so are the slopes between them."""
     with np.errstate(all="ignore"):
-        made = table * factors
+        made = table * [scale.factor for scale in scales]
+        if scales[1].zero:
+            made[:, 1] += scales[1].zero
         step = np.diff(made, axis=0)
         slopes = np.divide(step[:, 1], step[:, 0], out=np.zeros(len(step)), where=step[:, 0] > 0.0)
     if not np.all(np.isfinite(slopes)) or not np.all(np.isfinite(made)):
@@ -103,14 +108,14 @@ def _column(sheet: Sheet, wanted: Wanted) -> Values | None:
     places = [sheet.header.index(time.text), sheet.header.index(column.text)]
     if not sheet.is_plain(places[0]):
         return None
-    made, factors = sheet.table[:, places], _factors(time, column, wanted)
-    return Values(made if factors == (1.0, 1.0) else _scaled(made, factors, wanted), column)
+    made, scales = sheet.table[:, places], _scales(time, column, wanted)
+    return Values(made if scales == (PLAIN, PLAIN) else _scaled(made, scales, wanted), column)
 
 
 def _read(file: BinaryIO, wanted: Wanted, path: Path) -> Values:
     alike = _scan(file, wanted)
     size = file.tell()
-    with io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
+    with as_text(file) as text:
         header, lines = _opened(text)
         if not header:
             raise wanted.error("path", "is empty", "give a header line and at least one row of numbers")
@@ -120,11 +125,16 @@ def _read(file: BinaryIO, wanted: Wanted, path: Path) -> Values:
             return found
         header, lines = _opened(text)
         time, column = _heads(header, wanted)
-        factors = _factors(time, column, wanted)
+        scales = _scales(time, column, wanted)
         places = header.index(time.text), header.index(column.text)
         made = _at_once(lines, places) if alike else None
         made = _by_cells(_opened(text)[1], header, places, wanted) if made is None else made
-    return Values(_scaled(made, factors, wanted), column)
+    return Values(_scaled(made, scales, wanted), column)
+
+
+def as_text(file: BinaryIO) -> io.TextIOWrapper:
+    """The characters of a file."""
+    return io.TextIOWrapper(file, encoding="utf-8-sig", newline="")
 
 
 def _opened(text: io.TextIOWrapper) -> tuple[list[str], Iterator[list[str]]]:
@@ -196,29 +206,42 @@ def _name_fault(
     if found:
         return quantity, f"{path} has {len(found)} columns {shown(name)}", "give every column a different name"
     remedy = "the first line names the columns, with commas between them"
-    if len(header) == 1 and ";" in header[0]:
-        remedy = "separate the columns with commas, not with semicolons"
-    elif asked:
+    if asked:
         hint = near(name, header) or near(split(name)[0], [split(head)[0] for head in header])
         remedy = f"the columns are {listed(header)}{hint}"
     return quantity, f"{path} has no column {shown(name)}", remedy
 
 
-def _factors(time: Head, column: Head, wanted: Wanted) -> tuple[float, float]:
-    """Factors to SI of times and values, by the units of their heads; a scale that repeats the unit is refused."""
-    factors, faults = [], []
+def _scales(time: Head, column: Head, wanted: Wanted) -> tuple[Scale, Scale]:
+    """What puts times and values into SI, by the units of their heads; a scale that repeats the unit is refused."""
+    scales, faults = [], []
     for quantity, head, units in (("time", time, ("s",)), ("column", column, ())):
         try:
-            factors.append(head.factor(units))
+            scales.append(head.scale(units))
         except QuantityError as bad:
             fault = f"column {shown(head.text)} of {shown(wanted.path)} {bad.message}"
             faults.append((quantity, fault, bad.remedy))
     if faults:
         raise FileError(faults)
-    if factors[1] != 1.0 and isclose(factors[1], wanted.scale):
+    factor, zero = scales[1]
+    if factor != 1.0 and isclose(factor, wanted.scale):
         fault = f"repeats the unit of column {shown(column.text)} of {shown(wanted.path)}"
         raise FileError([("scale", fault, "remove scale: the values are already converted by the unit of the column")])
-    return factors[0], factors[1] * wanted.scale
+    return scales[0], Scale(factor * wanted.scale, zero * wanted.scale)
+
+
+def in_si(table: Array, heads: tuple[Head, Head], wanted: Wanted) -> Values:
+    """Times and values of another format, by the units of their heads."""
+    return Values(_scaled(table, _scales(*heads, wanted), wanted), heads[1])
+
+
+def names_of(path: Path) -> list[str]:
+    """The first line of a file; none where it cannot be read, for other defects show when its columns are."""
+    try:
+        with open_regular(path, MOST_BYTES) as file, with_commas(file) as plain, as_text(plain) as text:
+            return _opened(text)[0]
+    except (OSError, UnicodeDecodeError, csv.Error):
+        return []
 
 
 def _at_once(lines: Iterator[list[str]], places: tuple[int, int]) -> Array | None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.quantity import QuantityError, factor_to_si
-from clutchwork.declare.units import parse
+from clutchwork.declare.quantity import PLAIN, QuantityError, scale_to_si
+from clutchwork.declare.units import Scale, other_zero, parse
 
 _HEAD = re.compile(r"(.*?)\s*\[(.*)\]")
 # what heads write for "no unit"
@@ -20,21 +20,22 @@ class Head:
     text: str
     unit: str
 
-    def factor(self, wanted: tuple[str, ...] = ()) -> float:
-        """Factor to SI, 1 without a unit; QuantityError where the unit is not known or fits none of those wanted."""
+    def scale(self, wanted: tuple[str, ...] = ()) -> Scale:
+        """What puts values into SI; QuantityError where the unit is not known or fits none of those wanted."""
         if not self.unit:
-            return 1.0
+            return PLAIN
         if wanted:
-            return factor_to_si(self.unit, wanted[0], wanted[1:], self.text)
+            return scale_to_si(self.unit, wanted[0], wanted[1:], self.text)
+        if other_zero(self.unit):
+            return scale_to_si(self.unit, "K", (), self.text)
         try:
-            return parse(self.unit).factor
+            return Scale(parse(self.unit).factor)
         except ValueError:
             remedy = "write one such as [bar], or leave it out where the values are in SI"
             try:
-                return factor_to_si(self.unit, "K", (), self.text)
+                return scale_to_si(self.unit, "K", (), self.text)
             except QuantityError as bad:
-                zero = "which has another zero" in bad.message
-                raise QuantityError(bad.message, bad.value, bad.remedy if zero else remedy) from None
+                raise QuantityError(bad.message, bad.value, remedy) from None
 
 
 def split(head: str) -> tuple[str, str]:

@@ -1,0 +1,131 @@
+"""Which inputs and outputs a linear system has: names, wildcards, and what goes by default."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.assembly.wiring import wiring
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import near
+from clutchwork.base.shown import shown
+from clutchwork.linear.forms import columns_of
+from clutchwork.results.channels import ACCELERATION, channels
+from clutchwork.results.forms import Mode
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+
+WILD = frozenset("*?")
+
+
+@dataclass(frozen=True)
+class Given:
+    """One input: a signal of the System, or the acceleration of a prescribed speed."""
+
+    name: str
+    unit: str
+    signal: int  # number among the inputs of the System
+    motion: int = -1  # number among the prescribed speeds, -1: none
+    accelerates: bool = False  # its acceleration is given; else its value
+
+
+def possible_inputs(system: System) -> dict[str, Given]:
+    """Everything that can be an input, by name: all signals, then the accelerations of prescribed speeds."""
+    motions = {int(number): place for place, number in enumerate(system.prescribed_input)}
+    known = {
+        item.name: Given(item.name, item.unit, number, motions.get(number, -1))
+        for number, item in enumerate(system.inputs)
+    }
+    for number, place in motions.items():
+        domain = next(n.domain for n in _ports(system.motions[place]))
+        name = f"{system.motions[place].name}.acceleration"
+        known.setdefault(name, Given(name, ACCELERATION[domain], number, place, accelerates=True))
+    return known
+
+
+def _ports(component: Any) -> list[Any]:
+    from clutchwork.declare.ports import ports
+
+    nodes = list(ports(component).values())
+    return [node for node in nodes if not node.fixed] or nodes
+
+
+def chosen_inputs(system: System, wanted: Any, problems: list[str]) -> list[Given]:
+    """The inputs that were asked for; by default all signals."""
+    known = possible_inputs(system)
+    if wanted is None:
+        return [given for given in known.values() if not given.accelerates]
+    # a signal is also known by the name that it has in a result
+    aliases = {f"{name}_signal": name for name in known if f"{name}_signal" in channels(system, True, True)}
+    names = _matching("inputs", wanted, [*known, *aliases], problems)
+    found = {aliases.get(name, name): known[aliases.get(name, name)] for name in names}
+    twice = {given.signal: given.name for given in found.values()}
+    problems.extend(
+        f"inputs {given.name!r} and {twice[given.signal]!r} are one motion; give one of them"
+        for given in found.values()
+        if twice[given.signal] != given.name
+    )
+    return list(found.values())
+
+
+def chosen_outputs(system: System, wanted: Any, default: Iterable[str], problems: list[str]) -> list[str]:
+    """The outputs that were asked for; by default those given."""
+    if wanted is None:
+        return list(dict.fromkeys(default))
+    known = channels(system, True, True)
+    names = _matching("outputs", wanted, list(known), problems)
+    usable, integrals = [], _integrals(system)
+    for name in names:
+        reason = _unusable(name, known[name].evaluate, integrals)
+        plain = wanted == name or (not isinstance(wanted, str) and name in list(wanted))
+        if not reason:
+            usable.append(name)
+        elif plain:
+            problems.append(f"outputs: {name!r} {reason}")
+    return usable
+
+
+def _unusable(name: str, form: Any, integrals: Collection[int]) -> str:
+    """Why a signal cannot be an output, empty where it can."""
+    if isinstance(form, Mode):
+        return "does not change with a state; ask for the torque or the slip of the contact"
+    if any(column in integrals for column in columns_of(form)):
+        return f"is an integral over the run; ask for '{name.rpartition('.')[0]}.power'"
+    return ""
+
+
+def _integrals(system: System) -> set[int]:
+    """Columns of the row that are integrals over the run."""
+    columns = wiring(system).columns
+    parts = ("element_work", "contact_work", "prescribed_work")
+    return {column for part in parts for column in range(columns[part].start, columns[part].stop)}
+
+
+def _matching(what: str, wanted: Any, known: Sequence[str], problems: list[str]) -> list[str]:
+    """Names that fit a name or a wildcard, or several of them, each once."""
+    asked = [wanted] if isinstance(wanted, str) else wanted
+    if not isinstance(asked, Iterable) or isinstance(asked, bytes):
+        problems.append(f"{what} = {shown(wanted)}: must be a name, such as '*.speed', or a list of names")
+        return []
+    names: dict[str, None] = {}
+    for name in asked:
+        if not isinstance(name, str):
+            problems.append(f"{what}: {shown(name)} is not a name; give names as strings, such as '*.speed'")
+        elif name in known:
+            names[name] = None
+        elif WILD & set(name):
+            # brackets stand for themselves: they are part of names
+            found = [other for other in known if fnmatchcase(other, name.replace("[", "[[]"))]
+            if not found:
+                problems.append(f"{what}: no signal fits {shown(name)}; `{what}` may be {_some(known)}")
+            names.update(dict.fromkeys(found))
+        else:
+            problems.append(f"{what}: no signal {shown(name)}{near(name, known, f'it may be {_some(known)}')}")
+    return list(names)
+
+
+def _some(known: Sequence[str]) -> str:
+    first = ", ".join(known[:6])
+    return f"{first} ..." if len(known) > 6 else first or "none, for the model has none"

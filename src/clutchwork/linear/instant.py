@@ -1,0 +1,143 @@
+"""A model at one instant: where it stands, and the derivatives of all its components there."""
+
+from __future__ import annotations
+
+import math
+import os
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.system import System
+from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UseError
+from clutchwork.base.shown import shown
+from clutchwork.declare.layout import MODES
+from clutchwork.declare.quantity import QuantityError, has_unit, in_si
+from clutchwork.linear.reached import reached, refuse_stopped, resumed, started, step_over
+from clutchwork.results.trajectory import Trajectory
+from clutchwork.run.failure import StoppedEarly
+from clutchwork.run.simulation import simulate
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from clutchwork.results.events import Event
+
+Array = NDArray[np.float64]
+
+CALL = "linearise"
+
+# an event within this part of the time, or of a second, is at the instant
+BESIDE = 1e-12
+# how far past such an event a run may have to go
+PAST_EVENT = (1e-15, 1e-13, 1e-11, 1e-9)
+
+
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """The right limit at one instant: the row of output, and the derivatives of the components with modes held."""
+
+    system: System
+    time: float  # s
+    row: Array
+    local: Array  # cw_local of c_api.h
+    events: tuple[Event, ...] = ()  # at this very instant
+
+    @property
+    def wiring(self) -> Wiring:
+        """Who is joined to what."""
+        return wiring(self.system)
+
+    def part(self, name: str) -> Array:
+        """A part of the row, by its name in layout.ROW."""
+        return self.row[self.wiring.columns[name]]
+
+    @property
+    def modes(self) -> NDArray[np.intp]:
+        """Mode of each contact, a number of layout.MODES."""
+        return self.part("contact_mode").astype(int)
+
+
+def instant_of(model: Any, at: Any) -> Instant:
+    """A model at its start, at a time [s] or at a saved state, or a run at a time [s]; UseError for anything else."""
+    at, problems = _plain(at)
+    problems = problems or list(_problems(model, at))
+    if problems:
+        raise UseError(CALL, problems)
+    if isinstance(model, Trajectory):
+        return _of_run(model, float(at))
+    system = model if isinstance(model, System) else model.assemble()
+    if _is_state(at):
+        return _read(system, resumed(system, at), ())
+    if at is None or float(at) == 0.0:
+        return _read(system, started(system), ())
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", StoppedEarly)
+        run = simulate(system, float(at))
+    return _of_run(run.raise_for_status(), float(at))
+
+
+def _plain(at: Any) -> tuple[Any, list[str]]:
+    """A time that may have a unit, in s."""
+    if not has_unit(at):
+        return at, []
+    try:
+        return in_si(at, "s"), []
+    except QuantityError as bad:
+        return at, [f"at = {shown(at)}: must be a time in s, zero or later ({bad})"]
+
+
+def _is_state(at: Any) -> bool:
+    return hasattr(at, "fits") and hasattr(at, "core")
+
+
+def _problems(model: Any, at: Any) -> Iterator[str]:
+    if isinstance(model, str | os.PathLike):
+        yield f"{shown(model)} is not a model; load a file with cw.Driveline.load({os.fspath(model)!r})"
+    elif not isinstance(model, System | Trajectory) and not hasattr(model, "assemble"):
+        yield f"{shown(model)} is not a model; give a Driveline, a System, or a run with at=..."
+    if at is None:
+        if isinstance(model, Trajectory):
+            yield "at is missing; give the time of the run in s, such as at=1.2"
+    elif _is_state(at):
+        if isinstance(model, Trajectory):
+            yield "at is a saved state; give the model that it is of in place of the run"
+    elif isinstance(at, bool) or not isinstance(at, int | float | np.number) or not math.isfinite(at) or at < 0.0:
+        yield f"at = {shown(at)}: must be a time in s, zero or later"
+    elif isinstance(model, Trajectory) and len(model) and at > _end(model):
+        yield f"at = {at:g} s is after the end of the run at {_end(model):g} s; give an instant before it"
+
+
+def _end(run: Trajectory) -> float:
+    """How far a run came [s]."""
+    return run.t_end if run.finished else float(run.time[-1])
+
+
+def _of_run(trajectory: Trajectory, at: float) -> Instant:
+    run, system, near = reached(trajectory, at), trajectory.system, BESIDE * max(1.0, at)
+    # those of the start are how the contacts were told apart
+    events = [event for event in trajectory.events.changes() if event.time > 0.0 and abs(event.time - at) <= near]
+    instant = _read(system, run, tuple(events))
+    # a run that ends at an event may stop right before it
+    for step in PAST_EVENT:
+        if all(MODES[int(instant.modes[n])] == mode for n, mode in _after(system, events).items()):
+            break
+        step_over(run, at + step * max(1.0, at))
+        instant = _read(system, run, tuple(events))
+    return instant
+
+
+def _after(system: System, events: Sequence[Event]) -> dict[int, str]:
+    """How contacts are after events, by their numbers."""
+    names = [contact.name for contact in system.contacts]
+    return {names.index(event.element): event.after for event in events}
+
+
+def _read(system: System, run: Any, events: tuple[Event, ...]) -> Instant:
+    status, row, local = run.local()
+    refuse_stopped(system, run, status)
+    return Instant(system, float(run.time), np.asarray(row), np.asarray(local), events)

@@ -1,0 +1,103 @@
+"""The motion that is left in the present locked set, before inputs are chosen: docs/theory/linearisation.md."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.wiring import HOUSING
+from clutchwork.linear.locked import Free, free_motion
+from clutchwork.linear.own_states import preference
+from clutchwork.results.forms import LOCKED
+
+if TYPE_CHECKING:
+    from clutchwork.declare.node import Node
+    from clutchwork.linear.instant import Instant
+
+Array = NDArray[np.float64]
+
+
+class Local:
+    """The matrix of local derivatives in its parts: docs/theory/linearisation.md (2)."""
+
+    def __init__(self, instant: Instant) -> None:
+        counts, matrix = instant.system.counts, instant.local
+        nd, ns, nc = counts["elements"] + counts["contacts"], counts["states"], counts["contacts"]
+        self.directions, self.states = nd, ns
+        ends = np.cumsum([nd, ns, nc, nc, nc])
+        self.torque, self.rate, self.capacity, self.most, self.least, self.flow = np.split(matrix, ends, axis=0)
+
+    def split(self, part: Array) -> tuple[Array, Array, Array, Array]:
+        """Derivatives by rates, by states, by signals, and the value."""
+        nd, ns = self.directions, self.states
+        return part[:, :nd], part[:, nd : nd + ns], part[:, nd + ns : -1], part[:, -1]
+
+
+class Motion:
+    """What the present locked set leaves, over base columns: speeds that stay, states, prescribed speeds, signals."""
+
+    def __init__(self, instant: Instant) -> None:
+        system = self.system = instant.system
+        self.instant, self.local = instant, Local(instant)
+        self.D = np.vstack([system.element_rate, system.contact_rate])
+        self.delta = np.vstack([system.element_rate_prescribed, system.contact_rate_prescribed])
+        self.held = np.flatnonzero(instant.modes == LOCKED)
+        B, beta = system.contact_rate[self.held], system.contact_rate_prescribed[self.held]
+        self.free: Free = free_motion(B, beta, preference(instant))
+        Z, Zp = self.free.Z, self.free.Zp
+        self.nx, self.np = Z.shape[1], Zp.shape[1]
+        self.ns, self.ni = self.local.states, len(system.inputs)
+        self.mass = Z.T @ system.mass @ Z
+        self.mass_p = Z.T @ (system.mass @ Zp + system.mass_prescribed)
+        self.algebraic = system.massless[self.free.kept] != 0
+        self.inertial = ~self.algebraic
+        self.x, self.s, self.p, self.i = np.split(
+            np.eye(self.nx + self.ns + self.np + self.ni), np.cumsum([self.nx, self.ns, self.np])
+        )
+        self.speeds = Z @ self.x + Zp @ self.p
+        self.rates = self.D @ self.speeds + self.delta @ self.p
+        self.node_speeds = system.basis @ self.speeds + system.basis_prescribed @ self.p
+
+    def kept_node(self, place: int) -> Node:
+        """The shaft of one of the speeds that stay."""
+        name = self.system.independent[self.free.kept[place]]
+        return next(node for node in self.system.nodes if node.name == name)
+
+    @property
+    def prescribed_accelerations(self) -> Array:
+        """Slopes of the prescribed speeds at the instant."""
+        now = self.instant.part("acceleration")
+        made = [
+            sum(factor * now[node] for node, factor in motion.direction.items() if node != HOUSING)
+            for motion in self.instant.wiring.motions
+        ]
+        return np.array(made, dtype=float)
+
+    def follow(self, part: Array) -> Array:
+        """Derivatives of local quantities over the base columns."""
+        by_rate, by_state, by_signal, _ = self.local.split(part)
+        return by_rate @ self.rates + by_state @ self.s + by_signal @ self.i
+
+    def solved(self) -> Array:
+        """Base columns with the algebraic speeds over the others: docs/theory/linearisation.md (6)."""
+        push = (self.D @ self.free.Z).T @ self.follow(self.local.torque)
+        columns = np.flatnonzero(self.algebraic)
+        made = np.eye(push.shape[1])
+        if columns.size:
+            made[columns] = -np.linalg.solve(push[np.ix_(columns, columns)], push[columns])
+            made[:, columns] = 0.0
+        return made
+
+    def momentum_shift(self) -> Array:
+        """What a prescribed speed takes off the speeds that stay, so that no slope of it is left.
+
+        docs/theory/linearisation.md (5)
+        """
+        shift = np.zeros((self.nx, self.np))
+        kept = np.flatnonzero(self.inertial)
+        if kept.size and self.np:
+            shift[kept] = np.linalg.solve(self.mass[np.ix_(kept, kept)], self.mass_p[kept])
+            shift[np.abs(shift) < 1e-13] = 0.0
+        return shift

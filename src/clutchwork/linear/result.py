@@ -1,0 +1,202 @@
+"""The linear system that `cw.linearise` gives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UseError
+from clutchwork.base.shown import shown
+from clutchwork.base.text import columns, counted
+from clutchwork.declare.calls import explained
+from clutchwork.declare.layout import MODES
+from clutchwork.linear.quantity import Quantity, amount, per_second
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
+
+    from clutchwork.linear.modes import NaturalModes
+
+Array = NDArray[Any]
+
+MOST_SHOWN = 20
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Linear:
+    """A linear system about one instant: d/dt x = rate + A x + B u, y = C x + D u.
+
+    x, u and y are what states, inputs and outputs deviate from their values at the instant: `state`, `input`, `output`.
+    `rate` is how the states move there; it is zero where the driveline moves steadily.
+    """
+
+    model: str
+    time: float  # s
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    state_quantities: tuple[Quantity, ...]
+    input_quantities: tuple[Quantity, ...]
+    output_quantities: tuple[Quantity, ...]
+    modes_of_contacts: Mapping[str, int]  # a number of layout.MODES
+    notes: tuple[str, ...]  # what was undecided, and which side was taken
+    shafts: tuple[str, ...]
+    shaft_speeds: Array  # speeds of all shafts over the states
+
+    @property
+    def matrices(self) -> tuple[Array, Array, Array, Array]:
+        """A, B, C and D."""
+        return self.A, self.B, self.C, self.D
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states, in the order of A."""
+        return tuple(quantity.name for quantity in self.state_quantities)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs, in the order of the columns of B."""
+        return tuple(quantity.name for quantity in self.input_quantities)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs, in the order of the rows of C."""
+        return tuple(quantity.name for quantity in self.output_quantities)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every state, input and output."""
+        every = (*self.input_quantities, *self.output_quantities, *self.state_quantities)
+        return {quantity.name: quantity.unit for quantity in every}
+
+    @property
+    def state(self) -> dict[str, float]:
+        """Values of the states at the instant."""
+        return {quantity.name: quantity.value for quantity in self.state_quantities}
+
+    @property
+    def rate(self) -> dict[str, float]:
+        """Rates of the states at the instant, in the unit of each per second."""
+        return {quantity.name: quantity.rate for quantity in self.state_quantities}
+
+    @property
+    def input(self) -> dict[str, float]:
+        """Values of the inputs at the instant."""
+        return {quantity.name: quantity.value for quantity in self.input_quantities}
+
+    @property
+    def output(self) -> dict[str, float]:
+        """Values of the outputs at the instant."""
+        return {quantity.name: quantity.value for quantity in self.output_quantities}
+
+    @property
+    def contacts(self) -> dict[str, str]:
+        """How each contact is: locked, forward, backward or open."""
+        return {name: MODES[mode] for name, mode in self.modes_of_contacts.items()}
+
+    @cached_property
+    def eigenvalues(self) -> Array:
+        """Eigenvalues of A [1/s], slowest first."""
+        from clutchwork.linear.modes import eigenvalues
+
+        return eigenvalues(self.A)
+
+    @cached_property
+    def modes(self) -> NaturalModes:
+        """Natural modes: frequency, damping, time constant and shape of each; `print` shows a table."""
+        from clutchwork.linear.modes import natural_modes
+
+        return natural_modes(self.A, self.shafts, self.shaft_speeds, self.state_quantities)
+
+    @explained("frequency_response")
+    def frequency_response(self, frequencies: Any) -> Array:
+        """Response of every output to every input at frequencies [Hz].
+
+        A complex array (frequencies, outputs, inputs), in units of the output per unit of the input. UseError where a
+        frequency is that of an undamped mode, at which there is no finite response.
+        """
+        try:
+            asked = np.atleast_1d(np.asarray(frequencies, dtype=float))
+        except (TypeError, ValueError):
+            asked = np.full(1, np.nan)
+        if asked.ndim != 1 or not np.isfinite(asked).all():
+            given = f"frequencies = {shown(frequencies)}: must be finite numbers in Hz"
+            raise UseError("frequency_response", [given])
+        made = np.empty((len(asked), *self.D.shape), dtype=complex)
+        for place, frequency in enumerate(asked):
+            matrix = 2j * np.pi * frequency * np.eye(len(self.A)) - self.A
+            try:
+                made[place] = self.C @ np.linalg.solve(matrix, self.B) + self.D
+            except np.linalg.LinAlgError:
+                fault = f"{frequency:g} Hz is the frequency of an undamped mode; ask beside it"
+                raise UseError("frequency_response", [fault]) from None
+        return made
+
+    def to_control(self) -> Any:
+        """The system for python-control, with names; dots in them become underscores, which that package asks for."""
+        from clutchwork.linear.handover import to_control
+
+        return to_control(self)
+
+    def to_scipy(self) -> Any:
+        """The system as a `scipy.signal.StateSpace`."""
+        from clutchwork.linear.handover import to_scipy
+
+        return to_scipy(self)
+
+    @explained("plot")
+    def plot(self, path: str | Path | None = None) -> Figure:
+        """Picture of the eigenvalues and of the shapes of the modes; written to `path` when given. Needs matplotlib."""
+        from clutchwork.linear.picture import picture
+
+        return picture(self, path)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All of it as plain data, as `clutchwork linearise --json` prints it."""
+        from clutchwork.linear.handover import to_dict
+
+        return to_dict(self)
+
+    def __str__(self) -> str:
+        sizes = (
+            counted(len(part), name) for part, name in zip(self._parts, ("states", "inputs", "outputs"), strict=True)
+        )
+        head = f"{self.model} at {self.time:g} s: {', '.join(sizes)}"
+        words = {"locked": [], "slipping forward": [], "slipping backward": [], "open": []}  # type: dict[str, list[str]]
+        for name, how in self.contacts.items():
+            words[f"slipping {how}" if how in ("forward", "backward") else how].append(name)
+        contacts = [f"{how}: {', '.join(names)}" for how, names in words.items() if names]
+        lines = [head, *(["; ".join(contacts)] if contacts else []), "", self._table(), "", str(self.modes)]
+        return "\n".join([*lines, *(["", *self.notes] if self.notes else [])])
+
+    def __repr__(self) -> str:
+        sizes = (
+            counted(len(part), name) for part, name in zip(self._parts, ("states", "inputs", "outputs"), strict=True)
+        )
+        return f"<Linear {shown(self.model)} at {self.time:g} s: {', '.join(sizes)}>"
+
+    @property
+    def _parts(self) -> Sequence[Sequence[Quantity]]:
+        return self.state_quantities, self.input_quantities, self.output_quantities
+
+    def _table(self) -> str:
+        lines = [("", "", "value", "rate of change")]
+        for word, part in zip(("state", "input", "output"), self._parts, strict=True):
+            for place, quantity in enumerate(part[:MOST_SHOWN]):
+                rate = (
+                    f"{quantity.rate:.4g} {per_second(quantity.unit)}"
+                    if word == "state" and abs(quantity.rate) > 0.0
+                    else ""
+                )
+                lines.append((word if place == 0 else "", quantity.name, amount(quantity.value, quantity.unit), rate))
+            if len(part) > MOST_SHOWN:
+                lines.append(("", f"and {len(part) - MOST_SHOWN} more", "", ""))
+        return columns(lines, right=(2, 3))

@@ -1,0 +1,97 @@
+"""What a run offers to other programs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+from clutchwork.declare.calls import explained
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from clutchwork.results.recorded import Recorded
+
+
+class Exports:
+    """Ways out of a run. All take the same choice of signals and instants.
+
+    Parameters: names, signals by name, or wildcards such as "c1.*" and "*.speed", all by default; dt, distance of the
+    instants [s], or times, the instants [s], all of the run by default. Other instants are computed, as by `at`, not
+    interpolated. UnknownName, a KeyError, lists all names that mean nothing, with near ones.
+    """
+
+    @explained("to_csv")
+    def to_csv(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
+        """Write signals as columns `name [unit]` with 17 digits, the time first: for Excel, and for `cw.Column`."""
+        self._write("csv", path, names, dt, times)
+
+    @explained("to_parquet")
+    def to_parquet(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
+        """Write a Parquet file, a column for each signal with its unit. Needs pyarrow."""
+        self._write("parquet", path, names, dt, times)
+
+    @explained("to_mdf")
+    def to_mdf(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
+        """Write an MDF 4 file, a channel for each signal with its unit, and the events. Needs asammdf."""
+        self._write("mdf", path, names, dt, times)
+
+    @explained("to_mat")
+    def to_mat(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
+        """Write a MAT file with a structure `run`: signals, units, names, events. Needs scipy."""
+        self._write("mat", path, names, dt, times)
+
+    @explained("to_netcdf")
+    def to_netcdf(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
+        """Write a NetCDF file, a variable for each signal with its unit, and the events. Needs xarray and h5netcdf."""
+        self._write("netcdf", path, names, dt, times)
+
+    @explained("write")
+    def write(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
+        """Write the format that the ending of the file names: .csv, .parquet, .mf4, .mat or .nc."""
+        self._write("", path, names, dt, times)
+
+    @explained("to_pandas")
+    def to_pandas(
+        self,
+        names: Any = None,
+        *,
+        dt: float | None = None,
+        times: Any = None,
+        units: Mapping[str, str] | None = None,
+    ) -> Any:
+        """A pandas DataFrame over time; `frame.attrs["units"]` holds the units. Needs pandas.
+
+        Parameters: units, other ones than those of SI by signal, `*` for any characters: {"engine.speed": "rpm",
+        "*.pressure": "bar", "time": "ms"}.
+        """
+        from clutchwork.results.exchange.content import content
+        from clutchwork.results.exchange.frames import to_pandas
+
+        return to_pandas(content(self._recorded, names, dt, times), units)
+
+    @explained("to_xarray")
+    def to_xarray(self, names: Any = None, *, dt: float | None = None, times: Any = None) -> Any:
+        """An xarray Dataset with units as attributes. Needs xarray."""
+        from clutchwork.results.exchange.content import content
+        from clutchwork.results.exchange.frames import to_xarray
+
+        return to_xarray(content(self._recorded, names, dt, times))
+
+    @explained("save")
+    def save(self, path: str | Path) -> None:
+        """Write the whole run to one file, from which `cw.load_run` makes it again; nothing in it is code."""
+        from clutchwork.results.exchange import path_of
+        from clutchwork.results.exchange.saved import save
+
+        save(self._recorded, path_of(path, "save"))
+
+    @property
+    def _recorded(self) -> Recorded:
+        run: Any = self
+        return cast("Recorded", run)
+
+    def _write(self, form: str, path: str | Path, names: Any, dt: float | None, times: Any) -> None:
+        from clutchwork.results.exchange import write
+
+        write(self._recorded, path, names, dt, times=times, form=form)

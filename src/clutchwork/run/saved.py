@@ -1,0 +1,138 @@
+"""Runs from files that `Trajectory.save` wrote."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.system import System, SystemFormatError
+from clutchwork.assembly.wiring import wiring
+from clutchwork.base import archive
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import ClutchworkError, ModelWarning
+from clutchwork.base.regular import reason
+from clutchwork.base.shown import listed, shortened
+from clutchwork.declare.calls import explained
+from clutchwork.declare.layout import MODES
+from clutchwork.declare.options import Options, end_time
+from clutchwork.declare.status import NAMES
+from clutchwork.results.channels import channels
+from clutchwork.results.events import Event, Events
+from clutchwork.results.exchange.content import program
+from clutchwork.results.exchange.saved import FORMAT, MOST_BYTES, RUN_PARTS, RunFormatError
+from clutchwork.results.trajectory import Trajectory
+from clutchwork.run.control import Control
+from clutchwork.run.simulation import Job
+
+Array = NDArray[np.float64]
+
+
+class RepeatError(ClutchworkError, RuntimeError):
+    """A run that cannot be computed again."""
+
+
+@dataclass(frozen=True)
+class NoRepeat:
+    """Says why a run has no other instants."""
+
+    controllers: tuple[str, ...]
+    needs: tuple[str, ...] = ()  # what else the file does not hold
+
+    def __call__(self, _times: Any) -> NoReturn:
+        """Refuse."""
+        why = f"inputs were set by Python functions ({listed(self.controllers)}), which a file does not hold"
+        if self.needs:
+            why = f"{' and '.join(self.needs)}, which a file does not hold"
+        raise RepeatError(f"this run was loaded and cannot be repeated: {why}; simulate the model again")
+
+
+@explained("load_run")
+def load_run(path: str | Path) -> Trajectory:
+    """The run that `run.save(path)` wrote: signals, units, events, energy, options and status, bit for bit.
+
+    `run.at` repeats it as before, but where Python functions set inputs. RunFormatError where the file is damaged,
+    no run at all, or of another version.
+    """
+    try:
+        about, *parts = archive.read(path, RUN_PARTS, MOST_BYTES)
+        return _made(_about(about, path), parts, path)
+    except RunFormatError:
+        raise
+    except (ValueError, TypeError, RecursionError, OSError) as error:
+        why = reason(error) if isinstance(error, OSError) else shortened(str(error))
+        if isinstance(error, FileNotFoundError):
+            raise RunFormatError(f"{path} does not exist; check the path") from None
+        raise RunFormatError(f"{path}: cannot read a run: {why}; write the file with run.save") from None
+
+
+def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
+    about: Mapping[str, Any] = json.loads(data)
+    if "format" not in about:
+        raise ValueError("it does not say what it holds")
+    if about["format"] > FORMAT:
+        by, here = about.get("program"), program()
+        raise RunFormatError(f"{path} was saved by {by} in format {about['format']}; {here} reads {FORMAT}: update it")
+    missing = [key for key in ("system", "t_end", "options", "status", "message", "statistics") if key not in about]
+    if missing:
+        raise ValueError(f"it does not say {listed(missing)}")
+    if about["status"] not in NAMES:
+        raise ValueError("its status is none that a run has")
+    return about
+
+
+def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Trajectory:
+    times, rows, events, *model = parts
+    system, options, end = _system(about, model, path), Options(**about["options"]), end_time(about["t_end"])
+    controllers, needs = (tuple(map(str, about.get(key, ()))) for key in ("controllers", "needs"))
+    time = np.frombuffer(times, "<f8").astype(float)
+    job = Job(system, end, options, Control((), partial(channels, system)))
+    return Trajectory(
+        system=system,
+        options=options,
+        t_end=end,
+        time=time,
+        rows=_rows(system, rows, len(time)),
+        events=_events(system, json.loads(events)),
+        status=str(about["status"]),
+        message=str(about["message"]),
+        statistics=dict(about["statistics"]),
+        repeat=NoRepeat(controllers, needs) if controllers or needs else job.again,
+        capture=NoRepeat(controllers, needs) if controllers or needs else job.state,
+    )
+
+
+def _system(about: Mapping[str, Any], model: list[bytes], path: str | Path) -> System:
+    try:
+        if not model[1]:
+            return System.from_bytes(model[0], str(about["system"]))
+        with warnings.catch_warnings():
+            # whoever saved the run was warned
+            warnings.simplefilter("ignore", ModelWarning)
+            return System.of_parts(model, str(path))
+    except SystemFormatError as error:
+        by = f"it was saved by {about.get('program')}, this is {program()}"
+        remedy = "load it with that version and export it with run.write"
+        raise RunFormatError(f"{path}: its model cannot be used: {error} ({by}); {remedy}") from None
+
+
+def _rows(system: System, data: bytes, count: int) -> Array:
+    wires = wiring(system)
+    if len(data) != 8 * count * wires.row_size:
+        raise ValueError("its signals do not fit its model")
+    rows = np.frombuffer(data, "<f8").astype(float).reshape(count, wires.row_size)
+    if not np.all(np.isin(rows[:, wires.columns["contact_mode"]], list(MODES))):
+        raise ValueError("the mode of a contact is none that there is")
+    return rows
+
+
+def _events(system: System, lines: Any) -> Events:
+    kinds: list[type] = [float if kind == "float" else str for kind in Event.__annotations__.values()]
+    made = [Event(*(kind(value) for kind, value in zip(kinds, line, strict=True))) for line in lines]
+    return Events(made, [contact.name for contact in system.contacts])

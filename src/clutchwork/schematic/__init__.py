@@ -1,0 +1,1 @@
+"""Schematics: a driveline with the symbols of the field, laid out by itself."""

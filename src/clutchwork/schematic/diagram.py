@@ -1,0 +1,194 @@
+"""What is in a schematic: nodes, elements, and who is attached to whom; models with mistakes included."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import field
+from typing import Any
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.shown import printable, shortened
+from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode
+from clutchwork.declare.schema import Role, inputs, specs
+from clutchwork.model.components import component_problems
+from clutchwork.model.model import Model
+from clutchwork.model.parts import take_apart
+
+LONGEST, TITLE = 28, 80  # letters of a name, and of that of the driveline
+
+
+@dataclass(frozen=True, eq=False)
+class Thing:
+    """One symbol: a node or an element."""
+
+    name: str
+    what: str  # shaft, mass, thermal, ambient, missing, element, heat
+    source: Any  # the node or element itself
+    pins: dict[str, Thing] = field(default_factory=dict)  # of an element: port -> node
+    fixed: frozenset[str] = frozenset()  # ports at the housing
+    helpers: list[Thing] = field(default_factory=list)  # processes that drive it
+
+    @property
+    def is_node(self) -> bool:
+        """Whether elements are attached to it."""
+        return self.what not in ("element", "heat")
+
+    @property
+    def nodes(self) -> list[Thing]:
+        """The nodes that it is attached to, each once."""
+        return list(dict.fromkeys(self.pins.values()))
+
+
+@dataclass(frozen=True, eq=False)
+class Diagram:
+    """All symbols of a driveline, in order."""
+
+    name: str
+    things: list[Thing]
+
+    @property
+    def nodes(self) -> list[Thing]:
+        """Shafts, masses, thermal nodes, and those that are missing."""
+        return [thing for thing in self.things if thing.is_node]
+
+    @property
+    def elements(self) -> list[Thing]:
+        """What is attached to them."""
+        return [thing for thing in self.things if not thing.is_node]
+
+
+def label(name: object, longest: int = LONGEST) -> str:
+    """A name as it is written in the picture."""
+    text = shortened(printable(name if isinstance(name, str) else str(name)), longest)
+    return text if text.strip() else "?"
+
+
+def diagram(model: Model) -> Diagram:
+    """The diagram of a model, whatever its mistakes."""
+    return _Reader(model).read()
+
+
+class _Reader:
+    """Finds the node of each port, and makes one for those that are missing."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._nodes: dict[object, Thing] = {}
+        self._missing: dict[object, Thing] = {}
+        self._heats: list[Thing] = []
+
+    def read(self) -> Diagram:
+        """Everything of the model."""
+        model = self._model
+        for node in model.nodes:
+            what = "mass" if getattr(node.domain, "value", "") == "translation" else "shaft"
+            self._nodes[id(node)] = Thing(label(node.name), what, node)
+        for thermal in model.thermal:
+            self._thermal(thermal)
+        elements = [self._element(component) for component in model.elements]
+        placed = _assisted(elements)
+        found = [thing for thing in elements if id(thing) not in placed]
+        nodes = [*self._nodes.values(), *self._missing.values()]
+        return Diagram(label(model.name, TITLE), list(dict.fromkeys([*nodes, *found, *self._heats])))
+
+    def _thermal(self, node: ThermalNode) -> Thing:
+        what = "ambient" if node.capacity is None else "thermal"
+        return self._nodes.setdefault(("heat", str(node.name)), Thing(label(node.name), what, node))
+
+    def _element(self, component: Component) -> Thing:
+        pins: dict[str, Thing] = {}
+        fixed = []
+        for item, spec in specs(type(component), "port"):
+            node = getattr(component, item.name, None)
+            if (node is None and spec.optional) or (isinstance(node, Node) and node.fixed):
+                fixed.append(item.name)
+            else:
+                pins[item.name] = self._node(node)
+        inner, heated = _inside(component)
+        # a plate of several nodes is drawn as one
+        whole = not specs(type(component), "port", "thermal") and component.role is Role.COMPOSITE and bool(inner)
+        thing = Thing(label(component.name), "thermal" if whole else "element", component, pins, frozenset(fixed))
+        for node in inner:
+            key = ("heat", str(node.name))
+            if whole:
+                self._nodes[key] = thing
+            else:
+                self._thermal(node)
+        if component.role is Role.FLOW:
+            for item, _ in specs(type(component), "thermal"):
+                pins[item.name] = self._heat_node(getattr(component, item.name, None))
+        for node in heated:
+            self._heats.append(Thing(thing.name, "heat", component, {"heat": self._heat_node(node)}))
+        return thing
+
+    def _node(self, node: object) -> Thing:
+        if isinstance(node, Node) and id(node) in self._nodes:
+            return self._nodes[id(node)]
+        key = id(node) if isinstance(node, Node) else ("none", str(node))
+        name = node.name if isinstance(node, Node) else node
+        return self._missing.setdefault(key, Thing(label("?" if name is None else name), "missing", node))
+
+    def _heat_node(self, node: object) -> Thing:
+        if isinstance(node, ThermalNode):
+            found = self._nodes.get(("heat", str(node.name)))
+            if found is not None:
+                return found
+        name = node.name if isinstance(node, ThermalNode) else node
+        key = ("heat", str(name))
+        return self._missing.setdefault(key, Thing(label("?" if name is None else name), "missing", node))
+
+
+def _inside(component: Component) -> tuple[list[ThermalNode], list[ThermalNode]]:
+    """Thermal nodes that an element is made of, and those that take its heat; none where it has mistakes."""
+    if any(component_problems(component)):
+        node = getattr(component, "heat", None)
+        return [], [node] if isinstance(node, ThermalNode) else []
+    parts = take_apart([component])
+    paths = [part.heat_path() for part in parts.components]
+    named = {path.node.name: path.node for path in paths if path is not None}
+    return list(parts.thermal), list(named.values())
+
+
+def _assisted(elements: list[Thing]) -> set[int]:
+    """Give each process to the first element that it drives; those that found a place, by identity."""
+    of = {id(thing.source): thing for thing in elements}
+    placed: set[int] = set()
+    for thing in elements:
+        for source in given_by(thing.source):
+            helper = of.get(id(source))
+            if helper is None or helper is thing or id(helper) in placed or source.role is not Role.PROCESS:
+                continue
+            # one that drives itself in a circle stays on its own
+            if not _drives(thing, helper):
+                thing.helpers.append(helper)
+                placed.add(id(helper))
+    return placed
+
+
+def _drives(helper: Thing, thing: Thing) -> bool:
+    return helper is thing or any(_drives(helper, inner) for inner in thing.helpers)
+
+
+def given_by(element: Any) -> Iterator[Component]:
+    """Components whose states are inputs of an element."""
+    for names, _ in inputs(type(element)):
+        for name in names:
+            value = getattr(element, name, None)
+            value = value[0] if isinstance(value, tuple) and value else value
+            if isinstance(value, Component):
+                yield value
+
+
+def referred(value: object) -> str:
+    """An input that something else of the model gives, in words; empty for any other."""
+    if isinstance(value, Rate):
+        return f"slip of {label(value.of.name)}"
+    if isinstance(value, HeatFlow):
+        return f"heat of {label(value.of.name)}"
+    if isinstance(value, Node):
+        return f"speed of {label(value.name)}"
+    if isinstance(value, ThermalNode):
+        return f"{label(value.name)}"
+    if isinstance(value, tuple) and len(value) == 2 and isinstance(value[0], Component):
+        return f"{label(value[0].name)}.{value[1]}"
+    return label(value.name) if isinstance(value, Component) else ""

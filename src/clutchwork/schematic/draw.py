@@ -1,0 +1,89 @@
+"""Draw a model, or a run of it at an instant."""
+
+from __future__ import annotations
+
+from math import inf, isfinite
+from numbers import Real
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.base.errors import UseError
+from clutchwork.base.shown import shown
+from clutchwork.declare.quantity import QuantityError, in_si
+from clutchwork.model.model import Model
+from clutchwork.schematic.diagram import diagram
+from clutchwork.schematic.moment import Moment, instant
+from clutchwork.schematic.picture import Schematic, kind_of
+from clutchwork.schematic.sheet import sheet
+
+POINTS = 72.0 / 25.4  # in a millimetre
+MILLIMETRES = 310.0  # the width from which on a schematic is folded
+
+if TYPE_CHECKING:
+    from clutchwork.declare.node import Number
+    from clutchwork.results.recorded import Recorded
+
+
+def drawn(
+    model: Model,
+    path: str | Path | None = None,
+    *,
+    run: Recorded | None = None,
+    at: Number | None = None,
+    values: bool = True,
+    power: bool = False,
+    width: float = MILLIMETRES,
+) -> Schematic:
+    """The schematic of a model; with a run, of its state at an instant [s]; UseError for what does not fit."""
+    time = _seconds(at)
+    problems = [*_problems(model, path, run, time), *_width_problems(width)]
+    if problems:
+        raise UseError("draw", problems)
+    found = diagram(model)
+    moment = Moment()
+    if run is not None:
+        moment = instant(run, float(run.time[-1]) if time is None else float(time), power=power)
+    made = Schematic(found.name, sheet(found, moment, values=values, width=width * POINTS), moment.time)
+    if path is not None:
+        made.save(path)
+    return made
+
+
+def _seconds(at: Any) -> Any:
+    """A time in s where it has a unit."""
+    try:
+        return in_si(at, "s")
+    except QuantityError as error:
+        raise UseError("draw", [f"at is {error}"]) from None
+
+
+def _width_problems(width: Any) -> Any:
+    if not isinstance(width, Real) or isinstance(width, bool) or not 20.0 <= float(width) < inf:
+        yield f"width is {shown(width)}: give a number of at least 20 mm"
+
+
+def _problems(model: Model, path: Any, run: Any, at: Any) -> Any:
+    if path is not None and not isinstance(path, str | Path):
+        remedy = "give the run by name: run=..." if hasattr(path, "events") else "give a name that ends with .svg"
+        yield f"{shown(path)} is not a path; {remedy}"
+    elif path is not None and not kind_of(path):
+        yield f"{shown(str(path))} does not say the format: end it with .svg, .png or .pdf"
+    if run is None:
+        if at is not None:
+            yield f"at is {shown(at)}, but there is no run to show: give run=d.simulate(...)"
+        return
+    if not (hasattr(run, "events") and hasattr(run, "wiring")):
+        yield f"run is {shown(run)}: give what d.simulate(...) returned"
+        return
+    if not len(run):
+        yield f"the run has no instant to show: {run.message}"
+        return
+    missing = [node.name for node in run.wiring.nodes if node.name not in {one.name for one in model.nodes}]
+    if missing:
+        yield f"the run is of another driveline, which has {shown(missing[0])}: draw that one, or cw.draw(run)"
+    if at is None:
+        return
+    if not isinstance(at, Real) or isinstance(at, bool) or not isfinite(float(at)):
+        yield f"at is {shown(at)}: give one time in s"
+    elif not run.time[0] <= float(at) <= run.time[-1]:
+        yield f"at is {float(at):g} s: the run goes from {run.time[0]:g} to {run.time[-1]:g} s"

@@ -1,0 +1,44 @@
+"""Colours and lines of schematics: apart for every eye, and in black and white."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Look(NamedTuple):
+    """How a mark is drawn."""
+
+    colour: str = "#1A1A1A"
+    width: float = 1.0  # pt
+    fill: str = ""  # of an area
+    dash: str = "solid"
+
+
+INK = Look()
+THIN = Look(width=0.6)
+SHAFT = Look(width=1.4)
+PLATE = Look(width=2.2)
+BODY = Look(fill="#DDE3EA", width=1.0)
+BLANK = Look(fill="#FFFFFF", width=1.0)
+PAPER = "#FFFFFF"
+GREY = "#5A5A5A"
+MASS = Look(colour="#0B5D46", width=1.4)
+HEAT = Look(colour="#B3261E", width=1.0, dash="dash")
+WARM = Look(colour="#B3261E", width=1.0)
+SIGNAL = Look(colour="#6A3D9A", width=0.9, dash="dot")
+SIGNAL_BODY = Look(colour="#6A3D9A", width=0.9)
+WRONG = Look(colour="#C2185B", width=1.0, dash="dash")
+
+LOCKED, SLIPPING, OPEN = "locked", "slipping", "open"
+STATES = (LOCKED, SLIPPING, OPEN)
+# lines of a contact by its state, and the ground behind it
+STATE = {
+    "": INK,
+    LOCKED: Look(colour="#00497A"),
+    SLIPPING: Look(colour="#C04A00"),
+    OPEN: Look(colour="#8A8A8A"),
+}
+HALO = {LOCKED: "#CFE6F7", SLIPPING: "#FCE4D0"}
+
+NAME, VALUE, TINY = 7.5, 6.8, 5.2  # sizes of text [pt]
+LINE = 8.6  # pt from line to line

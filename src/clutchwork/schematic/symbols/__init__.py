@@ -1,0 +1,1 @@
+"""The symbols, by what they show."""

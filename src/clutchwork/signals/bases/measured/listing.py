@@ -1,0 +1,96 @@
+"""What a file of measurements holds, before a column of it is used."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import overload
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import FileError, UseError
+from clutchwork.base.regular import open_regular, reason
+from clutchwork.base.shown import shown
+from clutchwork.base.text import columns
+from clutchwork.declare.calls import explained
+from clutchwork.signals.bases.column_file import MOST_BYTES, as_text
+from clutchwork.signals.bases.column_heads import split
+from clutchwork.signals.bases.measured.formats import format_of, opened
+from clutchwork.signals.bases.semicolons import with_commas
+
+
+@dataclass(frozen=True)
+class Listed:
+    """One column, channel or variable of a file."""
+
+    name: str
+    unit: str  # as `Column` reads it, empty where the file says none
+    samples: int
+    group: str  # for `Column(group=)`, where a file has several of one name
+    is_text: bool  # words, which no signal can follow
+    aliases: tuple[str, ...] = ()  # shorter names that find it too
+
+
+class FileColumns(Sequence[Listed]):
+    """What a file holds, in its order; print it to read it."""
+
+    def __init__(self, found: Sequence[Listed]) -> None:
+        self._found = tuple(found)
+
+    @overload
+    def __getitem__(self, index: int) -> Listed: ...
+    @overload
+    def __getitem__(self, index: slice) -> FileColumns: ...
+    def __getitem__(self, index: int | slice) -> Listed | FileColumns:
+        return FileColumns(self._found[index]) if isinstance(index, slice) else self._found[index]
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def __iter__(self) -> Iterator[Listed]:
+        return iter(self._found)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all columns."""
+        return tuple(one.name for one in self)
+
+    def __str__(self) -> str:
+        """A table for reading."""
+        lines = [(one.name, "text" if one.is_text else one.unit, str(one.samples), one.group) for one in self]
+        return columns([("column", "unit", "samples", "group"), *lines], right={2}) if lines else "no columns"
+
+    __repr__ = __str__
+
+
+@explained("read_columns")
+def read_columns(path: str | Path) -> FileColumns:
+    """What a file of measurements holds, which `cw.Column` can follow: names, units, numbers of samples, groups.
+
+    Parameters: path of a CSV, MDF, MAT, Parquet or NetCDF file. FileError, a ValueError, where it cannot be read.
+    """
+    if not isinstance(path, str | PathLike):
+        raise UseError("read_columns", [f"path: {shown(path)} is not a path; give a string, such as 'measured.mf4'"])
+    where, told = Path(path), str(path)
+    try:
+        form = format_of(where)
+        if form:
+            with opened(where, form, told) as found:
+                return FileColumns(
+                    [Listed(one.name, one.unit, one.samples, one.group, one.is_text, one.aliases) for one in found]
+                )
+        return FileColumns(_of_csv(where))
+    except FileNotFoundError:
+        raise FileError([("path", f"{shown(told)} does not exist", "check the path")]) from None
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        why = reason(error) if isinstance(error, OSError) else "it is not UTF-8 text"
+        raise FileError([("path", f"{shown(told)} cannot be read: {why}", "give a file of measurements")]) from None
+
+
+def _of_csv(path: Path) -> list[Listed]:
+    with open_regular(path, MOST_BYTES) as file, with_commas(file) as plain, as_text(plain) as text:
+        lines = csv.reader(text)
+        heads = [split(head.strip()) for head in next(lines, [])]
+        samples = sum(1 for line in lines if any(line))
+    return [Listed(name, unit, samples, "", is_text=False) for name, unit in heads]
