@@ -6,6 +6,7 @@ import json
 import warnings
 from collections.abc import Mapping
 from functools import partial
+from math import inf
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -21,7 +22,7 @@ from clutchwork.base.regular import reason
 from clutchwork.base.shown import listed, shortened
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES
-from clutchwork.declare.options import Options, end_time
+from clutchwork.declare.options import Options
 from clutchwork.declare.status import NAMES
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Event, Events
@@ -88,7 +89,10 @@ def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
 
 def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Trajectory:
     times, rows, events, tape, head, core, row, *model = parts
-    system, options, end = _system(about, model, path), Options(**about["options"]), end_time(about["t_end"])
+    system, options, end = _system(about, model, path), Options(**about["options"]), float(about["t_end"])
+    # one that was never stepped ends where it begins
+    if not options.t_start <= end < inf:
+        raise ValueError("its end is none")
     controllers = tuple(map(str, about.get("controllers", ())))
     time = np.frombuffer(times, "<f8").astype(float)
     start = State.of_parts(head, core, row) if head else None
