@@ -165,7 +165,6 @@ def test_a_function_that_fails_loses_its_value_alone():
     assert np.isnan(found["fussy"]).tolist() == (found["load.speed"] > 15.0).tolist() == [False, True, False]
     assert [(one.variant, one.output) for one in found.problems] == [(1, "fussy")]
     assert found.problems[0].reason.startswith("ZeroDivisionError: ")
-    assert pickle.loads(pickle.dumps(found)).problems == found.problems
     assert not cw.sweep(discs(), 3.0, vary={"c1.gain": [0.5]}, outputs="load.speed").problems
 
 
@@ -198,11 +197,11 @@ def test_what_is_no_number_name_or_variant():
 
 
 def test_wrong_values_of_all_names_at_once():
-    vary = {"c1.normal_force": ["two", -1.0, 3.0], "c1.gain": [-1.0, 2.0], "load.inertia": [0.0, 1.0]}
+    vary = {"c1.normal_force": ["two", "3 bar", 3.0], "c1.gain": [-1.0, 2.0], "load.inertia": [-0.8, 1.0]}
     with pytest.raises(cw.ModelError) as caught:
         cw.sweep(discs(), 3.0, vary=vary, outputs="load.speed")
     text = str(caught.value)
-    for words in ("'two'", "-1.0 N", "gain = -1.0", "inertia"):
+    for words in ("'two'", "'3 bar'", "gain = -1.0", "inertia = -0.8"):
         assert words in text
 
 
