@@ -64,9 +64,7 @@ def test_units_of_files_and_of_the_picture(model: Path, tmp_path: Path, capsys: 
         assert words in capsys.readouterr().err
 
 
-def test_a_run_goes_on_from_a_state_with_the_same_bits(
-    model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_goes_on_from_a_state(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     state, files = tmp_path / "one.state", [tmp_path / name for name in ("whole.csv", "rest.csv")]
     run = ["run", str(model), "--quiet"]
     assert main([*run, "--t-end", "1", "--save-state", str(state)]) == 0
@@ -75,11 +73,11 @@ def test_a_run_goes_on_from_a_state_with_the_same_bits(
     whole, rest = ([line.split(",") for line in file.read_text().splitlines()] for file in files)
     assert len(rest) == 4
     column = whole[0].index("load.speed [rad/s]")
-    assert [float(row[column]) for row in rest[1:]] == pytest.approx(
-        [float(row[column]) for row in whole[2:]], rel=1e-9
-    )
+    wanted, found = ([float(row[column]) for row in table] for table in (whole[2:], rest[1:]))
+    # the whole run has no step that ends at 1 s
+    assert found == pytest.approx(wanted, rel=1e-9)
     assert main([*run, "--start", str(state), "--t-start", "0.5"]) != 0
-    assert "leave t_start out" in capsys.readouterr().err.replace("t-start", "t_start").replace("--", "")
+    assert "t_start cannot be given beside start" in capsys.readouterr().err
     assert main([*run, "--start", str(model)]) != 0
     assert "cannot read a state" in capsys.readouterr().err
 
