@@ -31,7 +31,7 @@ def launch(begin: float = 0.0) -> cw.Driveline:
     law = cw.Stribeck(static=0.13, kinetic=0.1, speed=10.0)
     d.add(
         cw.Clutch(
-            "c1", base=gearbox, follower=engine, friction=law, gain=5e-4, pressure=(piston, "pressure"), heat=lining
+            "c1", base=gearbox, follower=engine, friction=law, gain=3e-3, pressure=(piston, "pressure"), heat=lining
         )
     )
     d.add(cw.SpringDamper("k", base=gearbox, follower=load, stiffness=900.0, damping=1.5))

@@ -89,10 +89,10 @@ def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
 
 def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Trajectory:
     times, rows, events, tape, head, core, row, *model = parts
-    system, options, end = _system(about, model, path), Options(**about["options"]), float(about["t_end"])
+    system, options, end = _system(about, model, path), Options(**about["options"]), _end(about["t_end"])
     # one that was never stepped ends where it begins
     if not options.t_start <= end < inf:
-        raise ValueError("its end is none")
+        raise ValueError(f"t_end is {end:g} s, before it begins")
     controllers = tuple(map(str, about.get("controllers", ())))
     time = np.frombuffer(times, "<f8").astype(float)
     start = State.of_parts(head, core, row) if head else None
@@ -112,6 +112,13 @@ def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Tra
         repeat=NoRepeat(controllers) if controllers else job.again,
         capture=NoRepeat(controllers) if controllers else job.state,
     )
+
+
+def _end(given: Any) -> float:
+    """The end of a run [s]; TypeError where it is no number."""
+    if isinstance(given, bool) or not isinstance(given, int | float):
+        raise TypeError("its t_end is no number")
+    return float(given)
 
 
 def _course(system: System, tape: bytes, start: State | None) -> Course:
