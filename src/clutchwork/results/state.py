@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
 FORMAT = 1
-PARTS = ("head", "core", "row")
+PARTS = ("head", "core", "row", "left")
 
 
 class StateError(ClutchworkError, ValueError):
@@ -46,17 +46,23 @@ class State:
     fingerprint: str  # of its System
     core: bytes = field(repr=False)  # as the compiled core saves it
     row: bytes = field(repr=False)  # output row at this instant
+    left: bytes = field(default=b"", repr=False)  # the one before what was set there, which controllers see
     held: Mapping[str, float] = field(default_factory=dict)  # signals that were set from outside
     changed: Mapping[str, Any] = field(default_factory=dict)  # parameters that were
 
     def __repr__(self) -> str:
-        size = len(self.core) + len(self.row)
+        size = len(self.core) + len(self.row) + len(self.left)
         return f"<State of {shown(self.model)} at {self.time:g} s, {size / 1024:.1f} KiB>"
 
     @property
     def values(self) -> NDArray[np.float64]:
         """The output row of the core at this instant."""
         return np.frombuffer(self.row, dtype=np.float64)
+
+    @property
+    def before(self) -> NDArray[np.float64]:
+        """The output row before what was set at this instant."""
+        return np.frombuffer(self.left or self.row, dtype=np.float64)
 
     @explained("state.save")
     def save(self, path: str | Path) -> None:
@@ -68,7 +74,7 @@ class State:
         _refuse_no_path("state.save", path)
         head = {"format": FORMAT, "time": self.time, "model": self.model, "fingerprint": self.fingerprint}
         head |= {"held": dict(self.held), "changed": dict(self.changed)}
-        archive.write(path, {"head": json.dumps(head).encode(), "core": self.core, "row": self.row})
+        archive.write(path, {"head": json.dumps(head).encode(), "core": self.core, "row": self.row, "left": self.left})
 
     @classmethod
     @explained("cw.State.load")
@@ -79,8 +85,8 @@ class State:
 
         _refuse_no_path("cw.State.load", path)
         try:
-            head, core, row = archive.read(path, PARTS)
-            return cls(core=core, row=row, **_read_head(head))
+            head, core, row, left = archive.read(path, PARTS)
+            return cls(core=core, row=row, left=left, **_read_head(head))
         except (ValueError, RecursionError, OSError) as error:
             why = reason(error) if isinstance(error, OSError) else shortened(str(error))
             raise StateError(f"{path}: cannot read a state: {why}; write the file with State.save") from None
