@@ -64,6 +64,8 @@ def environment(
     for name, function in (("reward", reward), ("ends", ends or reward)):
         if not callable(function):
             wrong.append(f"{name} is {shown(function)}: give a function of a Moment")
+    if start is not None and not wrong and t_end <= start.time:
+        wrong.append(f"t_end is {t_end:g} s, and start is at {start.time:g} s: give a later end of the episodes")
     if start is not None and vary:
         wrong.append("vary needs a new start in every episode: give vary or start")
     if render_mode not in (None, "rgb_array"):

@@ -51,7 +51,7 @@ class DrivelineEnv(Env[Observation, Observation]):
         self.metadata = {**self.metadata, "render_fps": max(1, round(1.0 / times[1]))}
         self.action_space = actions.space(spaces)
         self.observation_space = observations.space(spaces)
-        self.sim = begin(system)
+        self.sim = self._plain = begin(system)
         # names are looked up now: a wrong one is an error before the first episode
         self.sim.set(actions.values(np.zeros(len(actions.names))))
         self._seen()
@@ -70,6 +70,8 @@ class DrivelineEnv(Env[Observation, Observation]):
         if self._varies or given:
             self.sim = self._new(self._system.changed(values | given))
         else:
+            # that of the model, whatever the episode before was given
+            self.sim = self._plain
             self.sim.reset()
         return self._seen(), self._info(values | given)
 
@@ -81,7 +83,8 @@ class DrivelineEnv(Env[Observation, Observation]):
         self.sim.set(values)
         failure = ""
         try:
-            self.sim.advance_to(min(t_end, begun + period))
+            # a multiple of the period, as `advance` ends at
+            self.sim.advance(min(period, t_end - begun))
         except SimulationError as error:
             failure = str(error)
         now = before if failure else self.sim.readings()
