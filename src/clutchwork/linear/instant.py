@@ -20,6 +20,7 @@ from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.linear.reached import reached, refuse_stopped, resumed, started, step_over
 from clutchwork.results.trajectory import Trajectory
 from clutchwork.run.failure import StoppedEarly
+from clutchwork.run.settings import without_end
 from clutchwork.run.simulation import simulate
 
 if TYPE_CHECKING:
@@ -73,8 +74,9 @@ def instant_of(model: Any, at: Any) -> Instant:
     system = model if isinstance(model, System) else model.assemble()
     if _is_state(at):
         return _read(system, resumed(system, at), ())
-    if at is None or float(at) == 0.0:
-        return _read(system, started(system), ())
+    begin = without_end(system.settings, {}).t_start
+    if at is None or float(at) == begin:
+        return _read(system, started(system, begin), ())
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StoppedEarly)
         run = simulate(system, float(at))

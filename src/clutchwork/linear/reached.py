@@ -21,12 +21,13 @@ if TYPE_CHECKING:
 SHORT = 1e-6
 
 
-def started(system: System) -> Any:
-    """A run at the start, controllers asked."""
+def started(system: System, begin: float) -> Any:
+    """A run at its start at a time [s], controllers asked."""
+    options = DEFAULTS.changed({"t_start": begin})
     if any(item.signal.sampling() is not None for item in system.inputs):
-        return reached(simulate(system, SHORT, options=DEFAULTS), 0.0)
+        return reached(simulate(system, begin + SHORT, options=options), begin)
     run = core().Run(system.to_bytes())
-    for name, value in DEFAULTS.core_options().items():
+    for name, value in options.core_options().items():
         run.set_option(name, value)
     return run
 
