@@ -460,3 +460,11 @@ def test_a_controller_sees_the_same_after_a_state(first: float, tmp_path: Path) 
     run = cw.simulate(d, first + 0.03, start=state, output="steps")
     assert run.rows[-1].tobytes() == wanted
     assert run.at([first + 0.03]).rows[-1].tobytes() == wanted
+
+
+def test_the_instant_of_a_state_may_have_a_unit() -> None:
+    """As that of run.at has."""
+    run = cw.simulate(launched(), 0.1)
+    assert run.state(at="50 ms").core == run.state(at=0.05).core
+    with pytest.raises(cw.UseError, match="has a unit that does not fit; give a time in s"):
+        run.state(at="5 m")
