@@ -29,6 +29,7 @@ PUBLIC = [
     *("compare", "draw", "export_c", "fit", "rig", "simulate"),
     *("Sweep", "SweepInterrupted", "at", "break_away", "integral", "lock", "maximum", "minimum", "peak"),
     *("sweep", "variants"),
+    *("Moment", "environment"),
     *("Linear", "linearise", "linearize"),
     *("load_run", "read_columns"),
 ]

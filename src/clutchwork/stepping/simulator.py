@@ -280,6 +280,10 @@ class Simulator:
             return self._readout[name]
         return np.array([self._readout[one] for one in name], dtype=float)
 
+    def readings(self) -> Readings:
+        """All signals at the present time by name, evaluated when they are read; they stay so when the run goes on."""
+        return Readings(self._readout.channels, self._row().copy())
+
     def __contains__(self, name: object) -> bool:
         return name in self._readout
 

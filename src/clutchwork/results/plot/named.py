@@ -33,7 +33,7 @@ def draw(view: View, panels: Sequence[Panel], path: Path | None, colour: str) ->
         rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
         for axes, panel in zip(rows, panels, strict=True):
             _panel(axes, panel, view, colour)
-        rows[0].set_xlim(view.begin, view.end)
+        rows[0].set_xlim(*view.limits)
         rows[-1].set_xlabel("time, s")
         _words(rows[0], view)
         figure.align_ylabels(rows)
@@ -102,12 +102,14 @@ def curve_looks(curves: Sequence[Curve], runs: Sequence[str], colour: str) -> li
 
 def _words(axes: Axes, view: View) -> None:
     """What happens, above the first panel, as far as there is room."""
-    width, taken = view.end - view.begin, 0.0
+    begin, end = view.limits
+    taken = 0.0
     for instant in sorted({event.time for _, event in view.marks}):
         found = list(dict.fromkeys(happened(event) for _, event in view.marks if event.time == instant))
-        share, room = (instant - view.begin) / width, LETTER * len(found[0]) + 0.01
-        left = min(max(share - 0.5 * room, 0.0), 1.0 - room)
-        if len(found) > 1 or left < taken:
+        share, room = (instant - begin) / (end - begin), LETTER * len(found[0]) + 0.01
+        # beside its line where another word takes the room
+        left = min(max(share - 0.5 * room, taken), 1.0 - room)
+        if len(found) > 1 or left < taken or left > share:
             continue
         taken = left + room
         axes.annotate(

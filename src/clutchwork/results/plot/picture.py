@@ -112,7 +112,7 @@ def _draw(figure: Figure, view: View, lockup: Event | None, chosen: list[Panel])
         panel.draw(axes)
         axes.set_title(f"{ascii_lowercase[row]})  {panel.title}", loc="left")
         if panel.whole:
-            axes.set_xlim(view.begin, view.end)
+            axes.set_xlim(*view.limits)
             _mark(axes, instants)
         # one label is enough for panels over the same time
         if row + 1 < len(chosen) and panel.whole and chosen[row + 1].whole:

@@ -1,0 +1,1 @@
+"""Environments for learning and tuning: a driveline that an agent steps."""
