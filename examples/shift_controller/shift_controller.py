@@ -85,10 +85,16 @@ class ShiftController:
 
 
 def gearbox(**changes: object) -> cw.Simulator:
-    """The six-speed gearbox, launching in third gear; changes as of `System.changed`."""
-    sim = cw.Simulator(cw.Driveline.load(MODEL).assemble().changed(changes))
+    """The six-speed gearbox at rest in third gear; changes as of `System.changed`."""
+    sim = cw.Simulator(cw.Driveline.load(MODEL).assemble().changed({"w1.speed": 0.0, **changes}))
     sim.set({f"{ON}.pressure": 0.0, f"{OFF}.pressure": FULL, f"{HELD}.pressure": FULL})
     return sim
+
+
+def lining(factor: float) -> dict[str, object]:
+    """The lining of the oncoming clutch with its coefficients times a factor, as changes of the gearbox."""
+    cold = {"static": 0.16, "slow": 0.14, "fast": 0.065}
+    return {f"{ON}.friction.{name}": factor * value for name, value in cold.items()}
 
 
 def drive(sim: cw.Simulator, controller: ShiftController, until: float) -> list[tuple[float, str]]:
@@ -103,8 +109,9 @@ def drive(sim: cw.Simulator, controller: ShiftController, until: float) -> list[
 
 
 def picture(run: cw.Trajectory, path: Path) -> None:
-    """Pressures, slips and the torque of the output shaft."""
-    run.plot((f"{ON}.pressure", f"{OFF}.pressure"), (f"{ON}.slip", f"{OFF}.slip"), "shaft.torque", path=path)
+    """Pressures, slips and the torque of the output shaft during the shift."""
+    pressures, slips = (f"{ON}.pressure", f"{OFF}.pressure"), (f"{ON}.slip", f"{OFF}.slip")
+    run.plot(pressures, slips, "shaft.torque", zoom=(1.9, 3.3), path=path)
 
 
 if __name__ == "__main__":
