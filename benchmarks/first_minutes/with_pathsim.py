@@ -33,7 +33,7 @@ def simulation(pressure, gain=5e-4):
         Connection(discs[1], scope[1]),
         Connection(torque, scope[2]),
     ]
-    made = Simulation([pressure, discs, torque, scope], links, events, Solver=RKDP54, dt=1e-3, log=False)
+    made = Simulation([pressure, discs, torque, scope], links, events, Solver=RKDP54, dt_max=1e-2, log=False)
     return made, scope, locked
 
 
@@ -58,7 +58,7 @@ for gain in np.linspace(4e-4, 8e-4, 20):
 pressure = Source(lambda t: pressed[0])
 pressed = [0.0]
 made, scope, locked = simulation(pressure)
-for step in range(250):
+for _ in range(250):
     speeds = made.blocks[1].engine.state
     pressed[0] = 0.0 if locked else np.clip(pressed[0] + 20.0 * (speeds[0] - speeds[1]), 0.0, 2e5)
     made.run(0.01)

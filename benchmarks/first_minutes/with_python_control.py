@@ -1,4 +1,4 @@
-"""python-control: two discs that a clutch joins; it knows no events, so the sign of the slip is smoothed and it creeps."""
+"""python-control: two discs that a clutch joins; without events the sign of the slip is smoothed, and it creeps."""
 
 # model
 import control as ct

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import re
 import sys
 from pathlib import Path
@@ -36,10 +37,13 @@ def told(name: str, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     text = page(name).read_text(encoding="utf-8")
     programs = re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
-    programs = [program.replace('"examples/', f'"{ROOT.as_posix()}/examples/') for program in programs]
+    programs = [
+        program.replace('"examples/', f'"{ROOT.as_posix()}/examples/')
+        for program in programs
+    ]
     before = list(sys.path)
     # what the programs print is for their readers
-    with contextlib.chdir(folder), contextlib.redirect_stdout(None):
+    with contextlib.chdir(folder), contextlib.redirect_stdout(io.StringIO()):
         exec("\n".join(programs), {})
     sys.path[:] = before
     return [folder / made for made in pictures(name)]
