@@ -9,6 +9,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures"), str(HERE)]
 
 import drawings  # noqa: E402
+import examples  # noqa: E402
 import experiments  # noqa: E402
 import kept  # noqa: E402
 import launches  # noqa: E402
@@ -29,6 +30,7 @@ kept.write(launches.write, HERE / "reference" / "car")
 kept.write(sweeps.write, HERE / "reference" / "sweeps")
 kept.write(drawings.write, HERE / "reference" / "pictures")
 kept.write(schematics.write, HERE / "reference" / "schematics")
+kept.write(examples.write, HERE / "reference" / "examples")
 kept.write(stories.write, HERE / "reference" / "stories")
 kept.write(shuffle.write, HERE / "reference" / "linear")
 parity.write(HERE / "reference")

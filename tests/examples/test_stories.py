@@ -45,7 +45,7 @@ def test_the_first_launch_prints_what_its_page_shows(clone: Path) -> None:
     names, page = told("start"), (GUIDE / "start.md").read_text(encoding="utf-8")
     assert f"locks at {names['run'].events[-1].time:.3f} s" in page
     assert " ".join(str(names["soft"].hints).split()) in " ".join(page.split())
-    (clutch,) = (item for item in names["d"].components if item.name == "clutch")
+    (clutch,) = (item for item in names["d"].elements if item.name == "clutch")
     assert f"{clutch.gain:.3e} m3".replace("e-03", "e-3") in page
     for made in ("model.svg", "launch.png", "both.png"):
         assert (clone / made).stat().st_size > 5000
@@ -136,3 +136,12 @@ def test_pages_of_stories_are_in_the_guide_in_their_order() -> None:
     order = ["start", "build", "thermal-launch", "wet-clutch", "shift-controller", "learn", "sweeps", "fit", "export"]
     places = [index.index(f"\nguide/{name}\n") for name in [*order, "notebook", "first-minutes"]]
     assert places == sorted(places)
+
+
+def test_every_example_is_listed_with_its_picture() -> None:
+    page = (ROOT / "docs" / "examples.md").read_text(encoding="utf-8")
+    found = sorted(path.name for path in (ROOT / "examples").iterdir() if (path / "README.md").exists())
+    cards = [card.partition("\n:::")[0] for card in page.split(":::{grid-item-card}")[1:]]
+    listed = [re.findall(r"examples/(\w+)", card)[0] for card in cards]
+    assert sorted(listed) == found
+    assert all("{image} " in card for card in cards)
