@@ -9,7 +9,6 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures"), str(HERE)]
 
 import drawings  # noqa: E402
-import examples  # noqa: E402
 import experiments  # noqa: E402
 import kept  # noqa: E402
 import launches  # noqa: E402
@@ -18,6 +17,7 @@ import shuffle  # noqa: E402
 import stories  # noqa: E402
 
 import clutchwork  # noqa: E402
+import examples  # noqa: E402
 import gen_docs  # noqa: E402
 import gen_lists  # noqa: E402
 import parity  # noqa: E402

@@ -39,7 +39,7 @@ def named(path: Path) -> str:
 
 @pytest.fixture
 def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A working folder with nothing but the examples, as the root of a clone has them, and pictures without a screen."""
+    """A working folder with the examples alone, as the root of a clone has them, and pictures without a screen."""
     pytest.importorskip("matplotlib").use("agg")
     shutil.copytree(ROOT / "examples", tmp_path / "examples", ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.chdir(tmp_path)
