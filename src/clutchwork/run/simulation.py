@@ -65,12 +65,6 @@ class Job:
         """Time at which it begins [s]."""
         return self.options.t_start
 
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """What it cannot be repeated without beside model and options, but for Python functions."""
-        stepped = () if isinstance(self.course, Control) else ("it was stepped and set from outside",)
-        return (*(("it went on from a state",) if self.start is not None else ()), *stepped)
-
     def again(self, times: Any) -> Trajectory:
         """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
         wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
@@ -122,7 +116,8 @@ def simulate(
     refuse_endless(system.inputs, chosen.t_start, end, chosen.max_steps)
     held, changed = (start.held, start.changed) if start else ({}, {})
     control = Control(controllers(system.inputs, held), partial(channels, system), held=held, changed=changed)
-    with followed(progress, end, "simulate", "(time, t_end)", bar_format=MEASURED, unit="s") as told:
+    asks = "(time, t_end)"
+    with followed(progress, end, "simulate", asks, chosen.t_start, bar_format=MEASURED, unit="s") as told:
         run = trajectory(Job(system, end, chosen, control, start), told)
     report_faults(run)
     return run
