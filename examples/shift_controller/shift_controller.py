@@ -16,13 +16,13 @@ ON, OFF, HELD = "F1", "F2", "F4"  # closes, opens, stays closed: third gear to f
 
 @dataclass
 class ShiftController:
-    """Third gear to fourth: one clutch takes over from another, then pulls the turbine down along a wanted slip.
+    """Third gear to fourth: F1 takes over from F2, then pulls the turbine down.
 
     waiting   third gear
-    filling   the oncoming clutch is filled, the offgoing one falls towards what it has to hold
-    torque    the oncoming clutch takes over the torque, until the offgoing one slips
-    inertia   the offgoing clutch is open; the slip of the oncoming one follows a straight line down to zero
-    closing   the oncoming clutch holds: up to full pressure
+    filling   F1 is filled, F2 falls towards what it has to hold
+    torque    F1 takes over the torque, until F2 slips
+    inertia   F2 is open; the slip of F1 follows a straight line down to zero
+    closing   F1 holds: up to full pressure
     done      fourth gear
     """
 
@@ -97,11 +97,15 @@ def lining(factor: float) -> dict[str, object]:
     return {f"{ON}.friction.{name}": factor * value for name, value in cold.items()}
 
 
-def drive(sim: cw.Simulator, controller: ShiftController, until: float) -> list[tuple[float, str]]:
+def drive(
+    sim: cw.Simulator,
+    controller: ShiftController,
+    until: float,
+) -> list[tuple[float, str]]:
     """Let a controller shift up to a time [s]; when it entered which state."""
     states = [(sim.time, controller.state)]
     while sim.time < until - 1e-9:
-        sim.set(controller.step(sim.time, sim[f"{ON}.slip"], sim[f"{OFF}.slip"]))
+        sim.set(controller.step(sim.time, *sim[[f"{ON}.slip", f"{OFF}.slip"]]))
         if controller.state != states[-1][1]:
             states.append((sim.time, controller.state))
         sim.advance(PERIOD)
