@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -155,6 +157,31 @@ def test_the_temperature_that_no_lining_stands() -> None:
     (hint,) = CASES["too hot"].wrong().simulate(30.0).hints
     assert hint.numbers["temperature [K]"] == pytest.approx(300.0 + 18.75 * 30.0, rel=1e-6)
     assert hint.begin == pytest.approx(473.0 / 18.75, abs=0.04)
+
+
+def test_a_lining_with_a_limit_of_its_own_is_compared_with_it(tmp_path: Path) -> None:
+    """1500 W into 200 J/K: 7.5 K/s from 300 K on."""
+    d = warm(900.0)
+    d._model.thermal[0] = plates = cw.ThermalNode("plates", 200.0, 300.0, limit="200 degC")
+    d._model.elements[-1] = replace(d.elements[-1], heat=plates)
+    d.save(tmp_path / "warm.toml")
+    for one in (d, cw.Driveline.load(tmp_path / "warm.toml")):
+        (hint,) = one.simulate(30.0).hints
+        assert hint.numbers["limit [K]"] == 473.15
+        assert hint.begin == pytest.approx(173.15 / 7.5, abs=0.04)
+        assert "its limit is 473.15 K" in hint.message
+    d._model.thermal[0] = plates = replace(plates, limit="530 K")
+    d._model.elements[-1] = replace(d.elements[-1], heat=plates)
+    assert not d.simulate(30.0).hints
+
+
+def test_a_disc_clutch_gives_its_plates_the_limit() -> None:
+    d = cw.Driveline("disc")
+    shaft = d.shaft("s", inertia=1.0)
+    given = {"base": d.housing, "follower": shaft, "radius": 0.1, "temperature_limit": "250 degC"}
+    assert cw.DiskClutch("c", **given, thermal_mass=1e3).plates.limit == 523.15
+    d.add(cw.DiskClutch("c", **given, pressure=0.0))
+    assert "give thermal_mass, or the limit of the heat node" in str(d.check()[0])
 
 
 def test_judder_grows_by_the_slope_less_the_damping_over_twice_the_inertia() -> None:

@@ -27,7 +27,18 @@ PUBLIC = [
     *("Simulator", "State", "StateError"),
     *("StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
     *("compare", "draw", "export_c", "fit", "rig", "simulate"),
-    *("Sweep", "SweepInterrupted", "at", "break_away", "integral", "lock", "maximum", "minimum", "peak"),
+    *(
+        "OutputWarning",
+        "Sweep",
+        "SweepInterrupted",
+        "at",
+        "break_away",
+        "integral",
+        "lock",
+        "maximum",
+        "minimum",
+        "peak",
+    ),
     *("sweep", "variants"),
     *("Moment", "environment"),
     *("Linear", "linearise", "linearize"),
@@ -67,7 +78,7 @@ def test_help_starts_with_the_words_of_a_class_and_lists_every_parameter(cls):
 
 
 def test_all_of_a_disc_clutch_is_shown():
-    assert len(list(parameters(cw.DiskClutch))) == 28
+    assert len(list(parameters(cw.DiskClutch))) == 29
     assert "    surfaces (whole number [1] > 0, default 4): number of friction surfaces\n" in cw.DiskClutch.__doc__
     assert (
         "    normal_force (signal [N], default none): force on the discs (instead of `pressure`)\n"

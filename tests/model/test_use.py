@@ -337,7 +337,9 @@ def test_every_temperature_of_the_registry_is_watched(cls, name):
         d.add(cw.Brake("b", shaft=d.nodes[0], friction=law, gain=1.0, pressure=1.0))
     else:
         d = samples.driveline(cls)
-        d._model.elements[0] = replace(d.elements[0], **{name: _celsius(getattr(d.elements[0], name) or 300.0)})
+        # a limit needs the temperature that it is one of
+        more = {"thermal_mass": 1e3} if name == "temperature_limit" else {}
+        d._model.elements[0] = replace(d.elements[0], **{name: _celsius(getattr(d.elements[0], name) or 300.0)}, **more)
     found = _warned(d)
     assert any(f"{name} " in words and "implausibly low" in words for words in found)
 

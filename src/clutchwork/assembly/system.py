@@ -20,8 +20,8 @@ from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, froz
 from clutchwork.assembly.rooms import rooms
 from clutchwork.assembly.sparse import dense, entries
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError, ModelError, near, warn
-from clutchwork.base.shown import shortened
+from clutchwork.base.errors import ClutchworkError, ModelError, UseError, near, warn
+from clutchwork.base.shown import shortened, shown
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE
 from clutchwork.declare.node import Component, Node, ThermalNode
@@ -140,6 +140,9 @@ class System:
 
         The result is that of assembling a driveline with these values, bit for bit. What it warns of is new.
         """
+        if not isinstance(changes, Mapping):
+            remedy = 'give values by name: changed({"engine.inertia": 0.3, "c1.gain": 5e-4})'
+            raise UseError("changed", [f"changes is {shown(changes)}: {remedy}"])
         if self.source is None:
             raise ModelError([UNKNOWN_SOURCE])
         # what is warned of is looked at as a whole

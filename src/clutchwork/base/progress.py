@@ -19,17 +19,20 @@ MEASURED = "{l_bar}{bar}| {n:.4g} of {total:.4g} {unit} [{elapsed}<{remaining}]"
 
 
 @contextmanager
-def followed(progress: Any, total: N, call: str, asks: str, **looks: Any) -> Iterator[Callable[[N], None] | None]:
+def followed(
+    progress: Any, total: N, call: str, asks: str, begin: float = 0, **looks: Any
+) -> Iterator[Callable[[N], None] | None]:
     """What takes how much is done; None where nobody asked.
 
     Parameters: progress, as the user gave it: True for a bar, or a function of (done, total); total, all that is to do;
-    call and asks, for the message where it is neither; looks, of the bar, as tqdm takes them.
+    call and asks, for the message where it is neither; begin, where a bar counts from; looks, of the bar, as tqdm takes
+    them.
     """
     if callable(progress):
         yield lambda done: progress(done, total)
     elif progress is True:
-        with _tqdm()(total=total, smoothing=0.0, **looks) as bar:
-            yield lambda done: _set(bar, done)
+        with _tqdm()(total=total - begin, smoothing=0.0, **looks) as bar:
+            yield lambda done: _set(bar, done - begin)
     elif progress is False or progress is None:
         yield None
     else:

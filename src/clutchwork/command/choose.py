@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from clutchwork.assembly.wiring import wiring
-from clutchwork.base.errors import near
+from clutchwork.base.errors import UseError, near
 from clutchwork.results.ratios import input_and_output
 from clutchwork.results.selection import chosen
+from clutchwork.results.units import among
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.results.channels import Channel
 
 WHERE = "clutchwork check MODEL --signals lists all"
 
@@ -35,6 +37,18 @@ def _fault(wanted: str, names: Sequence[str]) -> str:
 def _parts(text: str, names: Sequence[str]) -> list[str]:
     """What stands between commas; a name may hold one itself."""
     return [text] if text in names else [part.strip() for part in text.split(",") if part.strip()]
+
+
+def given_units(wanted: Sequence[str], known: Mapping[str, Channel]) -> dict[str, str]:
+    """Units by name or pattern of `--units NAME=UNIT`; an error names all that fit no signal of a run."""
+    # a name may hold an equals sign itself
+    cut = [text.rpartition("=") for text in wanted]
+    wrong = [text for text, (name, _, unit) in zip(wanted, cut, strict=True) if not name.strip() or not unit.strip()]
+    if wrong:
+        raise UseError("run", [f"--units {text}: write NAME=UNIT, such as '*.speed=rpm'" for text in wrong])
+    found = {name.strip(): unit.strip() for name, _, unit in cut}
+    among({**{name: channel.unit for name, channel in known.items()}, "time": "s"}, found)
+    return found
 
 
 def chosen_shafts(system: System, asked: str | None) -> tuple[str, str] | None:

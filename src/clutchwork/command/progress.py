@@ -14,10 +14,10 @@ PATIENCE = 0.5  # s of real time before anything is shown
 
 
 @contextmanager
-def bar(t_end: float, *, hidden: bool = False) -> Iterator[Progress]:
-    """A function of (time, t_end) [s] that shows the time reached on standard error, on a terminal only."""
+def bar(t_start: float, t_end: float, *, hidden: bool = False) -> Iterator[Progress]:
+    """A function of (time, t_end) [s] that shows on standard error how far a run is, on a terminal only."""
     wanted = not hidden and sys.stderr.isatty() and find_spec("tqdm") is not None
     looks = {"bar_format": MEASURED, "unit": "s", "delay": PATIENCE, "leave": False}
-    with followed(wanted, t_end, "run", "(time, t_end)", **looks) as shown:
+    with followed(wanted, t_end, "run", "(time, t_end)", t_start, **looks) as shown:
         # a run takes the same stretches whether somebody watches or not
         yield lambda time, _: shown(time) if shown else None

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.errors import near
 from clutchwork.base.shell import (
@@ -33,6 +33,7 @@ from clutchwork.run.flags import add_options, given_options
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
+    from clutchwork.results.state import State
     from clutchwork.results.trajectory import Trajectory
 
 DEMO = Path("examples", "six_speed", "model.toml")
@@ -41,6 +42,9 @@ EXAMPLES = (
     ("clutchwork run model.toml --plot out.png --csv out.csv", "with a picture, and all signals in a table"),
     ('clutchwork run model.toml --set c1.gain=6e-4 --set "c1.pressure=2 bar"', "with other values than the file has"),
     ('clutchwork run model.toml --signals "c1.*" --signals "*.speed" --csv out.csv', "only some of the signals"),
+    ('clutchwork run model.toml --units "*.speed=rpm" --csv out.csv --plot out.png', "speeds in rpm in both files"),
+    ("clutchwork run model.toml --t-end 1 --save-state one.state", "up to 1 s, and store where it is"),
+    ("clutchwork run model.toml --start one.state --t-end 2", "go on from there up to 2 s, with the same bits"),
     ("clutchwork run model.toml --t-end 0.5 --dt 1ms --json", "half a second, a row each millisecond, as JSON"),
 )
 
@@ -59,6 +63,14 @@ def add_commands(commands: Any) -> None:
         help="signals to write, and to print with --json, such as 'c1.*'; may be given several times; default: all "
         "in files, none with --json",
     )
+    run.add_argument(
+        "--units",
+        metavar="NAME=UNIT",
+        action="append",
+        default=[],
+        help="another unit than that of SI in files of signals and in the picture, such as '*.speed=rpm'; may be given "
+        "several times",
+    )
     run.add_argument("--ratio", metavar="A/B", help="shafts whose speed ratio is reported; default: drive and load")
     run.add_argument("--out", type=Path, metavar="DIR", help="folder for picture.png, trajectory.csv, events.csv")
     run.add_argument("--plot", type=Path, metavar="FILE", help="write the picture (png, svg or pdf)")
@@ -73,6 +85,8 @@ def add_commands(commands: Any) -> None:
         help="write the signals for another program, by the ending of the file; may be given several times",
     )
     run.add_argument("--save", type=Path, metavar="FILE", help="store the run, for clutchwork plot and cw.load_run")
+    run.add_argument("--start", type=Path, metavar="FILE", help="go on from a state that --save-state or Python wrote")
+    run.add_argument("--save-state", type=Path, metavar="FILE", help="store the state at the end, to go on from")
     add_json(run)
     add_quiet(run, "report and no progress bar")
     add_options(run)
@@ -92,28 +106,36 @@ def add_commands(commands: Any) -> None:
     )
     add_json(demo)
     # what a demonstration shares with a run
-    demo.set_defaults(set=[], signals=None, ratio=None, plot=None, csv=None, events=None, write=[], save=None)
+    demo.set_defaults(set=[], signals=None, units=[], ratio=None, plot=None, csv=None, events=None, write=[], save=None)
+    demo.set_defaults(start=None, save_state=None)
     demo.set_defaults(quiet=False)
 
 
 def run_command(asked: argparse.Namespace) -> int:
     """Run, report, write; the exit code."""
     from clutchwork.command import report
-    from clutchwork.command.choose import chosen_shafts, chosen_signals
+    from clutchwork.command.choose import chosen_shafts, chosen_signals, given_units
     from clutchwork.results.channels import channels
     from clutchwork.results.ratios import phases
+    from clutchwork.results.state import State
     from clutchwork.run.settings import merged
+    from clutchwork.run.simulation import begin_of
 
     wanted = _wanted(asked)
     writable(wanted)
     system = system_of(asked.model, asked.set)
     shafts = chosen_shafts(system, asked.ratio)
+    start = State.load(asked.start) if asked.start is not None else None
     with words_of_files():
-        t_end, options = merged(system.settings, given_options(asked))
-    names = chosen_signals(channels(system, options.angles, options.work), asked.signals or ["*"])
-    run, code = _simulated(system, t_end, options, hidden=asked.quiet or asked.json)
+        given = given_options(asked)
+        given |= begin_of(system, start, given) if start is not None else {}
+        t_end, options = merged(system.settings, given)
+    known = channels(system, options.angles, options.work)
+    chosen = Chosen(chosen_signals(known, asked.signals or ["*"]), given_units(asked.units, known))
+    names = chosen.names
+    run, code = _simulated(system, t_end, options, start, hidden=asked.quiet or asked.json)
     found = phases(run, shafts) if shafts and len(run) else []
-    written = _write(run, names, wanted) if len(run) else []
+    written = _write(run, chosen, wanted) if len(run) else []
     if asked.json:
         data = report.run_data(run, found, shafts, names if asked.signals else ())
         tell_json(data | {"files": [str(path) for path in written]})
@@ -124,22 +146,31 @@ def run_command(asked: argparse.Namespace) -> int:
     return code
 
 
-def _simulated(system: System, t_end: float, options: Options, *, hidden: bool) -> tuple[Trajectory, int]:
+def _simulated(
+    system: System, t_end: float, options: Options, start: State | None, *, hidden: bool
+) -> tuple[Trajectory, int]:
     """What came of a run, and the exit code."""
     from clutchwork.run.failure import Interrupted, StoppedEarly
     from clutchwork.run.simulation import simulate
 
-    with warnings.catch_warnings(), bar(t_end, hidden=hidden) as told:
+    with warnings.catch_warnings(), bar(options.t_start, t_end, hidden=hidden) as told:
         # the exit code and the message report it
         warnings.simplefilter("ignore", StoppedEarly)
         try:
-            run = simulate(system, t_end, options=options, progress=told)
+            run = simulate(system, t_end, start=start, options=options, progress=told)
         except Interrupted as stop:
             return stop.trajectory, INTERRUPTED
     return run, DONE if run.finished else STOPPED
 
 
-Writer = Callable[["Trajectory", Path, tuple[str, ...]], object]
+class Chosen(NamedTuple):
+    """What files of signals hold."""
+
+    names: tuple[str, ...]
+    units: dict[str, str]  # other ones than those of SI
+
+
+Writer = Callable[["Trajectory", Path, Chosen], object]
 
 
 def _wanted(asked: argparse.Namespace) -> dict[Path, Writer]:
@@ -151,24 +182,30 @@ def _wanted(asked: argparse.Namespace) -> dict[Path, Writer]:
         (asked.events or (folder and folder / "events.csv"), _events),
         *((path, _writer(path)) for path in asked.write),
         (asked.save, _save),
+        (asked.save_state, _save_state),
     ]
     return {path: write for path, write in named if path is not None}
 
 
-def _plot(run: Trajectory, path: Path, _names: tuple[str, ...]) -> None:
-    run.plot(path)
+def _plot(run: Trajectory, path: Path, chosen: Chosen) -> None:
+    # what only tables have
+    run.plot(path, units={name: unit for name, unit in chosen.units.items() if name != "time"})
 
 
-def _csv(run: Trajectory, path: Path, names: tuple[str, ...]) -> None:
-    run.to_csv(path, names)
+def _csv(run: Trajectory, path: Path, chosen: Chosen) -> None:
+    run.to_csv(path, chosen.names, units=chosen.units)
 
 
-def _events(run: Trajectory, path: Path, _names: tuple[str, ...]) -> None:
+def _events(run: Trajectory, path: Path, _chosen: Chosen) -> None:
     run.events.to_csv(path)
 
 
-def _save(run: Trajectory, path: Path, _names: tuple[str, ...]) -> None:
+def _save(run: Trajectory, path: Path, _chosen: Chosen) -> None:
     run.save(path)
+
+
+def _save_state(run: Trajectory, path: Path, _chosen: Chosen) -> None:
+    run.state().save(path)
 
 
 def _writer(path: Path) -> Writer:
@@ -178,14 +215,14 @@ def _writer(path: Path) -> Writer:
     if path.suffix.lower() not in ENDINGS:
         known = f"known: {', '.join(ENDINGS)}"
         raise ValueError(f"--write {path}: no format ends in {path.suffix!r}{near(path.suffix, ENDINGS, known)}")
-    return lambda run, path, names: run.write(path, names)
+    return lambda run, path, chosen: run.write(path, chosen.names, units=chosen.units)
 
 
-def _write(run: Trajectory, names: tuple[str, ...], wanted: dict[Path, Writer]) -> list[Path]:
+def _write(run: Trajectory, chosen: Chosen, wanted: dict[Path, Writer]) -> list[Path]:
     """Write the wanted files; their paths."""
     for path, write in wanted.items():
         path.parent.mkdir(parents=True, exist_ok=True)
-        write(run, path, names)
+        write(run, path, chosen)
     return [*wanted]
 
 

@@ -83,17 +83,20 @@ class ThermalNode:
         name (text, required): its path in results and messages
         capacity (number [J/K] > 0, default none): none: an ambient, whose temperature does not depend on its heat
         temperature (signal [K], default 300): of a mass at the start, of an ambient over time
+        limit (number [K] > 0, default none): highest temperature that it stands; hints compare with it
     """
 
     name: str
     capacity: float | None = None
     temperature: SignalLike = 300.0
+    limit: float | None = None
 
     def _accept(self) -> None:
         """Values with units are put into SI."""
         values = vars(self)
         values["capacity"] = given.Wanted("J/K").number(values["capacity"])
         values["temperature"] = given.driving(given.Wanted("K").number(values["temperature"]), "K")
+        values["limit"] = given.Wanted("K").number(values["limit"])
 
 
 PLAIN |= {Node, ThermalNode, Domain}

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from math import inf
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, Unpack, get_args
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, advised, near
@@ -23,6 +23,8 @@ from clutchwork.declare.setting import Setting, setting
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from clutchwork.declare.option_fields import OptionFields
 
 Method = Literal["auto", "rodas5p", "dopri5"]
 Output = Literal["smooth", "steps"]
@@ -115,6 +117,10 @@ class Options:
     work: bool = setting(
         "", "whether the work of all elements is integrated, for the energy balance", default=True, core=True
     )
+
+    if TYPE_CHECKING:
+        # numbers may be given with units, what is kept is in SI
+        def __init__(self, **given: Unpack[OptionFields]) -> None: ...
 
     def __post_init__(self) -> None:
         """Put values with units into SI; refuse those that make no sense, with what to write instead, all at once."""

@@ -77,6 +77,9 @@ class DiskClutch(Heating):
     locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
     thermal_mass: float | None = param("J/K", "heat capacity of the clutch, none by default", default=None, above=0.0)
     initial_temperature: float = param("K", "temperature of the thermal mass at the start", default=300.0, above=0.0)
+    temperature_limit: float | None = param(
+        "K", "highest temperature that its lining stands, which hints compare with", default=None, above=0.0
+    )
     fault: str = choice(
         "what fails: nothing, it opens permanently, or it stays locked once it has locked",
         choices=("none", "cannot_transmit", "cannot_unlock"),
@@ -107,6 +110,14 @@ class DiskClutch(Heating):
                     "give one of them; `plates` is the node of the own mass",
                 )
             )
+        if self.temperature_limit is not None and self.thermal_mass is None:
+            found.append(
+                (
+                    "temperature_limit",
+                    "needs a temperature of its own",
+                    "give thermal_mass, or the limit of the heat node",
+                )
+            )
         return found
 
     @cached_property
@@ -114,7 +125,7 @@ class DiskClutch(Heating):
         """Node of its own thermal mass, to join to flows of heat; none without one."""
         if self.thermal_mass is None:
             return None
-        return ThermalNode(f"{self.name}.plates", self.thermal_mass, self.initial_temperature)
+        return ThermalNode(f"{self.name}.plates", self.thermal_mass, self.initial_temperature, self.temperature_limit)
 
     @property
     def effective_radius(self) -> float:

@@ -115,12 +115,15 @@ class Driveline:
         return node
 
     @explained("d.thermal")
-    def thermal(self, name: str, *, capacity: Number, temperature: Number = 300.0) -> ThermalNode:
+    def thermal(
+        self, name: str, *, capacity: Number, temperature: Number = 300.0, limit: Number | None = None
+    ) -> ThermalNode:
         """Add a mass that holds heat and has one temperature.
 
-        Parameters: capacity [J/K], mass times specific heat; temperature [K] at the start, or "90 degC".
+        Parameters: capacity [J/K], mass times specific heat; temperature [K] at the start, or "90 degC"; limit [K], the
+        highest temperature that it stands, such as that of a lining, which `run.hints` compare with.
         """
-        values: Any = (capacity, temperature)
+        values: Any = (capacity, temperature, limit)
         return self.add_thermal(ThermalNode(name, *values))
 
     @explained("d.ambient")

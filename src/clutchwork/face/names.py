@@ -39,6 +39,7 @@ NAMES = {
     "environment": "learn.environment",
     "export_c": "codegen",
     "load_run": "run.saved",
+    "OutputWarning": "sweeps.result",
     "Sweep": "sweeps.result",
     "SweepInterrupted": "sweeps.result",
     "at": "sweeps.outputs",

@@ -43,7 +43,8 @@ class Writer:
         """A thermal mass or an ambient."""
         fields_ = NODE_KINDS[node_kind(node)]
         at = At(f'{node_kind(node)} "{node.name}"', "")
-        given = {key: self._value(getattr(node, key), spec, at.inner(key)) for key, spec in fields_.items()}
+        set_ = {key: spec for key, spec in fields_.items() if getattr(node, key) is not None}
+        given = {key: self._value(getattr(node, key), spec, at.inner(key)) for key, spec in set_.items()}
         return {"name": node.name, **given}
 
     def element(self, element: Component) -> dict[str, Any]:

@@ -17,14 +17,15 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.layout import MODES
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
-from clutchwork.linear.reached import reached, refuse_stopped, resumed, started, step_over
+from clutchwork.linear.reached import options_of, reached, refuse_stopped, started, step_over
+from clutchwork.results.state import State
 from clutchwork.results.trajectory import Trajectory
 from clutchwork.run.failure import StoppedEarly
-from clutchwork.run.settings import without_end
 from clutchwork.run.simulation import simulate
+from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from clutchwork.results.events import Event
 
@@ -47,6 +48,7 @@ class Instant:
     row: Array
     local: Array  # cw_local of c_api.h
     events: tuple[Event, ...] = ()  # at this very instant
+    held: frozenset[str] = frozenset()  # signals that were set from outside
 
     @property
     def wiring(self) -> Wiring:
@@ -64,19 +66,27 @@ class Instant:
 
 
 def instant_of(model: Any, at: Any) -> Instant:
-    """A model at its start, at a time [s] or at a saved state, or a run at a time [s]; UseError for anything else."""
+    """A model at its start, at a time [s] or at a saved state, a run at a time [s], or a Simulator where it is.
+
+    UseError for anything else.
+    """
     at, problems = _plain(at)
     problems = problems or list(_problems(model, at))
     if problems:
         raise UseError(CALL, problems)
     if isinstance(model, Trajectory):
         return _of_run(model, float(at))
+    if isinstance(model, Simulator):
+        return _at_state(model.system, model.save())
     system = model if isinstance(model, System) else model.assemble()
-    if _is_state(at):
-        return _read(system, resumed(system, at), ())
-    begin = without_end(system.settings, {}).t_start
+    if isinstance(at, State):
+        return _at_state(system, at)
+    begin = options_of(system).t_start
     if at is None or float(at) == begin:
-        return _read(system, started(system, begin), ())
+        return _read(system, started(system))
+    if float(at) < begin:
+        told = f"at = {at:g} s is before t_start = {begin:g} s of the settings of the model, where its run begins"
+        raise UseError(CALL, [f"{told}; give a later instant"])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StoppedEarly)
         run = simulate(system, float(at))
@@ -93,23 +103,24 @@ def _plain(at: Any) -> tuple[Any, list[str]]:
         return at, [f"at = {shown(at)}: must be a time in s, zero or later ({bad})"]
 
 
-def _is_state(at: Any) -> bool:
-    return hasattr(at, "fits") and hasattr(at, "core")
-
-
 def _problems(model: Any, at: Any) -> Iterator[str]:
     if isinstance(model, str | os.PathLike):
         yield f"{shown(model)} is not a model; load a file with cw.Driveline.load({os.fspath(model)!r})"
-    elif not isinstance(model, System | Trajectory) and not hasattr(model, "assemble"):
-        yield f"{shown(model)} is not a model; give a Driveline, a System, or a run with at=..."
-    if at is None:
+    elif not isinstance(model, System | Trajectory | Simulator) and not hasattr(model, "assemble"):
+        yield f"{shown(model)} is not a model; give a Driveline, a System, a Simulator, or a run with at=..."
+    if isinstance(model, Simulator):
+        if at is not None:
+            yield "at cannot be given with a Simulator, which is taken where it is; give sim.run for another time"
+    elif at is None:
         if isinstance(model, Trajectory):
             yield "at is missing; give the time of the run in s, such as at=1.2"
-    elif _is_state(at):
+    elif isinstance(at, State):
         if isinstance(model, Trajectory):
             yield "at is a saved state; give the model that it is of in place of the run"
     elif isinstance(at, bool) or not isinstance(at, int | float | np.number) or not math.isfinite(at) or at < 0.0:
         yield f"at = {shown(at)}: must be a time in s, zero or later"
+    elif isinstance(model, Trajectory) and len(model) and at < model.options.t_start:
+        yield f"at = {at:g} s is before the begin of the run at {model.options.t_start:g} s; give a later instant"
     elif isinstance(model, Trajectory) and len(model) and at > _end(model):
         yield f"at = {at:g} s is after the end of the run at {_end(model):g} s; give an instant before it"
 
@@ -121,15 +132,16 @@ def _end(run: Trajectory) -> float:
 
 def _of_run(trajectory: Trajectory, at: float) -> Instant:
     run, system, near = reached(trajectory, at), trajectory.system, BESIDE * max(1.0, at)
+    begin, held = trajectory.options.t_start, trajectory.state(at=at).held
     # those of the start are how the contacts were told apart
-    events = [event for event in trajectory.events.changes() if event.time > 0.0 and abs(event.time - at) <= near]
-    instant = _read(system, run, tuple(events))
+    events = [event for event in trajectory.events.changes() if event.time > begin and abs(event.time - at) <= near]
+    instant = _read(system, run, tuple(events), held)
     # a run that ends at an event may stop right before it
     for step in PAST_EVENT:
         if all(MODES[int(instant.modes[n])] == mode for n, mode in _after(system, events).items()):
             break
         step_over(run, at + step * max(1.0, at))
-        instant = _read(system, run, tuple(events))
+        instant = _read(system, run, tuple(events), held)
     return instant
 
 
@@ -139,7 +151,11 @@ def _after(system: System, events: Sequence[Event]) -> dict[int, str]:
     return {names.index(event.element): event.after for event in events}
 
 
-def _read(system: System, run: Any, events: tuple[Event, ...]) -> Instant:
+def _at_state(system: System, state: State) -> Instant:
+    return _read(system, started(system, state), (), state.held)
+
+
+def _read(system: System, run: Any, events: tuple[Event, ...] = (), held: Iterable[str] = ()) -> Instant:
     status, row, local = run.local()
     refuse_stopped(system, run, status)
-    return Instant(system, float(run.time), np.asarray(row), np.asarray(local), events)
+    return Instant(system, float(run.time), np.asarray(row), np.asarray(local), events, frozenset(held))

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.results.trajectory import Trajectory
     from clutchwork.run.simulation import Assembles
+    from clutchwork.stepping.simulator import Simulator
 
 Array = NDArray[np.float64]
 
@@ -34,22 +35,23 @@ ROUND_OFF = 1e-9
 
 @explained(CALL)
 def linearise(
-    model: Assembles | System | Trajectory,
+    model: Assembles | System | Trajectory | Simulator,
     *,
     at: Any = None,
     inputs: str | Sequence[str] | None = None,
     outputs: str | Sequence[str] | None = None,
 ) -> Linear:
-    """The linear system of a driveline at its start, or of a run at an instant.
+    """The linear system of a driveline at its start, of a run at an instant, or of a Simulator where it is.
 
     Use it for torsional frequencies and mode shapes, for judder, and for the design of controllers. Locked contacts are
     constraints: what they hold is gone from the system. Slipping ones contribute the slopes of their friction laws over
     slip, load and temperature.
 
-    Parameters: model, a Driveline, a System, or a run; at, the instant [s], needed with a run, which a model is run up
-    to, or a saved state of a model; inputs and outputs, names of signals or wildcards such as "*.speed". Inputs are all
-    signals of the model by default, outputs all speeds and the other states. A prescribed speed "motor.speed" may also
-    be given by its acceleration, as the input "motor.acceleration".
+    Parameters: model, a Driveline, a System, a run, or a `Simulator`, which is taken where it is with all that was set;
+    at, the instant [s], needed with a run, which a model is run up to, or a `State` of a model; inputs and outputs,
+    names of signals or wildcards such as "*.speed". Inputs are all signals of the model by default, outputs all speeds
+    and the other states. A prescribed speed "motor.speed" may also be given by its acceleration, as the input
+    "motor.acceleration".
 
     UseError names all that is wrong with the call; ModelError all mistakes of the model; SimulationError says why the
     instant was not reached.

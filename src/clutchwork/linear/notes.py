@@ -25,7 +25,9 @@ def notes(motion: Motion) -> Iterator[str]:
     for event in instant.events:
         yield f"{event.element} goes from {event.before} to {event.after} at this instant: what comes after it is taken"
     if not instant.events:
-        names = [item.name for item in system.inputs if _is_knot(item.signal, instant.time)]
+        names = [
+            item.name for item in system.inputs if item.name not in instant.held and _is_knot(item.signal, instant.time)
+        ]
         for name in names:
             yield f"{name} has a knot at this instant: what comes after it is taken"
     yield from _slips_at_rest(motion)

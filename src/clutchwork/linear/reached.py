@@ -6,49 +6,50 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.declare.core import core
-from clutchwork.declare.options import DEFAULTS
 from clutchwork.declare.status import DONE
 from clutchwork.results.trajectory import SimulationError
+from clutchwork.run.begin import begun
 from clutchwork.run.control import controllers
+from clutchwork.run.settings import without_end
 from clutchwork.run.simulation import simulate, told
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.declare.options import Options
+    from clutchwork.results.state import State
     from clutchwork.results.trajectory import Trajectory
 
 # a run that is only asked for its start [s]
 SHORT = 1e-6
 
 
-def started(system: System, begin: float) -> Any:
-    """A run at its start at a time [s], controllers asked."""
-    options = DEFAULTS.changed({"t_start": begin})
-    if any(item.signal.sampling() is not None for item in system.inputs):
-        return reached(simulate(system, begin + SHORT, options=options), begin)
-    run = core().Run(system.to_bytes())
-    for name, value in options.core_options().items():
-        run.set_option(name, value)
-    return run
+def options_of(system: System) -> Options:
+    """What a run of a model is done with by its settings; all that a linear system may show is integrated."""
+    return without_end(system.settings, {}).changed({"dt": None, "output": "steps", "angles": True, "work": True})
+
+
+def started(system: System, start: State | None = None) -> Any:
+    """A run at the start, or at a saved state, controllers asked."""
+    options = options_of(system)
+    if start is not None:
+        start.fits(system)
+        options = options.changed({"t_start": start.time})
+    if controllers(system.inputs, start.held if start is not None else {}):
+        begin = options.t_start
+        return reached(simulate(system, begin + SHORT, start=start, options=options), begin)
+    return begun(system, options, start)
 
 
 def reached(trajectory: Trajectory, at: float) -> Any:
     """A run at a time [s]: repeated up to there, bit for bit, and what controllers decided is replayed."""
-    run = resumed(trajectory.system, trajectory.state(at=at))
-    asked = controllers(trajectory.system.inputs)
+    state = trajectory.state(at=at)
+    run = begun(trajectory.system, trajectory.options.changed({"angles": True, "work": True}), state)
+    asked = controllers(trajectory.system.inputs, state.held)
     # a state is what a run is before controllers are asked, and what they said follows
     if asked:
         after = trajectory.at([at, at])
         for one in asked:
             run.set_input(one.index, float(after[one.name][-1]))
-    return run
-
-
-def resumed(system: System, state: Any) -> Any:
-    """A run at a saved state of it."""
-    state.fits(system)
-    run = core().Run(system.to_bytes())
-    run.restore(state.core)
     return run
 
 

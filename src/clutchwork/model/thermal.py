@@ -20,9 +20,10 @@ from clutchwork.model.parts import Parts, role, state_name
 
 CAPACITY = Spec("param", "J/K", "heat capacity", above=0.0)
 TEMPERATURE = Spec("param", "K", "temperature at the start", above=0.0)
+LIMIT = Spec("param", "K", "highest temperature that it stands", above=0.0)
 AROUND = Spec("signal", "K", "temperature over time")
 NODE_FIELDS: Mapping[str, Mapping[str, Spec]] = {
-    "thermal": {"capacity": CAPACITY, "temperature": TEMPERATURE},
+    "thermal": {"capacity": CAPACITY, "temperature": TEMPERATURE, "limit": LIMIT},
     "ambient": {"temperature": AROUND},
 }
 
@@ -38,6 +39,8 @@ def thermal_problems(node: ThermalNode) -> Iterator[Problem]:
     if node.capacity is not None:
         yield from number_problems(node.capacity, CAPACITY, At(path, "capacity", "J/K"))
         yield from number_problems(node.temperature, TEMPERATURE, At(path, "temperature", "K"))
+        if node.limit is not None:
+            yield from number_problems(node.limit, LIMIT, At(path, "limit", "K"))
     elif is_reference(node.temperature):
         message, remedy = "must be a number in [K] or a signal", "join the nodes by a Conduction instead"
         yield At(path, "temperature").problem(message, shown(node.temperature), remedy)

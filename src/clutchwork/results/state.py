@@ -68,14 +68,23 @@ class State:
     @explained("state.save")
     def save(self, path: str | Path) -> None:
         """Write it to one file; nothing in it is code."""
-        import json
-
         from clutchwork.base import archive
 
         _refuse_no_path("state.save", path)
+        archive.write(path, self.parts())
+
+    def parts(self) -> dict[str, bytes]:
+        """What a file holds of it, by the names in PARTS."""
+        import json
+
         head = {"format": FORMAT, "time": self.time, "model": self.model, "fingerprint": self.fingerprint}
         head |= {"held": dict(self.held), "changed": dict(self.changed)}
-        archive.write(path, {"head": json.dumps(head).encode(), "core": self.core, "row": self.row, "left": self.left})
+        return {"head": json.dumps(head).encode(), "core": self.core, "row": self.row, "left": self.left}
+
+    @classmethod
+    def of_parts(cls, head: bytes, core: bytes, row: bytes, left: bytes) -> State:
+        """The state of such parts; ValueError where they are none."""
+        return cls(core=core, row=row, left=left, **_read_head(head))
 
     @classmethod
     @explained("cw.State.load")
@@ -86,8 +95,7 @@ class State:
 
         _refuse_no_path("cw.State.load", path)
         try:
-            head, core, row, left = archive.read(path, PARTS)
-            return cls(core=core, row=row, left=left, **_read_head(head))
+            return cls.of_parts(*archive.read(path, PARTS))
         except (ValueError, RecursionError, OSError) as error:
             why = reason(error) if isinstance(error, OSError) else shortened(str(error))
             raise StateError(f"{path}: cannot read a state: {why}; write the file with State.save") from None

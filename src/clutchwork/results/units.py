@@ -50,7 +50,11 @@ def converter(run: Recorded, units: Mapping[str, str] | None = None) -> Converte
     "bar"}. A later entry overrules an earlier one; a pattern that only some signals fit by their quantity takes those.
     "time" is that of the instants.
     """
-    known = {**run.units, "time": "s"}
+    return among({**run.units, "time": "s"}, units)
+
+
+def among(known: Mapping[str, str], units: Mapping[str, str] | None) -> Converter:
+    """The same for signals that are known by their units in SI."""
     found, problems = dict[str, str](), list[str]()
     for pattern, unit in _checked(units).items():
         try:

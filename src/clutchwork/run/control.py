@@ -108,6 +108,9 @@ class Control:
         """Signals and parameters that are set from outside."""
         return self.held, self.changed
 
+    def plain(self) -> None:
+        """Functions are in no file; without them the model says all."""
+
 
 def instants(given: Sequence[Controller], begin: float, t_end: float) -> Iterator[float]:
     """Instants of controllers after the begin and before the end, then the end [s]."""

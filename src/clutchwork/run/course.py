@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import field
 from functools import cached_property
+from math import isfinite
 from typing import Any, NamedTuple, Protocol
 
 from clutchwork.base.classes import dataclass
 
 Numbers = tuple[tuple[int, float], ...]
+KINDS = ("input", "release", "param", "control")
 
 
 class Course(Protocol):
@@ -23,6 +25,9 @@ class Course(Protocol):
 
     def outside(self, number: int) -> tuple[Mapping[str, float], Mapping[str, Any]]:
         """Signals and parameters that are set from outside after so many stretches."""
+
+    def plain(self) -> dict[str, Any] | None:
+        """What a file holds of it; None where the model and the state at the begin say all."""
 
 
 class Act(NamedTuple):
@@ -58,6 +63,22 @@ class Tape:
         """The same, to be kept."""
         return Tape(self.held, self.changed, self.ends[:], self.noted[:])
 
+    def plain(self) -> dict[str, Any]:
+        """What a file holds of it."""
+        return {"held": dict(self.held), "changed": dict(self.changed), "ends": self.ends, "noted": self.noted}
+
+    @classmethod
+    def of_plain(cls, data: Any, inputs: int, params: int) -> Tape:
+        """The tape that a file holds, of a System with so many inputs and parameters; ValueError for anything else."""
+        kinds = {"held": dict, "changed": dict, "ends": list, "noted": list}
+        if not isinstance(data, dict) or any(not isinstance(data.get(name), kind) for name, kind in kinds.items()):
+            raise ValueError("what was done to it is damaged")
+        ends = [float(end) for end in data["ends"]]
+        if not all(isfinite(end) for end in ends) or ends != sorted(ends):
+            raise ValueError("its steps are damaged")
+        held = {str(name): float(value) for name, value in data["held"].items()}
+        return cls(held, data["changed"], ends, [_noted(line, inputs, params) for line in data["noted"]])
+
     @cached_property
     def acts(self) -> dict[int, list[Act]]:
         """Acts by the number of the stretch that they precede, of a tape that is kept."""
@@ -86,6 +107,16 @@ class Tape:
             if before < number and kind != "control":
                 put(changed if kind == "param" else held, name, value)
         return held, changed
+
+
+def _noted(line: Any, inputs: int, params: int) -> tuple[int, str, str, Any, Numbers]:
+    """An act and the number of the stretch that it precedes, as a file holds it."""
+    number, kind, name, value, numbers = line
+    made = tuple((int(place), float(one)) for place, one in numbers)
+    most = params if kind == "param" else inputs
+    if kind not in KINDS or not all(0 <= place < most for place, _ in made):
+        raise ValueError("what was set is damaged")
+    return int(number), str(kind), str(name), value, made
 
 
 def put(known: dict[str, Any], name: str, value: Any) -> None:

@@ -6,6 +6,7 @@ import json
 import warnings
 from collections.abc import Mapping
 from functools import partial
+from math import inf
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -21,14 +22,16 @@ from clutchwork.base.regular import reason
 from clutchwork.base.shown import listed, shortened
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES
-from clutchwork.declare.options import Options, end_time
+from clutchwork.declare.options import Options
 from clutchwork.declare.status import NAMES
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Event, Events
 from clutchwork.results.exchange.content import program
 from clutchwork.results.exchange.saved import FORMAT, MOST_BYTES, RUN_PARTS, RunFormatError
+from clutchwork.results.state import State
 from clutchwork.results.trajectory import Trajectory
 from clutchwork.run.control import Control
+from clutchwork.run.course import Course, Tape
 from clutchwork.run.simulation import Job
 
 Array = NDArray[np.float64]
@@ -43,13 +46,10 @@ class NoRepeat:
     """Says why a run has no other instants."""
 
     controllers: tuple[str, ...]
-    needs: tuple[str, ...] = ()  # what else the file does not hold
 
     def __call__(self, _times: Any) -> NoReturn:
         """Refuse."""
         why = f"inputs were set by Python functions ({listed(self.controllers)}), which a file does not hold"
-        if self.needs:
-            why = f"{' and '.join(self.needs)}, which a file does not hold"
         raise RepeatError(f"this run was loaded and cannot be repeated: {why}; simulate the model again")
 
 
@@ -57,8 +57,8 @@ class NoRepeat:
 def load_run(path: str | Path) -> Trajectory:
     """The run that `run.save(path)` wrote: signals, units, events, energy, options and status, bit for bit.
 
-    `run.at` repeats it as before, but where Python functions set inputs. RunFormatError where the file is damaged,
-    no run at all, or of another version.
+    `run.at` and `run.state` repeat it as before, also one that was stepped or began at a state, but where Python
+    functions set inputs. RunFormatError where the file is damaged, no run at all, or of another version.
     """
     try:
         about, *parts = archive.read(path, RUN_PARTS, MOST_BYTES)
@@ -88,11 +88,17 @@ def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
 
 
 def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Trajectory:
-    times, rows, events, *model = parts
-    system, options, end = _system(about, model, path), Options(**about["options"]), end_time(about["t_end"])
-    controllers, needs = (tuple(map(str, about.get(key, ()))) for key in ("controllers", "needs"))
+    times, rows, events, tape, head, core, row, left, *model = parts
+    system, options, end = _system(about, model, path), Options(**about["options"]), _end(about["t_end"])
+    # one that was never stepped ends where it begins
+    if not options.t_start <= end < inf:
+        raise ValueError(f"t_end is {end:g} s, before it begins")
+    controllers = tuple(map(str, about.get("controllers", ())))
     time = np.frombuffer(times, "<f8").astype(float)
-    job = Job(system, end, options, Control((), partial(channels, system)))
+    start = State.of_parts(head, core, row, left) if head else None
+    if start is not None:
+        start.fits(system)
+    job = Job(system, end, options, _course(system, tape, start), start)
     return Trajectory(
         system=system,
         options=options,
@@ -103,9 +109,24 @@ def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Tra
         status=str(about["status"]),
         message=str(about["message"]),
         statistics=dict(about["statistics"]),
-        repeat=NoRepeat(controllers, needs) if controllers or needs else job.again,
-        capture=NoRepeat(controllers, needs) if controllers or needs else job.state,
+        repeat=NoRepeat(controllers) if controllers else job.again,
+        capture=NoRepeat(controllers) if controllers else job.state,
     )
+
+
+def _end(given: Any) -> float:
+    """The end of a run [s]; TypeError where it is no number."""
+    if isinstance(given, bool) or not isinstance(given, int | float):
+        raise TypeError("its t_end is no number")
+    return float(given)
+
+
+def _course(system: System, tape: bytes, start: State | None) -> Course:
+    """What was done to the run: the steps of one that was stepped, else what is held since the state at its begin."""
+    if tape:
+        return Tape.of_plain(json.loads(tape), len(system.inputs), len(system.arrays["params"]))
+    held, changed = (start.held, start.changed) if start is not None else ({}, {})
+    return Control((), partial(channels, system), held=held, changed=changed)
 
 
 def _system(about: Mapping[str, Any], model: list[bytes], path: str | Path) -> System:

@@ -65,16 +65,16 @@ class Job:
         """Time at which it begins [s]."""
         return self.options.t_start
 
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """What it cannot be repeated without beside model and options, but for Python functions."""
-        stepped = () if isinstance(self.course, Control) else ("it was stepped and set from outside",)
-        return (*(("it went on from a state",) if self.start is not None else ()), *stepped)
-
     def again(self, times: Any) -> Trajectory:
         """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
         wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
-        return trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
+        with warnings.catch_warnings():
+            # whoever has the run was warned
+            warnings.simplefilter("ignore", StoppedEarly)
+            made = trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
+        if not made.finished and len(made) < len(wanted):
+            warnings.warn(StoppedEarly(made.message, made), stacklevel=caller())
+        return made
 
     def state(self, at: float) -> State:
         """Repeat it up to a time [s], and save what it is there."""
@@ -123,7 +123,8 @@ def simulate(
     held, changed = (start.held, start.changed) if start else ({}, {})
     asked, first = controllers(system.inputs, held), start.before if start else None
     control = Control(asked, partial(channels, system), held=held, changed=changed, first=first)
-    with followed(progress, end, "simulate", "(time, t_end)", bar_format=MEASURED, unit="s") as told:
+    asks = "(time, t_end)"
+    with followed(progress, end, "simulate", asks, chosen.t_start, bar_format=MEASURED, unit="s") as told:
         run = trajectory(Job(system, end, chosen, control, start), told)
     report_faults(run)
     return run

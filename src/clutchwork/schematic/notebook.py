@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from html import escape
 
+from clutchwork.base.html import page, table
 from clutchwork.model.model import Model
 from clutchwork.schematic.diagram import Diagram, Thing, diagram
 from clutchwork.schematic.draw import drawn
@@ -20,7 +20,7 @@ def html(model: Model) -> str:
         picture = f'<div style="overflow-x:auto">{svg[svg.index("<svg") :]}</div>'
     except ImportError:
         picture = ""
-    return picture + tables(found)
+    return page(picture, tables(found))
 
 
 def tables(found: Diagram) -> str:
@@ -31,19 +31,14 @@ def tables(found: Diagram) -> str:
          ", ".join(element_values(thing)))
         for thing in _all(found.elements) if thing.what == "element"
     ]  # fmt: skip
-    return table(("node", "sort", "value"), nodes) + table(("element", "kind", "attached to", "values"), elements)
+    lists: list[tuple[Sequence[str], Sequence[Sequence[str]]]] = [
+        (("node", "sort", "value"), nodes),
+        (("element", "kind", "attached to", "values"), elements),
+    ]
+    return "".join(table(head, lines) for head, lines in lists if lines)
 
 
 def _all(things: Iterable[Thing]) -> Iterable[Thing]:
     for thing in things:
         yield thing
         yield from _all(thing.helpers)
-
-
-def table(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
-    """A table; nothing where it has no lines."""
-    if not lines:
-        return ""
-    rows = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in line)}</tr>" for line in lines)
-    heads = "".join(f"<th>{escape(cell)}</th>" for cell in head)
-    return f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"

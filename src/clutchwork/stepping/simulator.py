@@ -253,6 +253,11 @@ class Simulator:
     # ------------------------------------------------------------------------------------------------------ reading
 
     @property
+    def system(self) -> System:
+        """What is run."""
+        return self._system
+
+    @property
     def time(self) -> float:
         """Present time [s]."""
         return self._time

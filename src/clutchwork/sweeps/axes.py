@@ -99,12 +99,21 @@ class Plan:
             except ModelError as error:
                 problems += error.problems
         if problems:
-            raise ModelError(problems[:MOST_PROBLEMS], base.name)
+            problems += [found for one in plan.bound for found in plan._wrong(one)]
+            raise ModelError(list(dict.fromkeys(problems))[:MOST_PROBLEMS], base.name)
         problems = list(islice(plan._together(), MOST_PROBLEMS))
         if problems:
             raise ModelError(problems, base.name)
         plan._part()
         return plan
+
+    def _wrong(self, one: Varied) -> Iterable[Problem]:
+        """What is wrong with the values of a name, each alone."""
+        for value in one.values:
+            try:
+                self.base.changed({one.name: value})
+            except ModelError as error:
+                yield from error.problems
 
     def _add(self, one: Varied) -> None:
         """A name as an axis of its own where it is one."""
@@ -127,7 +136,7 @@ class Plan:
             place = np.array([self._layout.starts["params"] // 8 + self.base.parameters[one.name]], dtype=np.int64)
             if self._nothing_follows(one, aim, place):
                 return Axis(one.name, place, np.array(one.values, dtype=float).view(np.uint64).reshape(-1, 1))
-        lines = [self._line(patches(self.base.numbered, aim.owner, self._renewed(aim, value))) for value in one.values]
+        lines = [self._line(patches(self.base.numbered, aim.owner, owner)) for owner in self._all_renewed(one, aim)]
         place = np.array(sorted({word for place, _ in lines for word in place.tolist()}), dtype=np.int64)
         base = np.frombuffer(self.base.to_bytes(), dtype=np.uint64)
         words = np.tile(base[place], (len(lines), 1))
@@ -151,6 +160,18 @@ class Plan:
         words = [np.array(patch.values, dtype=float).view(np.uint64) for patch in changing]
         empty = np.zeros(0, dtype=np.int64)
         return np.concatenate([empty, *place]), np.concatenate([empty.view(np.uint64), *words])
+
+    def _all_renewed(self, one: Varied, aim: Target) -> list[Any]:
+        """The owner with each of the values; ModelError names all that are wrong."""
+        made, problems = list[Any](), list[Problem]()
+        for value in one.values:
+            try:
+                made.append(self._renewed(aim, value))
+            except ModelError as error:
+                problems += error.problems
+        if problems:
+            raise ModelError(problems[:MOST_PROBLEMS], self.base.name)
+        return made
 
     def _renewed(self, aim: Target, value: Any) -> Any:
         """The owner with one value, which must be right on its own."""

@@ -92,7 +92,7 @@ def sweep_command(asked: argparse.Namespace) -> int:
     if asked.out is not None and asked.out.suffix not in WRITERS:
         raise UseError("sweep", [f"--out {asked.out}: must end in .parquet or .csv"])
     shell.writable([asked.out])
-    given = [_varied(text) for text in asked.vary]
+    given = _all_varied(asked.vary)
     vary = dict(given)
     twice = [name for name in vary if [one for one, _ in given].count(name) > 1]
     if twice:
@@ -148,6 +148,19 @@ def _ranges(found: Sweep) -> Iterator[tuple[str, float, float]]:
         known = values[~np.isnan(values)] if values.dtype.kind == "f" else values[:0]
         if len(known):
             yield name, float(known.min()), float(known.max())
+
+
+def _all_varied(texts: list[str]) -> list[tuple[str, Any]]:
+    """All of them; UseError names everything that is wrong at once."""
+    made, problems = list[tuple[str, Any]](), list[str]()
+    for text in texts:
+        try:
+            made.append(_varied(text))
+        except UseError as error:
+            problems += error.problems
+    if problems:
+        raise UseError("sweep", problems)
+    return made
 
 
 def _varied(text: str) -> tuple[str, Any]:

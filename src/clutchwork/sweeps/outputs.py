@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
+from clutchwork.declare.calls import explained
 from clutchwork.declare.options import instants
 
 if TYPE_CHECKING:
@@ -148,42 +149,59 @@ class Computed:
         """Its value."""
         return self.function(run)
 
+    def one(self, value: Any) -> Any:
+        """The value where it is a single one; UseError for any other."""
+        if isinstance(value, list | tuple | set | dict) or getattr(value, "ndim", None):
+            remedy = "give one number for each variant; cw.at(signal, times) gives a signal at several instants"
+            raise UseError("sweep", [f"the output {self.name!r} gave {shown(value)}: {remedy}"])
+        return value.item() if getattr(value, "shape", None) == () else value
+
 
 Output: TypeAlias = AtEnd | AtTimes | Extreme | Integral | When | Computed
 Asked: TypeAlias = "str | Output | Callable[[Trajectory], Any]"
 
 
+@explained("cw.at")
 def at(signal: str, times: Sequence[float] | float) -> AtTimes:
     """A signal at instants, for `sweep`.
 
     Parameters: signal, its name; times [s], one or several that rise.
     """
-    found = tuple(float(time) for time in np.atleast_1d(np.asarray(instants(times), dtype=float)))
+    _named("at", signal)
+    try:
+        found = tuple(float(time) for time in np.atleast_1d(np.asarray(instants(times), dtype=float)))
+    except (TypeError, ValueError):
+        found = ()
     if not found or not all(0.0 <= time < np.inf for time in found) or list(found) != sorted(found):
         raise UseError("at", [f"times are {shown(times)}: give instants [s] from zero on that rise"])
-    return AtTimes(_named("at", signal), found)
+    return AtTimes(signal, found)
 
 
+@explained("cw.maximum")
 def maximum(signal: str) -> Extreme:
     """The largest value of a signal, for `sweep`."""
     return Extreme(_named("maximum", signal), "maximum")
 
 
+@explained("cw.minimum")
 def minimum(signal: str) -> Extreme:
     """The smallest value of a signal, for `sweep`."""
     return Extreme(_named("minimum", signal), "minimum")
 
 
+@explained("cw.peak")
 def peak(signal: str) -> Extreme:
     """The largest size of a signal, whatever its sign, for `sweep`."""
     return Extreme(_named("peak", signal), "peak")
 
 
+@explained("cw.integral")
 def integral(signal: str) -> Integral:
     """The integral over time of a power, a speed or an acceleration, for `sweep`."""
     return Integral(_named("integral", signal))
 
 
+@explained("cw.lock")
 def lock(contact: str, number: int = 1) -> When:
     """When a contact locks [s], for `sweep`.
 
@@ -192,6 +210,7 @@ def lock(contact: str, number: int = 1) -> When:
     return When(_named("lock", contact), "lock", _counted("lock", number))
 
 
+@explained("cw.break_away")
 def break_away(contact: str, number: int = 1) -> When:
     """When a locked contact breaks away or opens [s], for `sweep`.
 
@@ -207,7 +226,7 @@ def _named(call: str, name: object) -> str:
 
 
 def _counted(call: str, number: object) -> int:
-    if not isinstance(number, int) or number == 0:
+    if not isinstance(number, int) or isinstance(number, bool) or number == 0:
         raise UseError(call, [f"number is {shown(number)}: give 1 for the first, -1 for the last"])
     return number
 

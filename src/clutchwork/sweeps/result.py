@@ -7,13 +7,13 @@ import json
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base import html
-from clutchwork.base.errors import ModelError, UnknownName, near
+from clutchwork.base.errors import ModelError, UnknownName, UseError, near
 from clutchwork.base.extras import need
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
@@ -48,6 +48,21 @@ class Swept:
     options: Options
 
 
+class OutputWarning(UserWarning):
+    """A function that a sweep asks raised; its value is missing for that variant."""
+
+
+class Missing(NamedTuple):
+    """An output that could not be had of a variant, and why."""
+
+    variant: int
+    output: str
+    reason: str
+
+    def __str__(self) -> str:
+        return f"output {self.output!r} of variant {self.variant}: {self.reason}"
+
+
 @dataclass(frozen=True, eq=False)
 class Sweep:
     """The result of a sweep.
@@ -61,6 +76,7 @@ class Sweep:
     codes: NDArray[np.int32] = field(repr=False)  # of the status of each variant, layout.STATUS
     detail: NDArray[np.float64] = field(repr=False)
     values: dict[str, Array] = field(repr=False)  # one line for each variant, whatever the shape
+    problems: list[Missing] = field(repr=False, default_factory=list)  # values that are missing, for a function raised
 
     @classmethod
     def empty(cls, swept: Swept) -> Sweep:
@@ -159,16 +175,23 @@ class Sweep:
 
     def variant(self, number: int) -> dict[str, Any]:
         """The values of one variant by name; variants are counted in the order of the flat arrays."""
-        return self.swept.variants[number]
+        return self.swept.variants[self._counted(number)]
+
+    def _counted(self, number: object) -> int:
+        """The number of a variant; UseError where there is none of it."""
+        if isinstance(number, int | np.integer) and not isinstance(number, bool) and -len(self) <= number < len(self):
+            return int(number)
+        remedy = f"give a whole number from 0 to {len(self) - 1}" if len(self) else "the sweep has no variants"
+        raise UseError("sweep", [f"there is no variant {shown(number)}; {remedy}"])
 
     def run(self, number: int) -> Trajectory:
         """The run of one variant, as `simulate` gives it."""
         swept = self.swept
-        return single(swept.system, swept.variants[number], swept.t_end, swept.options)
+        return single(swept.system, self.variant(number), swept.t_end, swept.options)
 
     def message(self, number: int) -> str:
         """Why a variant stopped early, with what to do; empty when it reached the end."""
-        code = int(self.codes[number])
+        code = int(self.codes[self._counted(number)])
         if code == DONE:
             return ""
         component, time, value, column = self.detail[number].tolist()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from clutchwork.assembly.system import System
-from clutchwork.base.errors import ModelWarning, UseError
+from clutchwork.base.errors import ModelWarning, UseError, caller
 from clutchwork.base.progress import followed
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
@@ -25,7 +25,7 @@ from clutchwork.run.simulation import Assembles
 from clutchwork.sweeps.axes import Plan
 from clutchwork.sweeps.batch import Batch, Wanted, Way
 from clutchwork.sweeps.outputs import Asked, Computed, Output, asked
-from clutchwork.sweeps.result import Sweep, SweepInterrupted, Swept
+from clutchwork.sweeps.result import Missing, OutputWarning, Sweep, SweepInterrupted, Swept
 from clutchwork.sweeps.variants import given, in_si
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
+    from clutchwork.results.trajectory import Trajectory
 
 # options that say which rows a single run has
 ROWS = ("dt", "times", "output", "points")
@@ -64,8 +65,11 @@ def sweep(
     `cw.break_away`, or a function of the Trajectory;
     a mapping gives them names.
 
-    A variant that stops early has its status, and hurts no other. Ctrl-C ends the sweep with what is done.
+    A variant that stops early has its status, and hurts no other; a value of a function that raises is missing, which
+    is an `OutputWarning`, and `problems` of the result lists all of them. Ctrl-C ends the sweep with what is done.
     """
+    if options is not None and not isinstance(options, Options):
+        raise UseError("sweep", [f"options is {shown(options)}: it must be cw.Options(...)"])
     system, wanted = _system(model), asked(outputs)
     variants = given(vary) if system.source is None else in_si(given(vary), system.source)
     chosen = {**changes} if t_end is None else {**changes, "t_end": t_end}
@@ -79,9 +83,8 @@ def sweep(
     count = _threads(threads)
     _refuse_clashes(wanted)
     swept = Swept(system, variants, wanted, end, plain)
-    looks = {"unit": " runs"}
     with (
-        followed(progress, len(variants), "sweep", "(done, variants)", **looks) as told,
+        followed(progress, len(variants), "sweep", "(done, variants)", unit=" runs") as told,
         warnings.catch_warnings(),
     ):
         # a value may be rarely wanted; that of a single run is given there
@@ -157,7 +160,7 @@ def _one_by_one(made: Sweep, plan: Plan, outputs: Mapping[str, Output], told: Sh
     for number in range(len(made)):
         try:
             run = made.run(number)
-            found = {name: one.of(run) for name, one in outputs.items()}
+            found = {name: _of(made, number, name, one, run) for name, one in outputs.items()}
         except KeyboardInterrupt as stop:
             _ended(made, stop)
         except Exception as error:
@@ -165,6 +168,22 @@ def _one_by_one(made: Sweep, plan: Plan, outputs: Mapping[str, Output], told: Sh
             raise
         made.take_one(number, found, run.status)
         told(number + 1)
+    if made.problems:
+        one, *more = made.problems
+        also = f"; {len(more)} more, which .problems lists" if more else ""
+        warnings.warn(OutputWarning(f"{one}{also}; the value is missing"), stacklevel=caller())
+
+
+def _of(made: Sweep, number: int, name: str, one: Output, run: Trajectory) -> Any:
+    """An output of a run; one of a function that raises is missing, and the others are kept."""
+    if not isinstance(one, Computed):
+        return one.of(run)
+    try:
+        value = one.of(run)
+    except Exception as error:
+        made.problems.append(Missing(number, name, f"{type(error).__name__}: {error}"))
+        return None
+    return one.one(value)
 
 
 def _sampled(swept: Swept) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,16 +31,24 @@ class EndingError(ClutchworkError, ValueError):
 
 
 def write(
-    run: Recorded, path: str | Path, names: Any = None, dt: float | None = None, *, times: Any = None, form: str = ""
+    run: Recorded,
+    path: str | Path,
+    names: Any = None,
+    dt: float | None = None,
+    *,
+    times: Any = None,
+    units: Mapping[str, str] | None = None,
+    form: str = "",
 ) -> None:
     """Write signals of a run, in the format that the ending of the file names.
 
     Parameters: names, signals and wildcards, such as "c1.*", all by default; dt [s] or times [s], instants that are
-    computed, not interpolated, all of the run by default; form, a format in place of that of the ending.
+    computed, not interpolated, all of the run by default; units, other ones than those of SI by signal; form,
+    a format in place of that of the ending.
     """
     path = path_of(path, form or "write")
     make = _writer(form or _format(path))
-    make(content(run, names, dt, times), path)
+    make(content(run, names, dt, times, units), path)
 
 
 def path_of(path: str | Path, call: str) -> Path:

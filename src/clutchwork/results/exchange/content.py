@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,7 @@ from clutchwork.model.settings import plain_settings
 from clutchwork.results.events import UNITS, Event, Events
 from clutchwork.results.raster import at_raster
 from clutchwork.results.selection import chosen
+from clutchwork.results.units import Converter, converter
 
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
@@ -49,6 +50,12 @@ class Content:
 
     run: Recorded
     names: tuple[str, ...]
+    made: Converter
+
+    @property
+    def instants(self) -> Signal:
+        """The time in the unit that is asked for."""
+        return Signal("time", self.made.unit("time"), self.made.put(self.time, "time"))
 
     @property
     def time(self) -> NDArray[np.float64]:
@@ -62,9 +69,8 @@ class Content:
 
     def signals(self) -> Iterator[Signal]:
         """One after another; each is evaluated when it is asked for."""
-        units = self.run.units
         for name in self.names:
-            yield Signal(name, units[name], np.ascontiguousarray(self.run[name]))
+            yield Signal(name, self.made.unit(name), np.ascontiguousarray(self.made.values(self.run, name)))
 
     def event_columns(self) -> Iterator[Signal]:
         """Every field of every event."""
@@ -106,9 +112,15 @@ def settings_of(run: Recorded) -> dict[str, Any]:
     return plain_settings({name: getattr(run.options, name) for name in OPTIONS if name != "times"})
 
 
-def content(run: Recorded, names: Any = None, dt: float | None = None, times: Any = None) -> Content:
-    """The signals that are meant, at the instants that are meant."""
+def content(
+    run: Recorded,
+    names: Any = None,
+    dt: float | None = None,
+    times: Any = None,
+    units: Mapping[str, str] | None = None,
+) -> Content:
+    """The signals that are meant, at the instants that are meant, in the units that are meant."""
     known = run.channels
     # a wrong name is reported before the run is repeated
-    picked = chosen(names, known, known.fault)
-    return Content(at_raster(run, dt, times), picked)
+    picked, made = chosen(names, known, known.fault), converter(run, units)
+    return Content(at_raster(run, dt, times), picked, made)

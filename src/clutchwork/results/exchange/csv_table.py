@@ -10,8 +10,8 @@ from clutchwork.results.exchange.content import Content
 
 def write(content: Content, path: Path) -> None:
     """One line for each instant, the time first."""
-    heads, cells = ["time [s]"], [content.time.tolist()]
-    for signal in content.signals():
+    heads, cells = list[str](), list[list[object]]()
+    for signal in (content.instants, *content.signals()):
         heads.append(f"{signal.name} [{signal.unit}]" if signal.unit else signal.name)
         cells.append(signal.values.tolist())
     with path.open("w", encoding="utf-8", newline="") as file:

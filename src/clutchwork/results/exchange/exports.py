@@ -9,8 +9,11 @@ from clutchwork.declare.calls import explained
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
+    from typing import TypeAlias
 
     from clutchwork.results.recorded import Recorded
+
+    Units: TypeAlias = Mapping[str, str] | None
 
 
 class Exports:
@@ -18,65 +21,68 @@ class Exports:
 
     Parameters: names, signals by name, or wildcards such as "c1.*" and "*.speed", all by default; dt, distance of the
     instants [s], or times, the instants [s], all of the run by default. Other instants are computed, as by `at`, not
-    interpolated. UnknownName, a KeyError, lists all names that mean nothing, with near ones.
+    interpolated. units, other ones than those of SI by signal, `*` for any characters: {"engine.speed": "rpm",
+    "*.pressure": "bar", "time": "ms"}; events stay in SI. UnknownName, a KeyError, lists all names that mean nothing,
+    with near ones; UseError all units that do not fit.
     """
 
     @explained("to_csv")
-    def to_csv(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
+    def to_csv(
+        self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None
+    ) -> None:
         """Write signals as columns `name [unit]` with 17 digits, the time first: for Excel, and for `cw.Column`."""
-        self._write("csv", path, names, dt, times)
+        self._write("csv", path, names, dt, times, units)
 
     @explained("to_parquet")
-    def to_parquet(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
+    def to_parquet(
+        self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None
+    ) -> None:
         """Write a Parquet file, a column for each signal with its unit. Needs pyarrow."""
-        self._write("parquet", path, names, dt, times)
+        self._write("parquet", path, names, dt, times, units)
 
     @explained("to_mdf")
-    def to_mdf(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
-        """Write an MDF 4 file, a channel for each signal with its unit, and the events. Needs asammdf."""
-        self._write("mdf", path, names, dt, times)
+    def to_mdf(
+        self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None
+    ) -> None:
+        """Write an MDF 4 file, a channel for each signal with its unit, and the events; time in s. Needs asammdf."""
+        self._write("mdf", path, names, dt, times, units)
 
     @explained("to_mat")
-    def to_mat(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
+    def to_mat(
+        self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None
+    ) -> None:
         """Write a MAT file with a structure `run`: signals, units, names, events. Needs scipy."""
-        self._write("mat", path, names, dt, times)
+        self._write("mat", path, names, dt, times, units)
 
     @explained("to_netcdf")
-    def to_netcdf(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
+    def to_netcdf(
+        self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None
+    ) -> None:
         """Write a NetCDF file, a variable for each signal with its unit, and the events. Needs xarray and h5netcdf."""
-        self._write("netcdf", path, names, dt, times)
+        self._write("netcdf", path, names, dt, times, units)
 
     @explained("write")
-    def write(self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None) -> None:
+    def write(
+        self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None
+    ) -> None:
         """Write the format that the ending of the file names: .csv, .parquet, .mf4, .mat or .nc."""
-        self._write("", path, names, dt, times)
+        self._write("", path, names, dt, times, units)
 
     @explained("to_pandas")
-    def to_pandas(
-        self,
-        names: Any = None,
-        *,
-        dt: float | None = None,
-        times: Any = None,
-        units: Mapping[str, str] | None = None,
-    ) -> Any:
-        """A pandas DataFrame over time; `frame.attrs["units"]` holds the units. Needs pandas.
-
-        Parameters: units, other ones than those of SI by signal, `*` for any characters: {"engine.speed": "rpm",
-        "*.pressure": "bar", "time": "ms"}.
-        """
+    def to_pandas(self, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None) -> Any:
+        """A pandas DataFrame over time; `frame.attrs["units"]` holds the units. Needs pandas."""
         from clutchwork.results.exchange.content import content
         from clutchwork.results.exchange.frames import to_pandas
 
-        return to_pandas(content(self._recorded, names, dt, times), units)
+        return to_pandas(content(self._recorded, names, dt, times, units))
 
     @explained("to_xarray")
-    def to_xarray(self, names: Any = None, *, dt: float | None = None, times: Any = None) -> Any:
+    def to_xarray(self, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None) -> Any:
         """An xarray Dataset with units as attributes. Needs xarray."""
         from clutchwork.results.exchange.content import content
         from clutchwork.results.exchange.frames import to_xarray
 
-        return to_xarray(content(self._recorded, names, dt, times))
+        return to_xarray(content(self._recorded, names, dt, times, units))
 
     @explained("save")
     def save(self, path: str | Path) -> None:
@@ -91,7 +97,7 @@ class Exports:
         run: Any = self
         return cast("Recorded", run)
 
-    def _write(self, form: str, path: str | Path, names: Any, dt: float | None, times: Any) -> None:
+    def _write(self, form: str, path: str | Path, names: Any, dt: float | None, times: Any, units: Units) -> None:
         from clutchwork.results.exchange import write
 
-        write(self._recorded, path, names, dt, times=times, form=form)
+        write(self._recorded, path, names, dt, times=times, units=units, form=form)

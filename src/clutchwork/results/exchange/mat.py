@@ -31,10 +31,10 @@ def write(content: Content, path: Path) -> None:
     if size > MOST_BYTES:
         remedy = "choose signals with names=, or a coarser raster with dt="
         raise TooLargeError(f"{path} would have {size} bytes, a MAT file has at most {MOST_BYTES}: {remedy}")
-    data: dict[str, Any] = {"time": content.time}
+    data: dict[str, Any] = {"time": content.instants.values}
     data |= {fields[signal.name]: _values(signal) for signal in content.signals()}
-    units = content.run.units
-    data["units"] = {"time": "s"} | {fields[name]: units[name] for name in content.names}
+    unit = content.made.unit
+    data["units"] = {"time": unit("time")} | {fields[name]: unit(name) for name in content.names}
     data["names"] = {"time": "time"} | {fields[name]: name for name in content.names}
     data["events"] = {column.name: _cells(column) for column in content.event_columns()}
     data["info"] = {key: json.dumps(v) if isinstance(v, dict) else v for key, v in content.about().items()}

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.results.exchange.content import Content, Signal
 
@@ -18,6 +19,8 @@ DEFLATE = 2
 def write(content: Content, path: Path) -> None:
     """A group of channels for the signals, one for the events, and a marker for each event."""
     asammdf = need(*NEEDED)
+    if content.instants.unit != "s":
+        raise UseError("to_mdf", ["units: the time of an MDF file is in s; leave 'time' out"])
     with asammdf.MDF(version=VERSION) as file:
         file.header.description = content.as_text()
         file.header.subject = content.run.system.name

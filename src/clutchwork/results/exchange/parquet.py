@@ -16,7 +16,7 @@ def write(content: Content, path: Path) -> None:
     Every field has its `unit`; the file says units and origin once more, where pandas looks for `attrs`.
     """
     pyarrow = need("pyarrow", "exchange", "a Parquet file")
-    columns = [Signal("time", "s", content.time), *content.signals()]
+    columns = [content.instants, *content.signals()]
     fields, arrays = [], []
     for column in columns:
         array = _array(pyarrow, column)

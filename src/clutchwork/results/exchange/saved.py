@@ -19,6 +19,7 @@ from clutchwork.declare.options import OPTIONS
 from clutchwork.model.settings import plain_settings
 from clutchwork.results.channels import Channels
 from clutchwork.results.exchange.content import program
+from clutchwork.results.state import PARTS as STATE_PARTS
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 # raised when an older version could not read the file
 FORMAT = 1
-RUN_PARTS = ("run", "time", "rows", "events", *PARTS)
+RUN_PARTS = ("run", "time", "rows", "events", "tape", *(f"start_{name}" for name in STATE_PARTS), *PARTS)
 MOST_BYTES = 4_000_000_000
 
 
@@ -52,7 +53,6 @@ def save(run: Recorded, path: str | Path) -> None:
         "message": run.message,
         "statistics": dict(run.statistics),
         "controllers": controllers,
-        "needs": list(getattr(getattr(run.repeat, "__self__", run.repeat), "needs", ())),
     }
     parts = {
         "run": json.dumps(about, default=float).encode(),
@@ -60,7 +60,16 @@ def save(run: Recorded, path: str | Path) -> None:
         "rows": np.ascontiguousarray(run.rows, dtype="<f8").tobytes(),
         "events": json.dumps([astuple(event) for event in run.events]).encode(),
     }
-    archive.write(path, parts | _model(system))
+    archive.write(path, parts | _begin(run, controllers) | _model(system))
+
+
+def _begin(run: Recorded, controllers: list[str]) -> dict[str, bytes]:
+    """The state that a run began at and what was done to it, empty where there is none, or where it is not repeated."""
+    job: Any = None if controllers else getattr(run.repeat, "__self__", None)
+    start, done = getattr(job, "start", None), job.course.plain() if job is not None else None
+    state = start.parts() if start is not None else dict.fromkeys(STATE_PARTS, b"")
+    tape = json.dumps(done, default=float).encode() if done is not None else b""
+    return {"tape": tape, **{f"start_{name}": data for name, data in state.items()}}
 
 
 def _model(system: System) -> dict[str, bytes]:

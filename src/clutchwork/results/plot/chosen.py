@@ -31,6 +31,7 @@ class Chosen:
     zoom: Any = None
     events: Any = True
     measured: Any = None
+    units: Any = None
 
 
 @dataclass(frozen=True)
@@ -158,6 +159,11 @@ def _units(runs: Mapping[str, Recorded], unit: Any, call: str) -> set[str]:
     if wrong:
         raise UseError(call, wrong)
     return set(given)
+
+
+def usual_groups(run: Recorded) -> tuple[tuple[bool, tuple[str, ...]], ...]:
+    """The same as groups of one, each in the panel of its unit."""
+    return tuple((False, (name,)) for name in usual(run))
 
 
 def usual(run: Recorded) -> Iterator[str]:

@@ -11,7 +11,7 @@ from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.results.plot import named
 from clutchwork.results.plot.chosen import PICTURES, Asked, asked, panels, usual
-from clutchwork.results.plot.curves import panels_of
+from clutchwork.results.plot.curves import panels_of, units_of
 from clutchwork.results.plot.measured import samples, with_samples
 from clutchwork.results.plot.view import viewed
 
@@ -32,14 +32,16 @@ def compare(
     events: Any = False,
     colour: str = "run",
     measured: Mapping[str, Any] | None = None,
+    units: Mapping[str, str] | None = None,
 ) -> Picture:
     """Draw signals of several runs over each other: `cw.compare({"soft": a, "hard": b}, "halfshaft.torque")`.
 
     Parameters: runs_and_signals, a mapping from labels to runs, or the runs one after another, then signals as
     `run.plot` takes them: names, wildcards, lists of names for one panel, and the path of a picture; without any,
     speeds, loads and torques of contacts and temperatures that all runs have. labels, of runs that are not in a
-    mapping, by default the names of their models, or run 1, run 2 ...; unit, path, zoom [s], events and measured as in
-    `run.plot`; colour, "run" for one colour for each run and dashes for signals, or "signal" for the other way round.
+    mapping, by default the names of their models, or run 1, run 2 ...; unit, path, zoom [s], events, measured and
+    units as in `run.plot`; colour, "run" for one colour for each run and dashes for signals, or "signal" for the other
+    way round.
 
     Models may differ. A signal that one of the runs does not have is an `UnknownName` error that names the run; a
     wildcard takes what each of them has. Needs matplotlib.
@@ -49,12 +51,12 @@ def compare(
         raise UseError("compare", [f"colour is {shown(colour)}: give 'run' or 'signal'{near(colour, COLOURS)}"])
     known = {name for run in runs.values() for name in run.channels}
     wanted = asked("compare", rest, path, PICTURES, known)
-    extra = samples(runs, measured, "compare")
+    extra, shown_in = samples(runs, measured, "compare"), units_of(runs, units, "compare")
     if not wanted.groups and unit is None:
         wanted = Asked(_common(runs), wanted.path)
     view = viewed(runs, zoom, events, "compare")
     groups = with_samples(panels(runs, wanted, unit, "compare"), extra)
-    return named.draw(view, panels_of(view.runs, groups, extra, "compare"), wanted.path, colour)
+    return named.draw(view, panels_of(view.runs, groups, extra, "compare", shown_in), wanted.path, colour)
 
 
 def _runs(given: Sequence[Any], labels: Any) -> tuple[dict[str, Recorded], list[Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.shown import listed, shown
 from clutchwork.declare.layout import MODES
 from clutchwork.results.plot.panels import SCALES
+from clutchwork.results.units import Converter, among
 
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
@@ -40,6 +42,7 @@ class Curve:
     values: Array
     run: str = ""  # label of the run, empty where there is one
     measured: bool = False  # samples, drawn as points
+    si: str = ""  # the unit in SI where another one is asked for, which is then shown as it is
 
     @property
     def quantity(self) -> str:
@@ -74,12 +77,18 @@ class Side:
         if self.words:
             return "state"
         quantities = list(dict.fromkeys(curve.quantity.replace("_", " ") for curve in self.curves))
-        word = quantities[0] if len(quantities) == 1 else WORDS.get(self.curves[0].unit, ", ".join(quantities[:2]))
+        word = (
+            quantities[0]
+            if len(quantities) == 1
+            else WORDS.get(self.curves[0].si or self.curves[0].unit, ", ".join(quantities[:2]))
+        )
         return f"{word}, {self.unit}" if self.unit != "1" else word
 
     @property
     def _shown(self) -> tuple[float, str]:
         unit = self.curves[0].unit
+        if any(curve.si for curve in self.curves):
+            return 1.0, unit
         largest = max((float(np.max(np.abs(c.values), initial=0.0, where=_finite(c))) for c in self.curves), default=0)
         for from_unit, size, to_unit, factor in SCALES:
             if unit == from_unit and largest >= size:
@@ -118,12 +127,17 @@ def curves_of(runs: Mapping[str, Recorded], name: str) -> list[Curve]:
 
 
 def panels_of(
-    runs: Mapping[str, Recorded], groups: Sequence[tuple[bool, Sequence[str]]], extra: Sequence[Curve], call: str
+    runs: Mapping[str, Recorded],
+    groups: Sequence[tuple[bool, Sequence[str]]],
+    extra: Sequence[Curve],
+    call: str,
+    shown_in: Converter,
 ) -> list[Panel]:
     """A panel for each unit of the loose signals, in order of appearance, and one for each group of its own."""
-    spare, loose, made = list(extra), dict[str, list[Curve]](), list[Panel | list[Curve]]()
+    spare, loose = [_in_unit(curve, shown_in) for curve in extra], dict[str, list[Curve]]()
+    made = list[Panel | list[Curve]]()
     for own, names in groups:
-        found = [curve for name in names for curve in curves_of(runs, name)]
+        found = [_in_unit(curve, shown_in) for name in names for curve in curves_of(runs, name)]
         found += [curve for curve in spare if curve.signal in names]
         spare = [curve for curve in spare if curve not in found]
         units = list(dict.fromkeys(curve.unit for curve in found))
@@ -139,6 +153,22 @@ def panels_of(
                 made.append(loose[curve.unit])
             loose[curve.unit].append(curve)
     return [Panel((Side(_once(one)),)) if isinstance(one, list) else one for one in made]
+
+
+def units_of(runs: Mapping[str, Recorded], units: Any, call: str) -> Converter:
+    """What puts signals into the units that are asked for, of any of the runs."""
+    made = among({name: unit for run in runs.values() for name, unit in {**run.units, "time": "s"}.items()}, units)
+    if "time" in made.units:
+        raise UseError(call, ["units: a picture shows the time in s; leave 'time' out"])
+    return made
+
+
+def _in_unit(curve: Curve, shown_in: Converter) -> Curve:
+    """A curve in the unit that is asked for."""
+    if curve.signal not in shown_in.units:
+        return curve
+    unit, values = shown_in.unit(curve.signal), shown_in.put(curve.values, curve.signal)
+    return replace(curve, unit=unit, values=values, si=curve.unit)
 
 
 def _once(curves: Sequence[Curve]) -> tuple[Curve, ...]:

@@ -11,8 +11,8 @@ import numpy as np
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.shown import shown
-from clutchwork.results.plot.chosen import PAGES, Asked, Chosen, asked, panels, usual
-from clutchwork.results.plot.curves import WORDS, Array, Curve, Panel, Side, panels_of, thinned
+from clutchwork.results.plot.chosen import PAGES, Asked, Chosen, asked, panels, usual_groups
+from clutchwork.results.plot.curves import WORDS, Array, Curve, Panel, Side, panels_of, thinned, units_of
 from clutchwork.results.plot.measured import samples, with_samples
 from clutchwork.results.plot.named import curve_looks
 from clutchwork.results.plot.style import DASHES
@@ -35,12 +35,12 @@ def explore(run: Recorded, chosen: Chosen, points: int | None) -> Any:
     runs, call = {"": run}, "explore"
     _check_points(points)
     wanted = asked(call, chosen.signals, chosen.path, PAGES, run.channels)
-    extra = samples(runs, chosen.measured, call)
+    extra, shown_in = samples(runs, chosen.measured, call), units_of(runs, chosen.units, call)
     if not wanted.groups and chosen.unit is None and not extra:
-        wanted = Asked(tuple((False, (name,)) for name in usual(run)), wanted.path)
+        wanted = Asked(usual_groups(run), wanted.path)
     groups = with_samples(panels(runs, wanted, chosen.unit, call), extra)
     view = viewed(runs, chosen.zoom, chosen.events, call)
-    figure = _figure(view, panels_of(view.runs, groups, extra, call), points)
+    figure = _figure(view, panels_of(view.runs, groups, extra, call, shown_in), points)
     if wanted.path is not None:
         wanted.path.parent.mkdir(parents=True, exist_ok=True)
         # with all that it needs, so that it opens without a network
@@ -107,7 +107,9 @@ def _trace(curve: Curve, side: Side, look: dict[str, Any], row: int, values: Arr
     dash = LINE_STYLES[DASHES.index(look["linestyle"])] if look["linestyle"] in DASHES else LINE_STYLES[3]
     # a graphics card draws dashes of curves with many points as noise
     line = {"color": look["color"], "width": 1.6, "dash": dash if dashed else "solid"}
-    return made | {"mode": "lines", "line": line}
+    # a line over a single instant would not be seen
+    mode = "lines" if np.ptp(curve.time) else "lines+markers"
+    return made | {"mode": mode, "line": line}
 
 
 def _ticks(side: Side) -> dict[str, Any]:

@@ -68,6 +68,7 @@ def _panel(axes: Axes, panel: Panel, view: View, colour: str) -> None:
 def _curve(axes: Axes, curve: Curve, side: Side, look: dict[str, Any]) -> Any:
     time, values = thinned(curve.time, side.factor * curve.values, MOST_POINTS)
     (line,) = axes.plot(time, values, label=looks_of.named(curve.label), **look)
+    looks_of.dotted([line])
     return line
 
 

@@ -125,6 +125,13 @@ def locks(axes: Axes, run: Recorded) -> None:
     axes.text(1.012, 0.5, "full: locked\npale: slipping", transform=axes.transAxes, va="center", fontsize=7.0)
 
 
+def dotted(lines: Iterable[Any]) -> None:
+    """A line over a single instant is a dot, for it would not be seen."""
+    for line in lines:
+        if np.ptp(line.get_xdata()) == 0.0 and line.get_marker() == "None":
+            line.set(marker="o", markersize=3.0)
+
+
 def named(name: str) -> str:
     """A name as label; one with a leading underscore would be left out of the legend."""
     return f" {name}" if name.startswith("_") else name

@@ -110,6 +110,7 @@ def _draw(figure: Figure, view: View, lockup: Event | None, chosen: list[Panel])
     for row, panel in enumerate(chosen):
         axes = figure.add_subplot(grid[row])
         panel.draw(axes)
+        panels.dotted(axes.get_lines())
         axes.set_title(f"{ascii_lowercase[row]})  {panel.title}", loc="left")
         if panel.whole:
             axes.set_xlim(*view.limits)

@@ -10,9 +10,10 @@ from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
 from clutchwork.results.events import Event
 from clutchwork.results.plot import named
-from clutchwork.results.plot.chosen import PICTURES, Chosen, asked, panels
-from clutchwork.results.plot.curves import panels_of
+from clutchwork.results.plot.chosen import PICTURES, Asked, Chosen, asked, panels, usual_groups
+from clutchwork.results.plot.curves import panels_of, units_of
 from clutchwork.results.plot.measured import samples, with_samples
+from clutchwork.results.plot.panels import busy
 from clutchwork.results.plot.picture import picture
 from clutchwork.results.plot.view import View, viewed
 
@@ -25,12 +26,16 @@ def plot(run: Recorded, chosen: Chosen, lockup: Event | None = None) -> Picture:
     """Draw a run: what is named, or the usual panels."""
     runs = {"": run}
     wanted = asked("plot", chosen.signals, chosen.path, PICTURES, run.channels)
-    extra = samples(runs, chosen.measured, "plot")
+    extra, shown_in = samples(runs, chosen.measured, "plot"), units_of(runs, chosen.units, "plot")
+    if shown_in.units and not wanted.groups and chosen.unit is None:
+        # panels of their own, for members of one may have several units
+        states = tuple((False, (f"{contact}.state",)) for contact in busy(run))
+        wanted = Asked((*usual_groups(run), *states), wanted.path)
     groups = with_samples(panels(runs, wanted, chosen.unit, "plot"), extra)
     _check_lockup(lockup, bool(groups))
     view = viewed(runs, chosen.zoom, chosen.events, "plot")
     if groups:
-        return named.draw(view, panels_of(view.runs, groups, extra, "plot"), wanted.path, "signal")
+        return named.draw(view, panels_of(view.runs, groups, extra, "plot", shown_in), wanted.path, "signal")
     _check_inside(lockup, view, chosen.zoom)
     return picture(view, wanted.path, lockup=lockup)
 

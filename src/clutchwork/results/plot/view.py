@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 FINE = 1600
 # more marks would hide the curves
 MOST_MARKS = 30
+# beside a single instant, of the time or in s
+ROOM = 1e-3
 AFTER = {"locked": "locks", "open": "opens", "forward": "slips forward", "backward": "slips backward"}
 
 
@@ -58,6 +60,9 @@ def viewed(runs: Mapping[str, Recorded], zoom: Any, events: Any, call: str) -> V
         for event in _wanted(run, events, call)
         if begin <= event.time <= end
     ]
+    if begin == end:
+        # one instant alone has room on both sides
+        begin, end = begin - ROOM * max(1.0, abs(begin)), end + ROOM * max(1.0, abs(end))
     crowded = events is True and len({event.time for _, event in marks}) > MOST_MARKS
     return View(runs, begin, end, () if crowded else tuple(marks))
 
