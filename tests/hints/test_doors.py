@@ -144,15 +144,12 @@ def test_signals_of_what_is_not_used_are_not_there() -> None:
     assert (cw.simulate(other, 0.1)["f.pressure"] == 1e3).all()
 
 
-def stepped() -> cw.Trajectory:
-    """A weak launch that was set from outside, with instants of its own."""
-    sim = cw.Simulator(CASES["never locks"].wrong(), output="steps")
-    sim.advance(CASES["never locks"].t_end)
-    return sim.run
-
-
 def test_a_run_from_a_file_that_cannot_be_repeated_has_hints(tmp_path: Path) -> None:
-    run = stepped()
+    case = CASES["never locks"]
+    system = case.wrong().assemble()
+    torque = next(item.name for item in system.inputs if item.name.endswith(".torque"))
+    value = float(cw.simulate(system, 0.01)[torque][0])
+    run = cw.simulate(system.changed({torque: cw.Sampled(lambda *_: value, period=0.1)}), case.t_end, output="steps")
     run.save(tmp_path / "a.run")
     assert cw.load_run(tmp_path / "a.run").hints.rules == run.hints.rules == ("never locks",)
 

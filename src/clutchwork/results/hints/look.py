@@ -49,7 +49,7 @@ class Look:
         One from a file that does not hold all that it was made with is looked at as it is.
         """
         own = run.options.dt is not None or run.options.times is not None or run.options.output == "steps"
-        lacks = hasattr(run.repeat, "needs")
+        lacks = hasattr(run.repeat, "controllers")
         return cls(run, run.at(_instants(run)) if own and run.finished and not lacks else run)
 
     @property
