@@ -168,8 +168,9 @@ def at(signal: str, times: Sequence[float] | float) -> AtTimes:
     Parameters: signal, its name; times [s], one or several that rise.
     """
     _named("at", signal)
+    plain = instants(times)
     try:
-        found = tuple(float(time) for time in np.atleast_1d(np.asarray(instants(times), dtype=float)))
+        found = tuple(float(time) for time in np.atleast_1d(np.asarray(plain, dtype=float)))
     except (TypeError, ValueError):
         found = ()
     if not found or not all(0.0 <= time < np.inf for time in found) or list(found) != sorted(found):
