@@ -49,6 +49,8 @@ def test_bytes_read_back(system):
     again = cw.System.from_bytes(system.to_bytes())
     assert again.to_bytes() == system.to_bytes()
     np.testing.assert_array_equal(again.mass, system.mass)
+    # without names there is little to read, and nothing to fail
+    assert "Trajectory done" in repr(cw.simulate(again, 0.01))
 
 
 def test_bytes_that_do_not_fit(system):

@@ -19,6 +19,9 @@ Matrix = NDArray[np.float64]
 def multipliers(wiring: Wiring) -> Matrix:
     """Matrix that turns an output row into the multipliers of gear rows, then of prescribed speeds [N m]."""
     rigid = np.hstack([_gear_directions(wiring), wiring.spread(wiring.motions)])
+    # also where nothing has a name, in a System of bytes
+    if not rigid.shape[1]:
+        return np.zeros((0, wiring.row_size))
     matrix = np.linalg.pinv(rigid, rcond=1e-12) @ _missing_torque(wiring)
     # what is only rounding becomes zero, so that a torque depends on what it physically depends on
     noise = 1e-14 * np.max(np.abs(matrix), axis=1, keepdims=True, initial=0.0)
