@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.errors import near
+from clutchwork.base.paths import fitting
 from clutchwork.base.shell import (
     DONE,
     INTERRUPTED,
@@ -176,6 +177,9 @@ Writer = Callable[["Trajectory", Path, Chosen], object]
 def _wanted(asked: argparse.Namespace) -> dict[Path, Writer]:
     """The files that are asked for, and what writes each."""
     folder = asked.out
+    for option, path in (("--csv", asked.csv), ("--events", asked.events)):
+        if path is not None:
+            fitting(option, path, f"{option[2:]}.csv", [".csv"])
     named: list[tuple[Path | None, Writer]] = [
         (asked.plot or (folder and folder / "picture.png"), _plot),
         (asked.csv or (folder and folder / "trajectory.csv"), _csv),
@@ -221,7 +225,6 @@ def _writer(path: Path) -> Writer:
 def _write(run: Trajectory, chosen: Chosen, wanted: dict[Path, Writer]) -> list[Path]:
     """Write the wanted files; their paths."""
     for path, write in wanted.items():
-        path.parent.mkdir(parents=True, exist_ok=True)
         write(run, path, chosen)
     return [*wanted]
 

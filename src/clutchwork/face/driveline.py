@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
 from clutchwork.base.errors import ModelError, Problem, UseError, warn
+from clutchwork.base.paths import path_of
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
 from clutchwork.declare.calls import explain, explained
@@ -247,11 +248,9 @@ class Driveline:
     @explained("cw.Driveline.load")
     def load(cls, path: str | Path) -> Driveline:
         """Read a model file, TOML or JSON; ModelError lists all its mistakes."""
-        if not isinstance(path, str | Path):
-            raise UseError("cw.Driveline.load", [f"{shown(path)} is not a path; give the name of a TOML or JSON file"])
         from clutchwork.files.model_file import load
 
-        return cls._of(load(path))
+        return cls._of(load(path_of("cw.Driveline.load", path, "model.toml")))
 
     @explained("d.save")
     def save(self, path: str | Path) -> None:

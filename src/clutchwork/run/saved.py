@@ -17,6 +17,7 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.base import archive
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelWarning
+from clutchwork.base.paths import path_of
 from clutchwork.base.regular import reason
 from clutchwork.base.shown import listed, shortened
 from clutchwork.declare.calls import explained
@@ -52,13 +53,14 @@ class NoRepeat:
         raise RepeatError(f"this run was loaded and cannot be repeated: {why}; simulate the model again")
 
 
-@explained("load_run")
+@explained("cw.load_run")
 def load_run(path: str | Path) -> Trajectory:
     """The run that `run.save(path)` wrote: signals, units, events, energy, options and status, bit for bit.
 
     `run.at` and `run.state` repeat it as before, also one that was stepped or began at a state, but where Python
     functions set inputs. RunFormatError where the file is damaged, no run at all, or of another version.
     """
+    path_of("cw.load_run", path, "run.cwrun")
     try:
         about, *parts = archive.read(path, RUN_PARTS, MOST_BYTES)
         return _made(_about(about, path), parts, path)

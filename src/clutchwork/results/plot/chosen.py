@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, near
+from clutchwork.base.paths import path_fault
 from clutchwork.base.shown import listed, shown
 from clutchwork.results.plot.panels import busy, driven
 from clutchwork.results.selection import meant
@@ -73,8 +74,8 @@ def _is_path(word: str, known: Collection[str]) -> bool:
 
 
 def _path_fault(path: Any, endings: Collection[str]) -> str:
-    if not isinstance(path, str | Path):
-        return f"path is {shown(path)}: it must be a string or a Path"
+    if fault := path_fault(path, f"run{next(iter(endings))}"):
+        return fault
     if Path(path).suffix.lower() in endings:
         return ""
     known = " or ".join(endings) if len(endings) < 3 else f"{', '.join(list(endings)[:-1])} or {list(endings)[-1]}"
