@@ -68,7 +68,13 @@ class Job:
     def again(self, times: Any) -> Trajectory:
         """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
         wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
-        return trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
+        with warnings.catch_warnings():
+            # whoever has the run was warned
+            warnings.simplefilter("ignore", StoppedEarly)
+            made = trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
+        if not made.finished and len(made) < len(wanted):
+            warnings.warn(StoppedEarly(made.message, made), stacklevel=caller())
+        return made
 
     def state(self, at: float) -> State:
         """Repeat it up to a time [s], and save what it is there."""
