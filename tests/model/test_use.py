@@ -124,7 +124,7 @@ def test_shafts_and_masses():
         (lambda: d.add_thermal("a"), "is not a thermal node"),
         (lambda: cw.Driveline(names="x"), "cw.Driveline(): 1 problem"),
         (lambda: cw.Driveline("a", "b"), "only name is positional"),
-        (lambda: cw.Driveline.load(), "path is missing; give path=..."),
+        (lambda: cw.Driveline.load(), "path is missing; give one, such as path='model.toml'"),
         (lambda: cw.Driveline.load(3), "3 is not a path; give a string, such as 'model.toml'"),
         (lambda: cw.Node("a", inertai=1.0), "did you mean 'inertia'?"),
         (lambda: cw.HeatFlow(element=1.0), "unknown field 'element'; known fields: of"),

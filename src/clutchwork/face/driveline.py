@@ -10,7 +10,7 @@ from clutchwork.base.errors import ModelError, Problem, UseError, warn
 from clutchwork.base.paths import path_of
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
-from clutchwork.declare.calls import explain, explained
+from clutchwork.declare.calls import explain, explained, explained_methods
 from clutchwork.declare.node import HOUSING, Component, Domain, Element, Node, Signal, ThermalNode
 from clutchwork.declare.speech import words_of_files
 from clutchwork.model.model import Model
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 E = TypeVar("E", bound=Element)
 
 
+@explained_methods("d")
 class Driveline:
     """A driveline under construction.
 
@@ -245,14 +246,14 @@ class Driveline:
         return html(self._model)
 
     @classmethod
-    @explained("cw.Driveline.load")
+    @explained("cw.Driveline.load", path="'model.toml'")
     def load(cls, path: str | Path) -> Driveline:
         """Read a model file, TOML or JSON; ModelError lists all its mistakes."""
         from clutchwork.files.model_file import load
 
         return cls._of(load(path_of("cw.Driveline.load", path, "model.toml")))
 
-    @explained("d.save")
+    @explained("d.save", path="'model.toml'")
     def save(self, path: str | Path) -> None:
         """Write a model file, TOML or JSON by its ending."""
         from clutchwork.files.model_file import save

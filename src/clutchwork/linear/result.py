@@ -13,7 +13,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.base.text import columns, counted
-from clutchwork.declare.calls import explained
+from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import MODES
 from clutchwork.linear.quantity import Quantity, amount, per_second
 
@@ -29,6 +29,7 @@ Array = NDArray[Any]
 MOST_SHOWN = 20
 
 
+@explained_methods("lin")
 @dataclass(frozen=True, eq=False, repr=False)
 class Linear:
     """A linear system about one instant: d/dt x = rate + A x + B u, y = C x + D u.

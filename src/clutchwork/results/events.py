@@ -15,7 +15,7 @@ from clutchwork.base.extras import need
 from clutchwork.base.paths import target
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import columns
-from clutchwork.declare.calls import explained
+from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import CAUSES, EVENT, MODES
 
 if TYPE_CHECKING:
@@ -54,6 +54,7 @@ class Event:
         return self.energy_before - self.energy_after
 
 
+@explained_methods("run.events")
 class Events(Sequence[Event]):
     """The events of a run in order of time; print it to read it."""
 
@@ -138,7 +139,7 @@ class Events(Sequence[Event]):
         lines = map(_cells, self)
         return html.table((*head, *torques), lines, right={0, 5, 6, 7}) if self else html.paragraph("no events")
 
-    @explained("run.events.to_csv")
+    @explained("run.events.to_csv", path="'events.csv'")
     def to_csv(self, path: str | Path) -> None:
         """Write every field of every event; the head of each column has its unit."""
         import csv

@@ -15,7 +15,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, UseError
 from clutchwork.base.kept import kept
 from clutchwork.base.shown import shortened, shown
-from clutchwork.declare.calls import explained
+from clutchwork.declare.calls import explained, explained_methods
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,6 +30,7 @@ class StateError(ClutchworkError, ValueError):
     """A state that is damaged, or that of another model."""
 
 
+@explained_methods("state")
 @dataclass(frozen=True, eq=False, repr=False)
 class State:
     """A run at an instant, bit for bit: motion, contacts, angles and work, and what was set from outside.
@@ -57,7 +58,7 @@ class State:
         """The output row of the core at this instant."""
         return np.frombuffer(self.row, dtype=np.float64)
 
-    @explained("state.save")
+    @explained("state.save", path="'run.cwstate'")
     def save(self, path: str | Path) -> None:
         """Write it to one file, whatever its ending; nothing in it is code."""
         from clutchwork.base import archive
@@ -79,7 +80,7 @@ class State:
         return cls(core=core, row=row, **_read_head(head))
 
     @classmethod
-    @explained("cw.State.load")
+    @explained("cw.State.load", path="'run.cwstate'")
     def load(cls, path: str | Path) -> State:
         """Read a file of `save`; StateError for any other. Whether it fits a model is seen where it is used."""
         from clutchwork.base import archive

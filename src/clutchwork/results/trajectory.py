@@ -14,7 +14,7 @@ from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, OptionError
 from clutchwork.base.text import counted
-from clutchwork.declare.calls import explained
+from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, NAMES
 from clutchwork.results.channels import Channels, Units, channels
@@ -46,6 +46,7 @@ class SimulationError(ClutchworkError, RuntimeError):
         return type(self), (str(self), self.trajectory)
 
 
+@explained_methods("run")
 @dataclass(frozen=True, eq=False)
 class Trajectory(Exports):
     """The result of a run.

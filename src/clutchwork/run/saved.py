@@ -54,7 +54,7 @@ class NoRepeat:
         raise RepeatError(f"this run was loaded and cannot be repeated: {why}; simulate the model again")
 
 
-@explained("cw.load_run")
+@explained("cw.load_run", path="'run.cwrun'")
 def load_run(path: str | Path) -> Trajectory:
     """The run that `run.save(path)` wrote: signals, units, events, energy, options and status, bit for bit.
 

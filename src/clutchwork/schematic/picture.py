@@ -13,6 +13,7 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting, made
 from clutchwork.base.shown import shown
+from clutchwork.declare.calls import explained_methods
 from clutchwork.results.plot.style import RC
 from clutchwork.schematic.look import GREY, LOCKED, NAME, OPEN, SLIPPING, VALUE
 from clutchwork.schematic.pen import Box, Mark, Pen, Stroke, Text, width_of
@@ -31,6 +32,7 @@ SAME: Any = {"svg.hashsalt": "clutchwork"}
 NO_DATE: dict[str, Any] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}
 
 
+@explained_methods("schematic")
 class Schematic:
     """The schematic of a driveline: shows itself in notebooks, `save` writes a file."""
 

@@ -17,7 +17,7 @@ from clutchwork.base.extras import need
 from clutchwork.base.paths import target
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
-from clutchwork.declare.calls import explained
+from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.selection import chosen
@@ -63,6 +63,7 @@ class Missing(NamedTuple):
         return f"output {self.output!r} of variant {self.variant}: {self.reason}"
 
 
+@explained_methods("sweep")
 @dataclass(frozen=True, eq=False)
 class Sweep:
     """The result of a sweep.
@@ -299,7 +300,7 @@ class Sweep:
         data["status"] = (axes, np.array(NAMES)[self.codes].reshape(shape))
         return xarray.Dataset(data, coords=coords)
 
-    @explained("to_parquet")
+    @explained("sweep.to_parquet", path="'sweep.parquet'")
     def to_parquet(self, path: str | Path, names: Any = None) -> None:
         """Write the table of `to_pandas` as a Parquet file, with the units as metadata. Needs pyarrow.
 
@@ -311,10 +312,10 @@ class Sweep:
         words = {f"unit {name}": unit for name, unit in units.items()}
         # where pandas looks for `attrs`
         words["PANDAS_ATTRS"] = json.dumps({"units": units})
-        file = target("to_parquet", path, "sweep.parquet", [".parquet"])
+        file = target("sweep.to_parquet", path, "sweep.parquet", [".parquet"])
         need("pyarrow.parquet", "exchange").write_table(table.replace_schema_metadata(words), str(file))
 
-    @explained("to_csv")
+    @explained("sweep.to_csv", path="'sweep.csv'")
     def to_csv(self, path: str | Path, names: Any = None) -> None:
         """Write the table with all digits; heads are `name [unit]` where there is one.
 
@@ -322,7 +323,7 @@ class Sweep:
         """
         units, table = self.column_units(names), dict(self.columns(names))
         heads = [f"{name} [{units[name]}]" if units.get(name) else name for name in table]
-        with target("to_csv", path, "sweep.csv", [".csv"]).open("w", encoding="utf-8", newline="") as file:
+        with target("sweep.to_csv", path, "sweep.csv", [".csv"]).open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(heads)
             writer.writerows(zip(*(column.tolist() for column in table.values()), strict=True))

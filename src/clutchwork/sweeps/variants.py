@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
+from clutchwork.declare.calls import explained
 from clutchwork.model import changes
 from clutchwork.model.changes import Target, named, target
 from clutchwork.model.model import Model
@@ -70,6 +71,7 @@ def grid(vary: Mapping[str, Any]) -> Variants:
     return Variants(tuple(varied), count, shape)
 
 
+@explained("cw.variants")
 def variants(columns: Mapping[str, Any]) -> Variants:
     """A table of variants for `sweep`: a column of values for each name, all of one length.
 

@@ -34,28 +34,28 @@ class Exports:
         """Write signals as columns `name [unit]` with 17 digits, the time first: for Excel, and for `cw.Column`."""
         self._write("csv", path, names, dt, times, units)
 
-    @explained("run.to_parquet")
+    @explained("run.to_parquet", path="'run.parquet'")
     def to_parquet(
         self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None
     ) -> None:
         """Write a Parquet file, a column for each signal with its unit. Needs pyarrow."""
         self._write("parquet", path, names, dt, times, units)
 
-    @explained("run.to_mdf")
+    @explained("run.to_mdf", path="'run.mf4'")
     def to_mdf(
         self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None
     ) -> None:
         """Write an MDF 4 file, a channel for each signal with its unit, and the events; time in s. Needs asammdf."""
         self._write("mdf", path, names, dt, times, units)
 
-    @explained("run.to_mat")
+    @explained("run.to_mat", path="'run.mat'")
     def to_mat(
         self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None
     ) -> None:
         """Write a MAT file with a structure `run`: signals, units, names, events. Needs scipy."""
         self._write("mat", path, names, dt, times, units)
 
-    @explained("run.to_netcdf")
+    @explained("run.to_netcdf", path="'run.nc'")
     def to_netcdf(
         self, path: str | Path, names: Any = None, *, dt: float | None = None, times: Any = None, units: Units = None
     ) -> None:
@@ -85,7 +85,7 @@ class Exports:
 
         return to_xarray(content(self._recorded, names, dt, times, units))
 
-    @explained("run.save")
+    @explained("run.save", path="'run.cwrun'")
     def save(self, path: str | Path) -> None:
         """Write the whole run to one file, from which `cw.load_run` makes it again; nothing in it is code.
 

@@ -64,7 +64,7 @@ class FileColumns(Sequence[Listed]):
     __repr__ = __str__
 
 
-@explained("cw.read_columns")
+@explained("cw.read_columns", path="'measured.mf4'")
 def read_columns(path: str | Path) -> FileColumns:
     """What a file of measurements holds, which `cw.Column` can follow: names, units, numbers of samples, groups.
 
