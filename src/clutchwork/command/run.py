@@ -131,9 +131,10 @@ def run_command(asked: argparse.Namespace) -> int:
         given = given_options(asked)
         given |= begin_of(system, start, given) if start is not None else {}
         t_end, options = merged(system.settings, given)
-    known = channels(system, options.angles, options.work)
-    chosen = Chosen(chosen_signals(known, asked.signals or ["*"]), given_units(asked.units, known))
+        known = channels(system, options.angles, options.work)
+        chosen = Chosen(chosen_signals(known, asked.signals or ["*"]), given_units(asked.units, known))
     names = chosen.names
+    _say_unused(asked)
     run, code = _simulated(system, t_end, options, start, hidden=asked.quiet or asked.json)
     found = phases(run, shafts) if shafts and len(run) else []
     written = _write(run, chosen, wanted) if len(run) else []
@@ -145,6 +146,17 @@ def run_command(asked: argparse.Namespace) -> int:
     if not run.finished:
         sys.stderr.write(f"clutchwork: {run.message}\n")
     return code
+
+
+def _say_unused(asked: argparse.Namespace) -> None:
+    """Say which options choose among signals where no signal is written."""
+    signals = bool(asked.out or asked.csv or asked.write)
+    unused = ["--signals"] if asked.signals and not (signals or asked.json) else []
+    unused += ["--units"] if asked.units and not (signals or asked.plot) else []
+    for option in unused:
+        more = " or --json" if option == "--signals" else " or --plot FILE"
+        remedy = f"give --csv FILE, --write FILE, --out DIR{more}"
+        sys.stderr.write(f"clutchwork: {option} has no effect, for no signals are asked for; {remedy}\n")
 
 
 def _simulated(

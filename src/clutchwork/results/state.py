@@ -16,6 +16,7 @@ from clutchwork.base.errors import ClutchworkError, UseError
 from clutchwork.base.kept import kept
 from clutchwork.base.shown import shortened, shown
 from clutchwork.declare.calls import explained, explained_methods
+from clutchwork.declare.quantity import QuantityError, in_si
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -123,6 +124,10 @@ def instant(at: object, begin: float, reached: float) -> float:
     """A time of a run [s] that goes from begin to what it has reached, None: its end; UseError for any other."""
     if at is None:
         return reached
+    try:
+        at = in_si(at, "s")
+    except QuantityError as error:
+        raise UseError("run.state", [f"at is {error}"]) from None
     if isinstance(at, bool) or not isinstance(at, Real):
         raise UseError("run.state", [f"at is {shown(at)}: give a time in s, or nothing for the end"])
     if not begin <= float(at) <= reached:

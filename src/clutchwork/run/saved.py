@@ -24,6 +24,7 @@ from clutchwork.base.shown import listed, shortened
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES
 from clutchwork.declare.options import Options
+from clutchwork.declare.speech import say
 from clutchwork.declare.status import NAMES
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Event, Events
@@ -71,7 +72,8 @@ def load_run(path: str | Path) -> Trajectory:
         why = reason(error) if isinstance(error, OSError) else shortened(str(error))
         if isinstance(error, FileNotFoundError):
             raise RunFormatError(f"{path} does not exist; check the path") from None
-        raise RunFormatError(f"{path}: cannot read a run: {why}; write the file with run.save") from None
+        by = say("clutchwork run MODEL --save FILE", "run.save")
+        raise RunFormatError(f"{path}: cannot read a run: {why}; write the file with {by}") from None
 
 
 def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:

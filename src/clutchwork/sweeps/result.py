@@ -163,7 +163,7 @@ class Sweep:
         """An output of all variants, in the shape of the grid; KeyError with near names when there is none."""
         if name not in self.swept.outputs:
             known = (*self.swept.outputs, *self.varied)
-            raise UnknownName(f"no output {shown(name)}{near(name, known, '`names` lists all outputs')}")
+            raise UnknownName(f"no output {shown(name)}{near(name, known, '`sweep.names` lists all outputs')}")
         values = self.flat(name)
         return values.reshape((*self.shape, *values.shape[1:]))
 
@@ -262,7 +262,7 @@ class Sweep:
 
     def _unknown(self, name: str) -> str:
         known = self.swept.outputs
-        return f"no output {shown(name)}{near(name, known, '`names` lists all outputs')}"
+        return f"no output {shown(name)}{near(name, known, '`sweep.names` lists all outputs')}"
 
     def to_pandas(self, names: Any = None) -> Any:
         """A pandas DataFrame with one line for each variant; `attrs["units"]` holds the units. Needs pandas.
