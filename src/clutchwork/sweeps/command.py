@@ -99,6 +99,11 @@ def sweep_command(asked: argparse.Namespace) -> int:
     if twice:
         raise UseError("sweep", [f"--vary {name} appears twice; give all its values at once" for name in twice])
     model = Driveline.load(asked.model)
+    if not vary:
+        names = "clutchwork check MODEL --names lists the names"
+        raise UseError(
+            "sweep", [f"--vary is missing: give values of a name, such as --vary c1.gain=4e-4,8e-4; {names}"]
+        )
     wanted = _outputs(asked.outputs) if asked.outputs else _by_default(model)
     code = DONE
     with words_of_files():
@@ -168,11 +173,6 @@ def _all_varied(texts: list[str]) -> list[tuple[str, Any]]:
             problems += error.problems
     if problems:
         raise UseError("sweep", problems)
-    if not made:
-        names = "clutchwork check MODEL --names lists the names"
-        raise UseError(
-            "sweep", [f"--vary is missing: give values of a name, such as --vary c1.gain=4e-4,8e-4; {names}"]
-        )
     return made
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import UseError
+from clutchwork.base.errors import OptionError, UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import instants
@@ -170,6 +170,9 @@ def at(signal: str, times: Sequence[float] | float) -> AtTimes:
     _named("at", signal)
     try:
         found = tuple(float(time) for time in np.atleast_1d(np.asarray(instants(times), dtype=float)))
+    except OptionError:
+        # a unit that does not fit
+        raise
     except (TypeError, ValueError):
         found = ()
     if not found or not all(0.0 <= time < np.inf for time in found) or list(found) != sorted(found):
