@@ -24,8 +24,8 @@ def fingerprint() -> str:
     )
     files = [
         Path(core().__file__),
-        # its programs draw its pictures
-        ROOT / "docs" / "guide" / "pictures.md",
+        # their programs draw their pictures
+        *sorted((ROOT / "docs" / "guide").glob("*.md")),
         *(file for folder in folders for file in sorted(folder.rglob("*.py"))),
     ]
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()

@@ -209,3 +209,33 @@ def test_without_gymnasium(monkeypatch):
     monkeypatch.setitem(sys.modules, "gymnasium", None)
     with pytest.raises(ImportError, match=r"an environment needs gymnasium: pip install 'clutchwork\[learn\]'"):
         environment()
+
+
+def test_values_of_one_episode_are_not_those_of_the_next():
+    """What an episode was given by options is gone with it."""
+    env = environment(observations=["engine.speed"])
+    assert env.reset(options={"values": {"engine.speed": 50.0}})[0] == [50.0]
+    env.step(np.zeros(1))
+    assert env.reset()[0] == [100.0]
+    assert env.reset(options={"values": {"c1.gain": 6e-4}})[0] == [100.0]
+
+
+@pytest.mark.parametrize("period", [0.1, 0.01, 0.3])
+def test_instants_are_multiples_of_the_period(period):
+    """They are those of a Simulator that advances by the period, and the last one is the end."""
+    env, times = environment(period=period), []
+    env.reset()
+    over = False
+    while not over:
+        *_, over, info = env.step(np.zeros(1))
+        times.append(info["time"])
+    whole = int(2.0 / period + 1e-9)
+    assert times[:whole] == [float(f"{(k + 1) * period:.15g}") for k in range(whole)]
+    assert times[-1] == 2.0
+
+
+def test_an_episode_ends_after_it_begins():
+    sim = cw.Simulator(discs())
+    sim.advance(2.0)
+    with pytest.raises(cw.UseError, match=r"t_end is 2 s, and start is at 2 s"):
+        environment(start=sim.save())

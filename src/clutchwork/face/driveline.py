@@ -142,6 +142,7 @@ class Driveline:
         self._model.thermal.append(node)
         return node
 
+    @explained("d.add", element="cw.Clutch('c1', base=a, follower=b, gain=5e-4)")
     def add(self, element: E) -> E:
         """Add an element and return it; UseError, a TypeError, for anything else."""
         if not isinstance(element, Component):

@@ -74,6 +74,9 @@ def environment(
         for name, function in (("reward", reward), ("ends", ends))
         if not (callable(function) or (name == "ends" and function is None))
     ]
+    if start is not None and not wrong and times["t_end"] <= start.time:
+        end = times["t_end"]
+        wrong.append(f"t_end is {end:g} s, and start is at {start.time:g} s: give a later end of the episodes")
     if start is not None and vary:
         wrong.append("vary needs a new start in every episode: give vary or start")
     if render_mode not in (None, "rgb_array"):

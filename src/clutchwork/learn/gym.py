@@ -52,7 +52,7 @@ class DrivelineEnv(Env[Observation, Observation]):
         self.metadata = {**self.metadata, "render_fps": max(1, round(1.0 / times[1]))}
         self.action_space = actions.space(spaces)
         self.observation_space = observations.space(spaces)
-        self.sim = begin(system)
+        self.sim = self._plain = begin(system)
         # names are looked up now: a wrong one is an error before the first episode
         self.sim.set(actions.values(np.zeros(len(actions.names))))
         self._seen()
@@ -71,6 +71,8 @@ class DrivelineEnv(Env[Observation, Observation]):
         if self._varies or given:
             self.sim = self._new(self._system.changed(values | given))
         else:
+            # that of the model, whatever the episode before was given
+            self.sim = self._plain
             self.sim.reset()
         return self._seen(), self._info(values | given)
 
@@ -82,6 +84,7 @@ class DrivelineEnv(Env[Observation, Observation]):
         self.sim.set(values)
         failure = ""
         try:
+            # a multiple of the period, as `advance` ends at
             self.sim.advance(min(period, t_end - begun))
         except SimulationError as error:
             failure = str(error)

@@ -199,7 +199,7 @@ class Trajectory(Exports):
         ones are marked: True for all unless there are more than 30, False, contacts by name, or events of the run;
         lockup, the event to look at closely where nothing is named, by default the last one in which a contact locks;
         measured, samples by the name of the signal: (times [s], values in SI), a `Column`, or a pandas Series; units,
-        in which signals are drawn, {"*.speed": "rpm"}, as in `to_pandas`; each has a panel where nothing is named.
+        in which signals are drawn, `{"*.speed": "rpm"}`, as in `to_pandas`; each has a panel where nothing is named.
 
         The figure of matplotlib that it returns shows itself in a notebook. docs/guide/pictures.md
         """

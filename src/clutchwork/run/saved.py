@@ -92,14 +92,14 @@ def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
 
 
 def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Trajectory:
-    times, rows, events, tape, head, core, row, *model = parts
+    times, rows, events, tape, head, core, row, left, *model = parts
     system, options, end = _system(about, model, path), Options(**about["options"]), _end(about["t_end"])
     # one that was never stepped ends where it begins
     if not options.t_start <= end < inf:
         raise ValueError(f"t_end is {end:g} s, before it begins")
     controllers = tuple(map(str, about.get("controllers", ())))
     time = np.frombuffer(times, "<f8").astype(float)
-    start = State.of_parts(head, core, row) if head else None
+    start = State.of_parts(head, core, row, left) if head else None
     if start is not None:
         start.fits(system)
     job = Job(system, end, options, _course(system, tape, start), start)

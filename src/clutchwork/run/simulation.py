@@ -121,7 +121,8 @@ def simulate(
     end, chosen = merged(system.settings, given, options)
     refuse_endless(system.inputs, chosen.t_start, end, chosen.max_steps)
     held, changed = (start.held, start.changed) if start else ({}, {})
-    control = Control(controllers(system.inputs, held), partial(channels, system), held=held, changed=changed)
+    asked, first = controllers(system.inputs, held), start.before if start else None
+    control = Control(asked, partial(channels, system), held=held, changed=changed, first=first)
     asks = "(time, t_end)"
     with followed(progress, end, "simulate", asks, chosen.t_start, bar_format=MEASURED, unit="s") as told:
         run = trajectory(Job(system, end, chosen, control, start), told)
@@ -197,7 +198,7 @@ def _once(job: Job, grid: Array | None, progress: Told | None) -> tuple[Recordin
     run = begun(job.system, job.options, job.start)
     # what was stepped or goes on from a state is looked at without a trace
     plain = job.start is None and isinstance(job.course, Control)
-    recording = Recording(run, job.start is not None, None if plain else partial(row_of, run, job.system))
+    recording = Recording(run, job.start is not None, None if plain else partial(row_of, run))
     try:
         record(recording, job.t_end, grid, job.course, progress)
     except SimulationError as error:
