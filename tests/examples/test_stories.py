@@ -141,7 +141,7 @@ def test_pages_of_stories_are_in_the_guide_in_their_order() -> None:
 def test_every_example_is_listed_with_its_picture() -> None:
     page = (ROOT / "docs" / "examples.md").read_text(encoding="utf-8")
     found = sorted(path.name for path in (ROOT / "examples").iterdir() if (path / "README.md").exists())
-    cards = [card.partition("\n:::")[0] for card in page.split(":::{grid-item-card}")[1:]]
-    listed = [re.findall(r"examples/(\w+)", card)[0] for card in cards]
+    cards = page.split(":::{grid-item-card}")[1:]
+    listed = [name for card in cards for name in re.findall(r"^`examples/(\w+)`", card, re.MULTILINE)]
     assert sorted(listed) == found
     assert all("{image} " in card for card in cards)

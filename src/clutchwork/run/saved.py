@@ -119,9 +119,9 @@ def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Tra
 
 
 def _end(given: Any) -> float:
-    """The end of a run [s]; TypeError where it is no number."""
+    """The end of a run [s]; TypeError where it is not a number."""
     if isinstance(given, bool) or not isinstance(given, int | float):
-        raise TypeError("its t_end is no number")
+        raise TypeError("its t_end is not a number")
     return float(given)
 
 

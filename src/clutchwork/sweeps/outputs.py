@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import OptionError, UseError
+from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import instants
@@ -168,11 +168,9 @@ def at(signal: str, times: Sequence[float] | float) -> AtTimes:
     Parameters: signal, its name; times [s], one or several that rise.
     """
     _named("at", signal)
+    plain = instants(times)
     try:
-        found = tuple(float(time) for time in np.atleast_1d(np.asarray(instants(times), dtype=float)))
-    except OptionError:
-        # a unit that does not fit
-        raise
+        found = tuple(float(time) for time in np.atleast_1d(np.asarray(plain, dtype=float)))
     except (TypeError, ValueError):
         found = ()
     if not found or not all(0.0 <= time < np.inf for time in found) or list(found) != sorted(found):
