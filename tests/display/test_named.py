@@ -185,7 +185,7 @@ def test_where_it_is_written(discs: cw.Trajectory, path: Any, tmp_path: Path, mo
         ([], {"path": "out"}, r"path 'out' has no ending; write it to a path that ends in"),
         (["out.html"], {}, r"ends in \.png, \.svg or \.pdf; run\.explore\(\.\.\.\) writes pages"),
         (["a.png", "b.png"], {}, r"there are 2 paths: a\.png, b\.png; give one"),
-        ([], {"path": 3}, "path is 3: it must be a string or a Path"),
+        ([], {"path": 3}, "3 is not a path; give a string, such as 'run.png'"),
         ([3], {}, "3 is not a signal; give the name of a signal, a wildcard such as 'c1.*', or a list of names"),
         ([["c1.torque", 3]], {}, "is not a signal"),
         ([[]], {}, r"\[\] is not a signal"),

@@ -61,7 +61,7 @@ def test_names_are_shown_as_they_are(name: str) -> None:
         assert any(name in text for text in page.texts)
         assert "script" not in page.tags
     swept = cw.sweep(system, 0.1, vary={f"{name}.gain": [1e-4, 2e-4]}, outputs=[f"{name}.torque"])
-    assert f"{name}.gain" in shown(swept).texts
+    assert f"{name}.gain, m3" in shown(swept).texts
     assert f"{name}.torque, N m" in shown(swept).texts
     assert name in "".join(shown(run).texts)
     assert "mathjax_ignore" in html.table(("a",), [(name,)])

@@ -255,7 +255,7 @@ def test_a_run_that_stopped_early_is_handed_on_as_far_as_it_came(tmp_path: Path)
 
 def test_what_is_no_path(run: cw.Trajectory) -> None:
     for call in (run.to_csv, run.write, run.to_mdf, run.save, cw.read_columns):
-        with pytest.raises(cw.UseError, match="path: 3 is not a path"):
+        with pytest.raises(cw.UseError, match="3 is not a path"):
             call(3)  # type: ignore[operator]
 
 

@@ -26,10 +26,10 @@ def test_a_table_of_all_combinations(model, tmp_path, capsys):
     with out.open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 8
-    assert [row["c1.gain"] for row in rows[::2]] == ["0.5", "1.0", "1.5", "2.0"]
+    assert [row["c1.gain [m]"] for row in rows[::2]] == ["0.5", "1.0", "1.5", "2.0"]
     expected = cw.simulate(cw.Driveline.load(model).assemble().changed({"c1.gain": 1.0}))
     assert float(rows[2]["lock(c1, -1) [s]"]) == expected.events[-1].time
-    assert "c1.slip at 0.5 s" in rows[0]
+    assert "c1.slip at 0.5 s [rad/s]" in rows[0]
     told = capsys.readouterr().out
     assert "8 variants: 8 done" in told
     assert f"wrote {out}" in told
@@ -82,12 +82,28 @@ def test_a_variant_that_stops_early(model, capsys):
         (["--vary", "c1.gain", "--vary", "load.inertia=1:2"], 2, "sweep: 2 problems"),
         (["--vary", "c1.gian=1,2"], 3, "did you mean 'c1.gain'"),
         (["--vary", "c1.gain=-1,2"], 3, "gain = -1.0 m3: must be > 0 m3"),
-        (["--outputs", "lokc(c1)"], 2, "no output 'lokc'; did you mean 'lock'"),
-        (["--outputs", "lock(c1, x)"], 2, "x must be numbers"),
-        (["--outputs", "laod.speed"], 2, "did you mean 'load.speed'"),
+        (["--vary", "c1.gain=1,2", "--outputs", "lokc(c1)"], 2, "no output 'lokc'; did you mean 'lock'"),
+        (["--vary", "c1.gain=1,2", "--outputs", "lock(c1, x)"], 2, "x must be numbers"),
+        (["--vary", "c1.gain=1,2", "--outputs", "laod.speed"], 2, "did you mean 'load.speed'"),
+        ([], 2, "--vary is missing: give values of a name, such as --vary c1.gain=4e-4,8e-4"),
         (["--out", "sweep.xlsx"], 2, "must end in .parquet or .csv"),
     ],
 )
 def test_mistakes(model, capsys, arguments, code, words):
     assert main(["sweep", model, *arguments]) == code
     assert words in capsys.readouterr().err
+
+
+def test_variants_that_never_lock_are_counted(model, capsys):
+    line = ["sweep", model, "--vary", "c1.gain=1e-6,1,2", "--outputs", "lock(c1), load.speed"]
+    assert main(line) == 0
+    told = capsys.readouterr().out
+    assert "lock(c1): no value in 1 of 3 variants" in told
+    assert "load.speed: no value" not in told
+    assert main([*line, "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)["outputs"]
+    assert (data["lock(c1)"]["without_value"], data["load.speed"]["without_value"]) == (1, 0)
+    # those that none has are listed too
+    assert main(["sweep", model, "--vary", "c1.gain=1e-6", "--outputs", "lock(c1)"]) == 0
+    assert "1 variant: 1 done" in (told := capsys.readouterr().out)
+    assert "lock(c1): no value in 1 of 1 variant" in told

@@ -71,7 +71,11 @@ def test_values_with_labels():
 
 def test_nothing_varies_or_no_variant():
     assert cw.sweep(discs(), 3.0, vary={}, outputs="load.speed")["load.speed"].tolist() == pytest.approx(20.0)
-    assert cw.sweep(discs(), 3.0, vary={"c1.gain": []}, outputs="load.speed")["load.speed"].shape == (0,)
+    for nothing in ({"c1.gain": []}, {"c1.gain": [1.0], "load.inertia": []}, []):
+        with pytest.raises(cw.UseError, match="empty"):
+            cw.sweep(discs(), 3.0, vary=nothing, outputs="load.speed")
+    with pytest.raises(cw.UseError, match=r"c1\.gain: the list of values is empty; give at least one"):
+        cw.variants({"c1.gain": []})
 
 
 @pytest.mark.parametrize(
@@ -441,8 +445,35 @@ def test_tables_take_names_and_wildcards(tmp_path):
     found.to_parquet(tmp_path / "x.parquet", names="load.*")
     frame = pytest.importorskip("pandas").read_parquet(tmp_path / "x.parquet")
     assert list(frame.columns) == [*both, "load.speed", "status"]
-    assert frame.attrs["units"] == {"load.speed": "rad/s"}
+    assert frame.attrs["units"] == {"c1.gain": "m", "load.inertia": "kg m2", "load.speed": "rad/s"}
     found.to_csv(tmp_path / "x.csv", names="load.speed")
     assert (tmp_path / "x.csv").read_text().splitlines()[0].endswith("load.speed [rad/s],status")
     with pytest.raises(KeyError, match=r"(?s)no output 'load.sped'; did you mean 'load.speed'.*no output 'x.\*'"):
         found.to_csv(tmp_path / "y.csv", names=["load.sped", "x.*"])
+
+
+def test_values_that_vary_have_their_unit_beside_the_outputs(tmp_path):
+    found = cw.sweep(
+        discs(), 3.0, vary={"c1.gain": [1e-6, 1.0], "load.speed": ["0 rpm", "60 rpm"]},
+        outputs=[cw.lock("c1"), "load.speed", cw.at("c1.slip", [0.5])],
+    )  # fmt: skip
+    found.to_csv(tmp_path / "x.csv")
+    heads = ["c1.gain [m]", "load.speed given [rad/s]", "lock(c1) [s]", "load.speed [rad/s]"]
+    heads += ["c1.slip at 0.5 s [rad/s]", "status"]
+    assert (tmp_path / "x.csv").read_text().splitlines()[0] == ",".join(heads)
+    assert found.units["c1.gain"] == found.to_pandas().attrs["units"]["c1.gain"] == "m"
+    assert found.to_xarray()["load.speed given"].attrs["units"] == "rad/s"
+    told = str(found)
+    for head in heads:
+        assert head in told
+    assert "6.28319" in told
+    assert "lock(c1): no value in 2 of 4 variants" in told
+    assert "lock(c1): no value in 2 of 4 variants" in found._repr_html_()
+    assert "c1.gain, m" in found._repr_html_()
+
+
+def test_a_number_beside_a_signal_is_called_as_it_was_given():
+    ramp = cw.Ramp(height=200.0, duration=0.5)
+    found = cw.sweep(discs(), 1.0, vary={"c1.normal_force": ["200 N", 150.0, ramp]}, outputs="load.speed")
+    assert found.coords["c1.normal_force"].tolist() == ["200 N", "150 N", "Ramp 2"]
+    assert not found.units.get("c1.normal_force")

@@ -22,6 +22,7 @@ from clutchwork.assembly.sparse import dense, entries
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelError, UseError, near, warn
 from clutchwork.base.shown import shortened, shown
+from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE
 from clutchwork.declare.node import Component, Node, ThermalNode
@@ -43,6 +44,7 @@ class SystemFormatError(ClutchworkError, ValueError):
     """Bytes or a file that hold no System of this version."""
 
 
+@explained_methods("system")
 @dataclass(frozen=True, eq=False, repr=False)
 class System:
     """A driveline ready to run; never changes, so any number of runs and threads may share it.
@@ -219,11 +221,14 @@ class System:
             start += -(-count * TYPES[kind].itemsize // 8) * 8
         return cls(name=name, arrays=frozen(arrays))
 
+    @explained("system.save", path="'model.cwsystem'")
     def save(self, path: str | Path) -> None:
-        """Write arrays and model to an archive; nothing in it is code."""
+        """Write arrays and model to an archive, whatever its ending; nothing in it is code."""
         from clutchwork.base import archive
+        from clutchwork.base.paths import target
 
-        archive.write(path, self.parts())
+        parts = self.parts()
+        archive.write(target("system.save", path, "model.cwsystem"), parts)
 
     def parts(self) -> dict[str, bytes]:
         """What a file holds of it, by the names of `PARTS`."""
@@ -238,16 +243,21 @@ class System:
         return {"content": self.to_bytes(), **{key: value.encode() for key, value in stored.items()}}
 
     @classmethod
+    @explained("cw.System.load", path="'model.cwsystem'")
     def load(cls, path: str | Path) -> System:
         """Read a file that `save` wrote; SystemFormatError or ModelError for any other."""
         from clutchwork.base import archive
+        from clutchwork.base.paths import path_of
         from clutchwork.base.regular import reason
 
+        path_of("cw.System.load", path, "model.cwsystem")
         try:
             return cls.of_parts(archive.read(path, PARTS), str(path))
         except (ValueError, OSError) as error:
             if isinstance(error, ClutchworkError):
                 raise
+            if isinstance(error, FileNotFoundError):
+                raise SystemFormatError(f"{path} does not exist; check the path") from None
             why = reason(error) if isinstance(error, OSError) else shortened(str(error))
             raise SystemFormatError(f"{path}: cannot read a System: {why}; write the file with System.save") from None
 

@@ -6,8 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.base.errors import UseError
+from clutchwork.base.paths import fitting
+from clutchwork.base.paths import folder as made_folder
+from clutchwork.base.shown import shown
 from clutchwork.codegen.model import Exported, chosen, files
 from clutchwork.codegen.sources import sources
+from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.face.driveline import Driveline
 from clutchwork.results.channels import channels
@@ -23,6 +28,7 @@ INTERVALS = 1000
 MOST_MEMORY = 2**28
 
 
+@explained("cw.export_c")
 def export_c(
     model: Driveline | System,
     folder: str | Path,
@@ -38,6 +44,9 @@ def export_c(
     name (rtol=, dt=, method= ...). What is left out is that of the settings of the model, as for `simulate`. `make` in
     the folder builds it, with a C and a C++20 compiler and nothing else. What is in it: docs/guide/export.md.
     """
+    where = fitting("cw.export_c", folder, "c")
+    if not (isinstance(model, Driveline) or hasattr(model, "settings")):
+        raise UseError("cw.export_c", [f"model is {shown(model)}: give a Driveline or a System"])
     system = model if not isinstance(model, Driveline) else model.assemble()
     end, made = merged(system.settings, changes if t_end is None else {**changes, "t_end": t_end}, options)
     if made.times is not None:
@@ -45,7 +54,7 @@ def export_c(
     known = channels(system, made.angles, made.work)
     exported = Exported(system, end, made.dt or (end - made.t_start) / INTERVALS, made, chosen(signals, known))
     _refuse_large(exported)
-    return _write(exported, Path(folder))
+    return _write(exported, made_folder(where))
 
 
 def _refuse_large(exported: Exported) -> None:

@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.shell import DONE, FilesError, add_command, add_json, tell, tell_json, writable, wrote
+from clutchwork.declare.speech import words_of_files
 
 if TYPE_CHECKING:
     from clutchwork.results.trajectory import Trajectory
 
 # endings of model files
 MODELS = (".toml", ".json")
+PICTURES = (".png", ".svg", ".pdf")
 EXAMPLES = (
     ("clutchwork run model.toml --save first.run", "store a run"),
     ("clutchwork plot first.run", "its picture, first.png"),
@@ -26,7 +28,9 @@ def add_commands(commands: Any) -> None:
     """Add `plot`."""
     plot = add_command(commands, "plot", plot_command, "draw a stored run, or compare several", examples=EXAMPLES)
     plot.add_argument("run", type=Path, help="file that clutchwork run --save wrote")
-    plot.add_argument("more", nargs="*", help="more of them, to compare; then signals, such as c1.slip or '*.speed'")
+    plot.add_argument(
+        "more", nargs="*", default=(), help="more of them, to compare; then signals, such as c1.slip or '*.speed'"
+    )
     plot.add_argument("--out", type=Path, metavar="FILE", help="picture (png, svg or pdf); default: named as the run")
     add_json(plot)
 
@@ -39,13 +43,17 @@ def split(first: Path, more: Sequence[str]) -> tuple[list[Path], list[str]]:
 
 def plot_command(asked: argparse.Namespace) -> int:
     """Draw, and say where; the exit code."""
+    with words_of_files():
+        return _plotted(asked)
+
+
+def _plotted(asked: argparse.Namespace) -> int:
     import clutchwork as cw
 
     files, names = split(asked.run, asked.more)
     path = asked.out or Path(asked.run.with_suffix(".png").name)
     writable([path])
     runs = dict(zip(labels(files), _loaded(files), strict=True))
-    path.parent.mkdir(parents=True, exist_ok=True)
     if len(files) == 1:
         plot: Any = runs[labels(files)[0]].plot
         plot(*names, path=path)
@@ -64,6 +72,9 @@ def _loaded(files: Sequence[Path]) -> list[Trajectory]:
 
     runs, wrong = list["Trajectory"](), list[str]()
     for file in files:
+        if file.suffix.lower() in PICTURES:
+            wrong.append(f"{file}: is a picture; give the run first: clutchwork plot first.run --out {file}")
+            continue
         if file.suffix in MODELS and file.is_file():
             wrong.append(f"{file}: is a model; run it first: clutchwork run {file} --save {file.stem}.run")
             continue

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.errors import near
+from clutchwork.base.paths import fitting
 from clutchwork.base.shell import (
     DONE,
     INTERRUPTED,
@@ -130,9 +131,10 @@ def run_command(asked: argparse.Namespace) -> int:
         given = given_options(asked)
         given |= begin_of(system, start, given) if start is not None else {}
         t_end, options = merged(system.settings, given)
-    known = channels(system, options.angles, options.work)
-    chosen = Chosen(chosen_signals(known, asked.signals or ["*"]), given_units(asked.units, known))
+        known = channels(system, options.angles, options.work)
+        chosen = Chosen(chosen_signals(known, asked.signals or ["*"]), given_units(asked.units, known))
     names = chosen.names
+    _say_unused(asked)
     run, code = _simulated(system, t_end, options, start, hidden=asked.quiet or asked.json)
     found = phases(run, shafts) if shafts and len(run) else []
     written = _write(run, chosen, wanted) if len(run) else []
@@ -144,6 +146,17 @@ def run_command(asked: argparse.Namespace) -> int:
     if not run.finished:
         sys.stderr.write(f"clutchwork: {run.message}\n")
     return code
+
+
+def _say_unused(asked: argparse.Namespace) -> None:
+    """Say which options choose among signals where no signal is written."""
+    signals = bool(asked.out or asked.csv or asked.write)
+    unused = ["--signals"] if asked.signals and not (signals or asked.json) else []
+    unused += ["--units"] if asked.units and not (signals or asked.plot) else []
+    for option in unused:
+        more = " or --json" if option == "--signals" else " or --plot FILE"
+        remedy = f"give --csv FILE, --write FILE, --out DIR{more}"
+        sys.stderr.write(f"clutchwork: {option} has no effect, for no signals are asked for; {remedy}\n")
 
 
 def _simulated(
@@ -176,6 +189,9 @@ Writer = Callable[["Trajectory", Path, Chosen], object]
 def _wanted(asked: argparse.Namespace) -> dict[Path, Writer]:
     """The files that are asked for, and what writes each."""
     folder = asked.out
+    for option, path in (("--csv", asked.csv), ("--events", asked.events)):
+        if path is not None:
+            fitting(option, path, f"{option[2:]}.csv", [".csv"])
     named: list[tuple[Path | None, Writer]] = [
         (asked.plot or (folder and folder / "picture.png"), _plot),
         (asked.csv or (folder and folder / "trajectory.csv"), _csv),
@@ -221,7 +237,6 @@ def _writer(path: Path) -> Writer:
 def _write(run: Trajectory, chosen: Chosen, wanted: dict[Path, Writer]) -> list[Path]:
     """Write the wanted files; their paths."""
     for path, write in wanted.items():
-        path.parent.mkdir(parents=True, exist_ok=True)
         write(run, path, chosen)
     return [*wanted]
 

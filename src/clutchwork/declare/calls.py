@@ -6,6 +6,7 @@ import functools
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import is_dataclass
+from types import FunctionType
 from typing import Any, TypeVar
 
 from clutchwork.base.classes import dataclass
@@ -17,10 +18,36 @@ from clutchwork.declare.wanted import wanted
 
 OWNERS = ("self", "cls")
 F = TypeVar("F", bound=Callable[..., Any])
+T = TypeVar("T", bound=type)
+# what an argument of a function may be, where its declaration does not say more
+SUCH = {
+    "model": "d",
+    "path": "'run.csv'",
+    "folder": "'c'",
+    "t_end": "2.0",
+    "times": "[0.5, 1.0]",
+    "time": "0.5",
+    "dt": "0.01",
+    "name": "'engine.speed'",
+    "signal": "'engine.speed'",
+    "unit": "'rpm'",
+    "contact": "'c1'",
+    "number": "0",
+    "element": "'c1'",
+    "changes": "{'c1.gain': 5e-4}",
+    "vary": "{'c1.gain': [4e-4, 8e-4]}",
+    "outputs": "['engine.speed']",
+    "columns": "{'c1.gain': [4e-4, 8e-4]}",
+    "frequencies": "[1.0, 10.0]",
+}
 
 
-def explained(call: str) -> Callable[[F], F]:
-    """Let a function answer a call that does not fit it with a UseError that names every mistake."""
+def explained(call: str, **such: str) -> Callable[[F], F]:
+    """Let a function answer a call that does not fit it with a UseError that names every mistake.
+
+    Parameters: such, what arguments may be, as Python writes it, where that is not what `SUCH` says.
+    """
+    meanings = {name: f"give one, such as {name}={value}" for name, value in {**SUCH, **such}.items()}
 
     def wrap(function: F) -> F:
         @functools.wraps(function)
@@ -28,12 +55,31 @@ def explained(call: str) -> Callable[[F], F]:
             try:
                 return function(*args, **named)
             except TypeError:
-                problems = list(_problems(function, args, named, {}))
+                problems = list(_problems(function, args, named, meanings))
                 if not problems:
                     raise
                 raise UseError(call, problems) from None
 
         return called  # type: ignore[return-value]
+
+    return wrap
+
+
+def explained_methods(call: str) -> Callable[[T], T]:
+    """Let all public methods of a class do so, those that do not yet.
+
+    Parameters: call, what messages call an object of the class.
+    """
+
+    def wrap(cls: T) -> T:
+        for name, member in list(vars(cls).items()):
+            if name.startswith("_") or (hasattr(member, "__wrapped__") and not isinstance(member, classmethod)):
+                continue
+            if isinstance(member, FunctionType):
+                setattr(cls, name, explained(f"{call}.{name}")(member))
+            elif isinstance(member, classmethod) and not hasattr(member.__func__, "__wrapped__"):
+                setattr(cls, name, classmethod(explained(f"cw.{cls.__name__}.{name}")(member.__func__)))
+        return cls
 
     return wrap
 

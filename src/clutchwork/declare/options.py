@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, Unpack, get_args
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, advised, near
-from clutchwork.declare.calls import explain
+from clutchwork.declare.calls import explain, explained_methods
 from clutchwork.declare.docs import document
 from clutchwork.declare.given import is_array
 from clutchwork.declare.layout import METHODS
@@ -37,6 +37,7 @@ MOST_COUNTED = 10**15
 ONE_GRID = "give the spacing or the instants, not both"
 
 
+@explained_methods("options")
 @dataclass(frozen=True)
 class Options:
     """Options of a run; every one may also be given to `simulate` by name, and in [simulation] of a model file.

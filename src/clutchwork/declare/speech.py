@@ -32,6 +32,11 @@ def say(in_files: str, in_python: str) -> str:
     return in_files if of_files() else in_python
 
 
+def where_signals() -> str:
+    """Where the names of all signals of a run stand."""
+    return say("clutchwork check MODEL --signals lists all signals", "`run.names` lists all signals")
+
+
 def path_of(component: Any) -> str:
     """Path of an element in messages."""
     return element_path(component.name, type(component))

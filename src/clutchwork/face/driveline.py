@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
 from clutchwork.base.errors import ModelError, Problem, UseError, warn
+from clutchwork.base.paths import path_of
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
-from clutchwork.declare.calls import explain, explained
+from clutchwork.declare.calls import explain, explained, explained_methods
 from clutchwork.declare.node import HOUSING, Component, Domain, Element, Node, Signal, ThermalNode
 from clutchwork.declare.speech import words_of_files
 from clutchwork.model.model import Model
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 E = TypeVar("E", bound=Element)
 
 
+@explained_methods("d")
 class Driveline:
     """A driveline under construction.
 
@@ -140,6 +142,7 @@ class Driveline:
         self._model.thermal.append(node)
         return node
 
+    @explained("d.add", element="cw.Clutch('c1', base=a, follower=b, gain=5e-4)")
     def add(self, element: E) -> E:
         """Add an element and return it; UseError, a TypeError, for anything else."""
         if not isinstance(element, Component):
@@ -244,16 +247,14 @@ class Driveline:
         return html(self._model)
 
     @classmethod
-    @explained("cw.Driveline.load")
+    @explained("cw.Driveline.load", path="'model.toml'")
     def load(cls, path: str | Path) -> Driveline:
         """Read a model file, TOML or JSON; ModelError lists all its mistakes."""
-        if not isinstance(path, str | Path):
-            raise UseError("cw.Driveline.load", [f"{shown(path)} is not a path; give the name of a TOML or JSON file"])
         from clutchwork.files.model_file import load
 
-        return cls._of(load(path))
+        return cls._of(load(path_of("cw.Driveline.load", path, "model.toml")))
 
-    @explained("d.save")
+    @explained("d.save", path="'model.toml'")
     def save(self, path: str | Path) -> None:
         """Write a model file, TOML or JSON by its ending."""
         from clutchwork.files.model_file import save

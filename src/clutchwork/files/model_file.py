@@ -36,6 +36,7 @@ from pathlib import Path
 from typing import Any
 
 from clutchwork.base.errors import ModelError, ModelFileError, Problem, nearest
+from clutchwork.base.paths import fitting, made
 from clutchwork.base.regular import read_regular, reason
 from clutchwork.base.shown import listed, shortened, shown
 from clutchwork.declare.node import Domain
@@ -145,7 +146,7 @@ def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines
 
 def save(model: Model, path: str | Path) -> None:
     """Write a model file, TOML or JSON by its ending; CSV files stay where they are."""
-    path = Path(path)
+    path = fitting("d.save", path, "model.toml")
     data = to_dict(model, folder=path.parent)
     if path.suffix.lower() == ".json":
         text = json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n"
@@ -154,7 +155,7 @@ def save(model: Model, path: str | Path) -> None:
     else:
         problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename the file")
         raise ModelError([problem], str(path))
-    path.write_text(text, encoding="utf-8")
+    made(path).write_text(text, encoding="utf-8")
 
 
 def to_dict(model: Model, *, folder: str | Path | None = None, embed: bool = False) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.text import columns
+from clutchwork.declare.calls import explained_methods
 
 if TYPE_CHECKING:
     from clutchwork.linear.quantity import Quantity
@@ -67,6 +68,7 @@ class NaturalMode:
         return f"<NaturalMode {self.kind}: {self.frequency:.4g} Hz, damping {self.damping:.3g}, {moves}>"
 
 
+@explained_methods("lin.modes")
 class NaturalModes(Sequence[NaturalMode]):
     """The modes, slowest first; `print` shows them as a table."""
 

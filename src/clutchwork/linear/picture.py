@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clutchwork.base.paths import target
+from clutchwork.results.plot.chosen import PICTURES
 from clutchwork.results.plot.figure import figure_of
 from clutchwork.results.plot.style import COLOURS
 
@@ -37,8 +39,7 @@ def picture(lin: Described, path: str | Path | None = None) -> Figure:
             first = first or axes
             _shape(axes, mode, last=place == rows - 1)
         if path is not None:
-            Path(path).parent.mkdir(parents=True, exist_ok=True)
-            figure.savefig(path)
+            figure.savefig(target("plot", path, "modes.png", PICTURES))
     return figure
 
 

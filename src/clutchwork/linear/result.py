@@ -13,8 +13,9 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.base.text import columns, counted
-from clutchwork.declare.calls import explained
+from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import MODES
+from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.linear.quantity import Quantity, amount, per_second
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ Array = NDArray[Any]
 MOST_SHOWN = 20
 
 
+@explained_methods("lin")
 @dataclass(frozen=True, eq=False, repr=False)
 class Linear:
     """A linear system about one instant: d/dt x = rate + A x + B u, y = C x + D u.
@@ -118,13 +120,15 @@ class Linear:
 
     @explained("frequency_response")
     def frequency_response(self, frequencies: Any) -> Array:
-        """Response of every output to every input at frequencies [Hz].
+        """Response of every output to every input at frequencies [Hz, or with a unit].
 
         A complex array (frequencies, outputs, inputs), in units of the output per unit of the input. UseError where a
         frequency is that of an undamped mode, at which there is no finite response.
         """
         try:
-            asked = np.atleast_1d(np.asarray(frequencies, dtype=float))
+            asked = np.atleast_1d(np.asarray(_in_hertz(frequencies), dtype=float))
+        except QuantityError as error:
+            raise UseError("frequency_response", [f"frequencies: {error}"]) from None
         except (TypeError, ValueError):
             asked = np.full(1, np.nan)
         if asked.ndim != 1 or not np.isfinite(asked).all():
@@ -200,3 +204,10 @@ class Linear:
             if len(part) > MOST_SHOWN:
                 lines.append(("", f"and {len(part) - MOST_SHOWN} more", "", ""))
         return columns(lines, right=(2, 3))
+
+
+def _in_hertz(frequencies: Any) -> Any:
+    """Frequencies with units as numbers in Hz, all else as it is; QuantityError for a unit that does not fit."""
+    if isinstance(frequencies, list | tuple):
+        return [in_si(one, "Hz") for one in frequencies]
+    return in_si(frequencies, "Hz") if has_unit(frequencies) else frequencies

@@ -104,6 +104,22 @@ def in_si(aim: Target, value: Any) -> Any:
     return field_in_si(value, settled(name, spec, type(thing), vars(thing)), driven)
 
 
+def unit_of(aim: Target) -> str:
+    """The unit of SI of a number that a target holds, empty where it holds none."""
+    thing, driven = aim.owner, ""
+    for name in aim.path[:-1]:
+        spec = _spec(thing, name)
+        if spec.what in ("signal", "alternative"):
+            driven = settled(name, spec, type(thing), vars(thing)).unit
+        thing = getattr(thing, name)
+    name = aim.path[-1]
+    spec = _spec(thing, name)
+    if spec.what == "law" or spec.flag or spec.choices:
+        return ""
+    unit = settled(name, spec, type(thing), vars(thing)).unit
+    return driven if unit == "*" else unit
+
+
 def _spec(thing: Any, name: str) -> Spec:
     """What is declared of a field."""
     if isinstance(thing, Node):

@@ -155,6 +155,7 @@ def _order(before: Any, point: Any, spec: Spec, at: At) -> Iterator[Problem]:
     given = f"{x_next:g} {spec.unit_x}"
     if x_next < x or (x_next == x and spec.rising == "strictly"):
         message = f"comes after {x:g} {spec.unit_x}" if x_next < x else "appears twice"
-        yield at.problem(message, value=given, remedy="sort the points; x must increase")
+        rule = "x must increase" if spec.rising == "strictly" else "x must not fall; two points at one x are a jump"
+        yield at.problem(message, value=given, remedy=f"sort the points; {rule}")
     elif x_next > x and not isfinite((y_next - y) / (x_next - x)):
         yield at.problem(f"is too close to {x:g} {spec.unit_x}", value=given, remedy="remove one of the points")

@@ -21,6 +21,7 @@ from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.kept import kept
 from clutchwork.base.shown import shown
 from clutchwork.declare.node import Domain
+from clutchwork.declare.speech import where_signals
 from clutchwork.results import heat_channels, reactions
 from clutchwork.results.forms import LOCKED as LOCKED
 from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Slip, Total
@@ -47,7 +48,7 @@ class Channel:
 
 
 def _unknown(name: object, known: Iterable[str]) -> str:
-    return f"no signal {shown(name)}{near(name, known, '`names` lists all signals')}"
+    return f"no signal {shown(name)}{near(name, known, where_signals())}"
 
 
 class Units(dict[str, str]):

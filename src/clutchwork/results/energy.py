@@ -22,10 +22,12 @@ from clutchwork.assembly.wiring import Branch, Wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.extras import need
 from clutchwork.base.text import columns
+from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.node import Component, Work
 from clutchwork.results.events import Events
 
 
+@explained_methods("run.energy")
 @dataclass(frozen=True)
 class EnergyBalance:
     """Energies between the first and the last instant of a trajectory, all in J.

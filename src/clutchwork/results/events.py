@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.extras import need
+from clutchwork.base.paths import target
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import columns
+from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import CAUSES, EVENT, MODES
 
 if TYPE_CHECKING:
@@ -52,6 +54,7 @@ class Event:
         return self.energy_before - self.energy_after
 
 
+@explained_methods("run.events")
 class Events(Sequence[Event]):
     """The events of a run in order of time; print it to read it."""
 
@@ -136,13 +139,13 @@ class Events(Sequence[Event]):
         lines = map(_cells, self)
         return html.table((*head, *torques), lines, right={0, 5, 6, 7}) if self else html.paragraph("no events")
 
+    @explained("run.events.to_csv", path="'events.csv'")
     def to_csv(self, path: str | Path) -> None:
         """Write every field of every event; the head of each column has its unit."""
         import csv
-        from pathlib import Path
 
         names = [item.name for item in fields(Event)]
-        with Path(path).open("w", newline="", encoding="utf-8") as file:
+        with target("run.events.to_csv", path, "events.csv", [".csv"]).open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow([f"{name} [{UNITS[name]}]" if name in UNITS else name for name in names])
             writer.writerows([_exact(value) for value in astuple(event)] for event in self)

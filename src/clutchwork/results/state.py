@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Mapping
 from dataclasses import field
 from numbers import Real
@@ -16,7 +15,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, UseError
 from clutchwork.base.kept import kept
 from clutchwork.base.shown import shortened, shown
-from clutchwork.declare.calls import explained
+from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 
 if TYPE_CHECKING:
@@ -32,6 +31,7 @@ class StateError(ClutchworkError, ValueError):
     """A state that is damaged, or that of another model."""
 
 
+@explained_methods("state")
 @dataclass(frozen=True, eq=False, repr=False)
 class State:
     """A run at an instant, bit for bit: motion, contacts, angles and work, and what was set from outside.
@@ -65,13 +65,13 @@ class State:
         """The output row before what was set at this instant."""
         return np.frombuffer(self.left or self.row, dtype=np.float64)
 
-    @explained("state.save")
+    @explained("state.save", path="'run.cwstate'")
     def save(self, path: str | Path) -> None:
-        """Write it to one file; nothing in it is code."""
+        """Write it to one file, whatever its ending; nothing in it is code."""
         from clutchwork.base import archive
+        from clutchwork.base.paths import target
 
-        _refuse_no_path("state.save", path)
-        archive.write(path, self.parts())
+        archive.write(target("state.save", path, "run.cwstate"), self.parts())
 
     def parts(self) -> dict[str, bytes]:
         """What a file holds of it, by the names in PARTS."""
@@ -87,16 +87,19 @@ class State:
         return cls(core=core, row=row, left=left, **_read_head(head))
 
     @classmethod
-    @explained("cw.State.load")
+    @explained("cw.State.load", path="'run.cwstate'")
     def load(cls, path: str | Path) -> State:
         """Read a file of `save`; StateError for any other. Whether it fits a model is seen where it is used."""
         from clutchwork.base import archive
+        from clutchwork.base.paths import path_of
         from clutchwork.base.regular import reason
 
-        _refuse_no_path("cw.State.load", path)
+        path_of("cw.State.load", path, "run.cwstate")
         try:
             return cls.of_parts(*archive.read(path, PARTS))
         except (ValueError, RecursionError, OSError) as error:
+            if isinstance(error, FileNotFoundError):
+                raise StateError(f"{path} does not exist; check the path") from None
             why = reason(error) if isinstance(error, OSError) else shortened(str(error))
             raise StateError(f"{path}: cannot read a state: {why}; write the file with State.save") from None
 
@@ -137,11 +140,6 @@ def instant(at: object, begin: float, reached: float) -> float:
     if not begin <= float(at) <= reached:
         raise UseError("run.state", [f"at is {float(at):g} s: the run goes from {begin:g} to {reached:g} s"])
     return float(at)
-
-
-def _refuse_no_path(call: str, path: object) -> None:
-    if not isinstance(path, str | os.PathLike):
-        raise UseError(call, [f"{shown(path)} is not a path; give the name of a file"])
 
 
 def _read_head(data: bytes) -> dict[str, Any]:

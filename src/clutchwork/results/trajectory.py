@@ -14,7 +14,7 @@ from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, OptionError
 from clutchwork.base.text import counted
-from clutchwork.declare.calls import explained
+from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, NAMES
 from clutchwork.results.channels import Channels, Units, channels
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from clutchwork.assembly.system import System
+    from clutchwork.declare.node import Number
     from clutchwork.results.dependence import DependentPhase
     from clutchwork.results.energy import EnergyBalance
     from clutchwork.results.events import Event
@@ -46,6 +47,7 @@ class SimulationError(ClutchworkError, RuntimeError):
         return type(self), (str(self), self.trajectory)
 
 
+@explained_methods("run")
 @dataclass(frozen=True, eq=False)
 class Trajectory(Exports):
     """The result of a run.
@@ -134,8 +136,8 @@ class Trajectory(Exports):
         return self.repeat(times)
 
     @explained("run.state")
-    def state(self, at: float | None = None) -> State:
-        """What the run is at a time [s], by default at its end: `simulate(start=state)` goes on from there.
+    def state(self, at: Number | None = None) -> State:
+        """What the run is at a time [s, or with a unit], by default at its end; `simulate(start=state)` goes on.
 
         The run is repeated up to there; at an event it is the right limit. Where a step of the solver ends at that time
         the motion that follows is that of this run, bit for bit, else within the tolerance.
@@ -182,7 +184,7 @@ class Trajectory(Exports):
         *signals: str | Sequence[str] | Path,
         unit: str | Sequence[str] | None = None,
         path: str | Path | None = None,
-        zoom: tuple[float, float] | None = None,
+        zoom: tuple[Number, Number] | None = None,
         events: bool | str | Sequence[str] | Events | Event = True,
         lockup: Event | None = None,
         measured: Mapping[str, Any] | None = None,
@@ -213,7 +215,7 @@ class Trajectory(Exports):
         *signals: str | Sequence[str] | Path,
         unit: str | Sequence[str] | None = None,
         path: str | Path | None = None,
-        zoom: tuple[float, float] | None = None,
+        zoom: tuple[Number, Number] | None = None,
         events: bool | str | Sequence[str] | Events | Event = True,
         measured: Mapping[str, Any] | None = None,
         points: int | None = 20_000,

@@ -10,6 +10,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, advised, near
 from clutchwork.base.shown import listed, shown
 from clutchwork.declare.quantity import PLAIN, QuantityError, scale_to_si
+from clutchwork.declare.speech import where_signals
 from clutchwork.declare.unit_table import fitting
 from clutchwork.declare.units import Scale
 
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 
 # a torque is not work, though both are N m
 WORK_OR_TORQUE = {*fitting("N m"), *fitting("J")}
+
+
+UNFIT = "the unit does not fit"
 
 
 @dataclass(frozen=True)
@@ -60,7 +64,7 @@ def among(known: Mapping[str, str], units: Mapping[str, str] | None) -> Converte
         try:
             found |= _matched(pattern, unit, known)
         except QuantityError as bad:
-            problems.append(f"{pattern} is {bad.value}: it {advised(bad.message, bad.remedy)}")
+            problems.append(f"{pattern} in {bad.value}: {advised(bad.message, bad.remedy)}")
     if problems:
         raise UseError("units", problems)
     return Converter(found, known, {name: scale_to_si(unit, known[name]) for name, unit in found.items()})
@@ -96,7 +100,7 @@ def _names(pattern: object, known: Mapping[str, str]) -> list[str]:
     plain = pattern.replace("[", "[[]") if isinstance(pattern, str) else ""
     names = [name for name in known if fnmatchcase(name, plain)]
     if not names:
-        meant = near(pattern, known, "`names` lists all signals")
+        meant = near(pattern, known, where_signals())
         raise UnknownName(f"no signal {shown(pattern)}{meant}")
     return names
 
@@ -111,13 +115,14 @@ def _by_unit(names: Iterable[str], known: Mapping[str, str]) -> dict[str, list[s
 def _fits(unit: object, si: str) -> str:
     """A unit that fits a signal; QuantityError says what the signal has, and what it may be given in."""
     if not si:
-        raise QuantityError("is a word and has no unit", shown(unit), "leave it out")
+        raise QuantityError("the signal is a word and has no unit", shown(unit), "leave it out")
     remedy = f"the signal is in [{si}]; give it in {listed(fitting(si))}" if fitting(si) else f"it is in [{si}]"
     try:
         scale_to_si(unit, si)
     except QuantityError as bad:
-        raise QuantityError(bad.message, shown(unit), remedy) from None
+        message = UNFIT if bad.message.startswith("has a unit") else f"the unit {bad.message}"
+        raise QuantityError(message.replace("has the unknown unit", "is unknown:"), shown(unit), remedy) from None
     word = str(unit).strip()
     if si in ("N m", "J") and word in WORK_OR_TORQUE - {*fitting(si)}:
-        raise QuantityError("has a unit that does not fit", shown(unit), remedy)
+        raise QuantityError(UNFIT, shown(unit), remedy)
     return word

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base import shell
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
+from clutchwork.base.errors import UseError, near
 from clutchwork.base.shell import DONE, STOPPED
 
 if TYPE_CHECKING:
@@ -34,7 +34,9 @@ def add_command(subparsers: Any) -> None:
         examples=EXAMPLES,
         codes="Exit code 1: a run stopped early, other than by the chatter of a law that cannot rest.",
     )
-    rig.add_argument("experiment", help="drift, stick_slip, judder ...; all; list prints experiments, laws and presets")
+    rig.add_argument(
+        "experiment", nargs="?", help="drift, stick_slip, judder ...; all; list prints experiments, laws and presets"
+    )
     rig.add_argument("--laws", metavar="A,B", help="laws to compare, or all; default: those of the experiment")
     rig.add_argument("--preset", metavar="NAME", help="where the laws take their parameters from")
     rig.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a setting")
@@ -48,6 +50,8 @@ def rig_command(asked: argparse.Namespace) -> int:
     if asked.experiment == LIST:
         shell.tell(listing())
         return DONE
+    if asked.experiment is None:
+        raise UseError("rig", ["give an experiment, such as clutchwork rig drift; clutchwork rig list prints them all"])
     shell.writable([asked.out / "table.csv"])
     done, data = True, []
     for outcome in outcomes(asked.experiment, asked.laws, asked.preset, asked.set, asked.out, asked.signals):

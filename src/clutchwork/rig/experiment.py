@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
+from clutchwork.base.paths import target
 from clutchwork.declare.node import Law
 from clutchwork.declare.options import Options
+from clutchwork.results.plot.chosen import PICTURES
 from clutchwork.results.plot.figure import figure_of
 from clutchwork.results.trajectory import Trajectory
 from clutchwork.rig.bench import ACCURATE, Bench
@@ -112,8 +114,7 @@ class Result:
         with figure_of(self.experiment.height * self.rows) as figure:
             self.experiment.draw(figure, self)
             if path is not None:
-                Path(path).parent.mkdir(parents=True, exist_ok=True)
-                figure.savefig(path)
+                figure.savefig(target("plot", path, f"{self.experiment.name}.png", PICTURES))
         return figure
 
     def save(self, folder: str | Path) -> list[Path]:

@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
+from clutchwork.base.paths import target
 from clutchwork.base.text import columns
 
 Cell: TypeAlias = "float | str"
@@ -49,7 +50,7 @@ class Table:
 
     def to_csv(self, path: str | Path) -> None:
         """Write it with the heads `name [unit]` and all digits."""
-        with Path(path).open("w", newline="", encoding="utf-8") as file:
+        with target("to_csv", path, "table.csv").open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow([column.head for column in self.columns])
             writer.writerows([[repr(c) if isinstance(c, float) else c for c in line] for line in self.lines])

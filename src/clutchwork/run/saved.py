@@ -18,11 +18,13 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.base import archive
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelWarning
+from clutchwork.base.paths import path_of
 from clutchwork.base.regular import reason
 from clutchwork.base.shown import listed, shortened
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES
 from clutchwork.declare.options import Options
+from clutchwork.declare.speech import say
 from clutchwork.declare.status import NAMES
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Event, Events
@@ -53,13 +55,14 @@ class NoRepeat:
         raise RepeatError(f"this run was loaded and cannot be repeated: {why}; simulate the model again")
 
 
-@explained("load_run")
+@explained("cw.load_run", path="'run.cwrun'")
 def load_run(path: str | Path) -> Trajectory:
     """The run that `run.save(path)` wrote: signals, units, events, energy, options and status, bit for bit.
 
     `run.at` and `run.state` repeat it as before, also one that was stepped or began at a state, but where Python
     functions set inputs. RunFormatError where the file is damaged, no run at all, or of another version.
     """
+    path_of("cw.load_run", path, "run.cwrun")
     try:
         about, *parts = archive.read(path, RUN_PARTS, MOST_BYTES)
         return _made(_about(about, path), parts, path)
@@ -69,7 +72,8 @@ def load_run(path: str | Path) -> Trajectory:
         why = reason(error) if isinstance(error, OSError) else shortened(str(error))
         if isinstance(error, FileNotFoundError):
             raise RunFormatError(f"{path} does not exist; check the path") from None
-        raise RunFormatError(f"{path}: cannot read a run: {why}; write the file with run.save") from None
+        by = say("clutchwork run MODEL --save FILE", "run.save")
+        raise RunFormatError(f"{path}: cannot read a run: {why}; write the file with {by}") from None
 
 
 def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import UseError
+from clutchwork.base.paths import path_fault
 from clutchwork.base.shown import shown
 from clutchwork.declare.quantity import QuantityError, in_si
 from clutchwork.model.model import Model
@@ -63,9 +64,10 @@ def _width_problems(width: Any) -> Any:
 
 
 def _problems(model: Model, path: Any, run: Any, at: Any) -> Any:
-    if path is not None and not isinstance(path, str | Path):
-        remedy = "give the run by name: run=..." if hasattr(path, "events") else "give a name that ends with .svg"
-        yield f"{shown(path)} is not a path; {remedy}"
+    if hasattr(path, "events"):
+        yield f"{shown(path)} is not a path; give the run by name: run=..."
+    elif path is not None and (fault := path_fault(path, "driveline.svg")):
+        yield fault
     elif path is not None and not kind_of(path):
         yield f"{shown(str(path))} does not say the format: end it with .svg, .png or .pdf"
     if run is None:

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
+from clutchwork.base.paths import fitting, made
 from clutchwork.base.shown import shown
+from clutchwork.declare.calls import explained_methods
 from clutchwork.results.plot.style import RC
 from clutchwork.schematic.look import GREY, LOCKED, NAME, OPEN, SLIPPING, VALUE
 from clutchwork.schematic.pen import Box, Mark, Pen, Stroke, Text, width_of
@@ -30,6 +32,7 @@ SAME: Any = {"svg.hashsalt": "clutchwork"}
 NO_DATE: dict[str, Any] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}
 
 
+@explained_methods("schematic")
 class Schematic:
     """The schematic of a driveline: shows itself in notebooks, `save` writes a file."""
 
@@ -54,11 +57,11 @@ class Schematic:
 
         Parameters: dpi, dots per inch of a PNG.
         """
-        path, kind = Path(path), kind_of(path)
+        path = fitting("save", path, "driveline.svg")
+        kind = kind_of(path)
         if not kind:
             raise UseError("save", [f"{shown(str(path))} does not say the format: end it with .svg, .png or .pdf"])
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(self._bytes(kind, dpi))
+        made(path).write_bytes(self._bytes(kind, dpi))
 
     def _bytes(self, kind: str, dpi: float = 200.0) -> bytes:
         file = BytesIO()

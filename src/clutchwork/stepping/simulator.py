@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.system import System
 from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.shown import shown
-from clutchwork.declare.calls import explained
+from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.options import Options
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.declare.status import DONE, EVENTS_FULL
@@ -40,6 +40,7 @@ ROUND_OFF = 1e-12
 OF_A_STATE = "give what sim.save(), run.state() or cw.State.load(path) returned"
 
 
+@explained_methods("sim")
 class Simulator:
     """A run that goes on when it is asked to: `advance` by a time, `set` what acts on it, read what it does.
 

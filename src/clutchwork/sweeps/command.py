@@ -13,7 +13,7 @@ import numpy as np
 from clutchwork.base import shell
 from clutchwork.base.errors import UseError, near
 from clutchwork.base.shell import DONE, INTERRUPTED, STOPPED
-from clutchwork.base.text import columns
+from clutchwork.base.text import columns, counted
 from clutchwork.declare.options import SIMULATION, instants
 from clutchwork.declare.speech import words_of_files
 from clutchwork.declare.units import split
@@ -22,6 +22,7 @@ from clutchwork.run.flags import add_options, given_options
 from clutchwork.sweeps import outputs as made
 from clutchwork.sweeps.result import Sweep, SweepInterrupted
 from clutchwork.sweeps.sweep import ROWS, sweep
+from clutchwork.sweeps.table import without_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -98,6 +99,11 @@ def sweep_command(asked: argparse.Namespace) -> int:
     if twice:
         raise UseError("sweep", [f"--vary {name} appears twice; give all its values at once" for name in twice])
     model = Driveline.load(asked.model)
+    if not vary:
+        names = "clutchwork check MODEL --names lists the names"
+        raise UseError(
+            "sweep", [f"--vary is missing: give values of a name, such as --vary c1.gain=4e-4,8e-4; {names}"]
+        )
     wanted = _outputs(asked.outputs) if asked.outputs else _by_default(model)
     code = DONE
     with words_of_files():
@@ -129,11 +135,18 @@ def _text(found: Sweep) -> list[str]:
     lines = [("output", "least", "most", "unit")]
     lines += [(name, f"{low:.6g}", f"{high:.6g}", found.units[name]) for name, low, high in _ranges(found)]
     ends = ", ".join(f"{count} {end}" for end, count in _ends(found).items())
-    return [f"{len(found)} variants: {ends}", columns(lines, right={1, 2})]
+    return [f"{counted(len(found), 'variants')}: {ends}", columns(lines, right={1, 2}), *without_values(found)]
 
 
 def _data(found: Sweep) -> dict[str, Any]:
-    ranges = {name: {"least": low, "most": high, "unit": found.units[name]} for name, low, high in _ranges(found)}
+    ranges: dict[str, dict[str, Any]] = {
+        name: {"least": low, "most": high, "unit": found.units[name]} for name, low, high in _ranges(found)
+    }
+    for name in found.names:
+        missing = found.without_value(name)
+        if name in ranges or missing:
+            none = {"least": None, "most": None, "unit": found.units[name]}
+            ranges[name] = {**ranges.get(name, none), "without_value": missing}
     return {"variants": len(found), "status": _ends(found), "outputs": ranges}
 
 

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base import html
 from clutchwork.base.errors import ModelError, UnknownName, UseError, near
 from clutchwork.base.extras import need
+from clutchwork.base.paths import target
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
+from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.selection import chosen
@@ -31,10 +32,9 @@ if TYPE_CHECKING:
     from clutchwork.declare.options import Options
     from clutchwork.results.trajectory import Trajectory
     from clutchwork.sweeps.batch import Block
-    from clutchwork.sweeps.variants import Variants
+    from clutchwork.sweeps.variants import Variants, Varied
 
 Array = NDArray[Any]
-MOST_SHOWN = 12  # lines of the table in a notebook
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +63,7 @@ class Missing(NamedTuple):
         return f"output {self.output!r} of variant {self.variant}: {self.reason}"
 
 
+@explained_methods("sweep")
 @dataclass(frozen=True, eq=False)
 class Sweep:
     """The result of a sweep.
@@ -136,9 +137,10 @@ class Sweep:
 
     @property
     def units(self) -> dict[str, str]:
-        """Unit of every output; empty for that of a function."""
+        """Unit of every output, and of every value that varies; empty for those of functions, signals and laws."""
         known = channels(self.swept.system, True, True)
-        return {name: _unit(one, known) for name, one in self.swept.outputs.items()}
+        varied = {self._given(one.name): one.unit for one in self.swept.variants.varied if _is_number(one)}
+        return varied | {name: _unit(one, known) for name, one in self.swept.outputs.items()}
 
     @property
     def status(self) -> Array:
@@ -161,7 +163,7 @@ class Sweep:
         """An output of all variants, in the shape of the grid; KeyError with near names when there is none."""
         if name not in self.swept.outputs:
             known = (*self.swept.outputs, *self.varied)
-            raise UnknownName(f"no output {shown(name)}{near(name, known, '`names` lists all outputs')}")
+            raise UnknownName(f"no output {shown(name)}{near(name, known, '`sweep.names` lists all outputs')}")
         values = self.flat(name)
         return values.reshape((*self.shape, *values.shape[1:]))
 
@@ -208,16 +210,24 @@ class Sweep:
         told_of = ", ".join(f"{count} {name}" for name, count in ends.most_common())
         return f"<Sweep of {counted(len(self), 'variants')}: {told_of}; {', '.join(self.names)}>"
 
+    def __str__(self) -> str:
+        """What `print` shows: how the variants ended, and the first lines of the table."""
+        from clutchwork.sweeps.table import text
+
+        return text(self)
+
     def _repr_html_(self) -> str:
         """The first lines of the table for a notebook."""
-        units, table = self.units, dict(self.columns())
-        # the unit of a value at several instants is that of its output
-        heads = [f"{name}, {unit}" if (unit := units.get(name)) else name for name in table]
-        lines = zip(*(column[:MOST_SHOWN].tolist() for column in table.values()), strict=True)
-        cells = [[f"{cell:.6g}" if isinstance(cell, float) else str(cell) for cell in line] for line in lines]
-        more = len(self) - len(cells)
-        words = [html.paragraph(f"... and {counted(more, 'more variants')}")] if more else []
-        return html.page(html.heading(repr(self)), html.table(heads, cells, right=range(len(heads) - 1)), *words)
+        from clutchwork.sweeps.table import page
+
+        return page(self)
+
+    def without_value(self, name: str) -> int:
+        """How many variants have no value of an output: a contact that never locks, a run that stopped before it."""
+        values = self[name].reshape(len(self), -1)
+        if values.dtype.kind == "f":
+            return int(np.isnan(values).any(axis=1).sum())
+        return sum(any(value is None or (isinstance(value, str) and not value) for value in line) for line in values)
 
     # --------------------------------------------------------------------------------------------------------- tables
 
@@ -230,20 +240,29 @@ class Sweep:
         for one in self.swept.variants.varied:
             yield self._given(one.name), one.column
         for name in picked:
-            values, output = self.flat(name), self.swept.outputs[name]
-            if isinstance(output, AtTimes):
-                for time, column in zip(output.times, values.T, strict=True):
-                    yield f"{name} {time:g} s", column
-            else:
-                yield name, values
+            values = self.flat(name)
+            lines = values.T if isinstance(self.swept.outputs[name], AtTimes) else [values]
+            yield from zip(self._columns_of(name), lines, strict=True)
         yield "status", np.array(NAMES)[self.codes]
+
+    def column_units(self, names: Any = None) -> dict[str, str]:
+        """The unit of each column of `columns` that has one; a value at an instant has that of its output."""
+        units = self.units
+        made = {self._given(one): units.get(self._given(one), "") for one in self.varied}
+        for name in self._picked(names):
+            made |= dict.fromkeys(self._columns_of(name), units[name])
+        return {column: unit for column, unit in made.items() if unit}
+
+    def _columns_of(self, name: str) -> list[str]:
+        output = self.swept.outputs[name]
+        return [f"{name} {time:g} s" for time in output.times] if isinstance(output, AtTimes) else [name]
 
     def _picked(self, names: Any) -> tuple[str, ...]:
         return chosen(names, self.swept.outputs, self._unknown)
 
     def _unknown(self, name: str) -> str:
         known = self.swept.outputs
-        return f"no output {shown(name)}{near(name, known, '`names` lists all outputs')}"
+        return f"no output {shown(name)}{near(name, known, '`sweep.names` lists all outputs')}"
 
     def to_pandas(self, names: Any = None) -> Any:
         """A pandas DataFrame with one line for each variant; `attrs["units"]` holds the units. Needs pandas.
@@ -251,7 +270,7 @@ class Sweep:
         Parameters: names, outputs by name, or wildcards such as `*.heat`, all by default.
         """
         frame = need("pandas", "tables", "a table").DataFrame(dict(self.columns(names)))
-        frame.attrs["units"] = self.units
+        frame.attrs["units"] = self.units | self.column_units(names)
         return frame
 
     def _given(self, name: str) -> str:
@@ -267,7 +286,10 @@ class Sweep:
         grid = swept.variants.shape is not None and len(swept.variants.varied) > 0
         axes = tuple(map(self._given, self.varied)) if grid else ("variant",)
         named = {self._given(name): axis for name, axis in self.coords.items()}
-        coords: dict[str, Any] = {name: (name if grid else "variant", axis) for name, axis in named.items()}
+        coords: dict[str, Any] = {
+            name: (name if grid else "variant", axis, {"units": units[name]} if name in units else {})
+            for name, axis in named.items()
+        }
         shape, data = self.shape if grid else (len(self),), dict[str, Any]()
         for name in self._picked(names):
             values, dims, output = self.flat(name), axes, swept.outputs[name]
@@ -278,6 +300,7 @@ class Sweep:
         data["status"] = (axes, np.array(NAMES)[self.codes].reshape(shape))
         return xarray.Dataset(data, coords=coords)
 
+    @explained("sweep.to_parquet", path="'sweep.parquet'")
     def to_parquet(self, path: str | Path, names: Any = None) -> None:
         """Write the table of `to_pandas` as a Parquet file, with the units as metadata. Needs pyarrow.
 
@@ -285,20 +308,22 @@ class Sweep:
         """
         pyarrow = need("pyarrow", "exchange", "a Parquet file")
         table = pyarrow.table({name: pyarrow.array(column.tolist()) for name, column in self.columns(names)})
-        units = {name: unit for name, unit in self.units.items() if name in table.column_names}
+        units = self.column_units(names)
         words = {f"unit {name}": unit for name, unit in units.items()}
         # where pandas looks for `attrs`
         words["PANDAS_ATTRS"] = json.dumps({"units": units})
-        need("pyarrow.parquet", "exchange").write_table(table.replace_schema_metadata(words), str(path))
+        file = target("sweep.to_parquet", path, "sweep.parquet", [".parquet"])
+        need("pyarrow.parquet", "exchange").write_table(table.replace_schema_metadata(words), str(file))
 
+    @explained("sweep.to_csv", path="'sweep.csv'")
     def to_csv(self, path: str | Path, names: Any = None) -> None:
         """Write the table with all digits; heads are `name [unit]` where there is one.
 
         Parameters: names, outputs by name, or wildcards such as `*.heat`, all by default.
         """
-        units, table = self.units, dict(self.columns(names))
+        units, table = self.column_units(names), dict(self.columns(names))
         heads = [f"{name} [{units[name]}]" if units.get(name) else name for name in table]
-        with Path(path).open("w", encoding="utf-8", newline="") as file:
+        with target("sweep.to_csv", path, "sweep.csv", [".csv"]).open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(heads)
             writer.writerows(zip(*(column.tolist() for column in table.values()), strict=True))
@@ -319,6 +344,10 @@ def empty_like(values: Array, count: int) -> Array:
     """Lines of the same kind without values."""
     shape = (count, *values.shape[1:])
     return np.full(shape, np.nan) if values.dtype.kind == "f" else np.full(shape, "", dtype=values.dtype)
+
+
+def _is_number(one: Varied) -> bool:
+    return bool(one.unit) and one.column.dtype.kind in "fiu"
 
 
 def _unit(one: Output, channels: Channels) -> str:

@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
+from clutchwork.declare.calls import explained
 from clutchwork.model import changes
 from clutchwork.model.changes import Target, named, target
 from clutchwork.model.model import Model
 
 Codes = NDArray[np.int64]
+PLAIN = (bool, int, float, str)
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +29,7 @@ class Varied:
     values: tuple[Any, ...]
     labels: tuple[Any, ...]
     codes: Codes
+    unit: str = ""  # of SI, where the values are numbers
 
     @property
     def column(self) -> NDArray[Any]:
@@ -57,6 +60,7 @@ class Variants:
 def grid(vary: Mapping[str, Any]) -> Variants:
     """All combinations of the values of each name; the last one changes fastest."""
     named = {name: _listed(name, values) for name, values in vary.items()}
+    _refuse_empty([name for name, (values, _) in named.items() if not values])
     shape = tuple(len(values) for values, _ in named.values())
     count = prod(shape)
     places = np.unravel_index(np.arange(count), shape) if shape and count else [np.zeros(0, np.int64)] * len(shape)
@@ -67,6 +71,7 @@ def grid(vary: Mapping[str, Any]) -> Variants:
     return Variants(tuple(varied), count, shape)
 
 
+@explained("cw.variants")
 def variants(columns: Mapping[str, Any]) -> Variants:
     """A table of variants for `sweep`: a column of values for each name, all of one length.
 
@@ -75,6 +80,7 @@ def variants(columns: Mapping[str, Any]) -> Variants:
     if not isinstance(columns, Mapping) or not columns:
         raise UseError("variants", [f"{shown(columns)} is not a table; give columns by name"])
     listed = {name: _listed(name, values, labelled=False)[0] for name, values in columns.items()}
+    _refuse_empty([name for name, values in listed.items() if not values])
     lengths = {name: len(values) for name, values in listed.items()}
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name!r} has {length}" for name, length in lengths.items())
@@ -104,13 +110,29 @@ def in_si(variants: Variants, model: Model) -> Variants:
 
 
 def _in_si(one: Varied, aim: Target | None) -> Varied:
-    if aim is None or {float, int}.issuperset(map(type, one.values)):
+    if aim is None:
         return one
+    unit = changes.unit_of(aim)
+    if {float, int}.issuperset(map(type, one.values)):
+        return replace(one, unit=unit)
     values = tuple(changes.in_si(aim, value) for value in one.values)
-    return replace(one, values=values, labels=_labels(values) if one.labels == _labels(one.values) else one.labels)
+    labels = one.labels
+    if labels == _labels(one.values):
+        plain = all(isinstance(value, PLAIN) for value in values)
+        given = [old if isinstance(old, str) else new for old, new in zip(one.values, values, strict=True)]
+        labels = _labels(values) if plain else _labels(given, unit)
+    return replace(one, values=values, labels=labels, unit=unit)
+
+
+def _refuse_empty(names: Sequence[str]) -> None:
+    """A name without values would leave no variant."""
+    if names:
+        raise UseError("sweep", [f"{name}: the list of values is empty; give at least one value" for name in names])
 
 
 def _of_list(rows: Sequence[Mapping[str, Any]]) -> Variants:
+    if not rows:
+        raise UseError("sweep", ["vary is an empty list; give at least one variant, such as [{'c1.gain': 5e-4}]"])
     names = list(dict.fromkeys(name for row in rows for name in row))
     missing = [
         f"variant {number} has no {name!r}; give every variant a value of each name"
@@ -135,11 +157,17 @@ def _listed(name: object, values: Any, *, labelled: bool = True) -> tuple[tuple[
     return plain, _labels(plain)
 
 
-def _labels(values: Sequence[Any]) -> tuple[Any, ...]:
-    """What to call values: themselves where they are plain, else the class and the place of each."""
-    if all(isinstance(value, bool | int | float | str) for value in values):
+def _labels(values: Sequence[Any], unit: str = "") -> tuple[Any, ...]:
+    """What to call values: themselves where all are plain, else each by itself, objects by their class and place."""
+    if all(isinstance(value, PLAIN) for value in values):
         return tuple(values)
-    return tuple(f"{type(value).__name__} {place}" for place, value in enumerate(values))
+    return tuple(_label(value, place, unit) for place, value in enumerate(values))
+
+
+def _label(value: Any, place: int, unit: str) -> str:
+    if isinstance(value, float | int) and not isinstance(value, bool):
+        return f"{value:.12g} {unit}".rstrip()
+    return str(value) if isinstance(value, PLAIN) else f"{type(value).__name__} {place}"
 
 
 def _column(name: str, values: Sequence[Any]) -> Varied:

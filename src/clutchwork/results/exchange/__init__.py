@@ -7,7 +7,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import ClutchworkError, UseError, near
+from clutchwork.base.errors import ClutchworkError, near
+from clutchwork.base.paths import fitting, made
 from clutchwork.base.shown import shown
 from clutchwork.results.exchange.content import Content, content
 
@@ -46,22 +47,22 @@ def write(
     computed, not interpolated, all of the run by default; units, other ones than those of SI by signal; form,
     a format in place of that of the ending.
     """
-    path = path_of(path, form or "write")
-    make = _writer(form or _format(path))
-    make(content(run, names, dt, times, units), path)
+    example = next(ending for ending, one in ENDINGS.items() if not form or one == form)
+    path = fitting(f"run.to_{form}" if form else "run.write", path, f"run{example}")
+    found = _format(path, form)
+    make = _writer(found)
+    make(content(run, names, dt, times, units), made(path))
 
 
-def path_of(path: str | Path, call: str) -> Path:
-    """A path that is one; UseError where it is something else."""
-    try:
-        return Path(path)
-    except TypeError:
-        raise UseError(call, [f"path: {shown(path)} is not a path; give a string, such as 'run.mf4'"]) from None
-
-
-def _format(path: Path) -> str:
-    found = ENDINGS.get(path.suffix.lower())
-    if found is None:
+def _format(path: Path, form: str) -> str:
+    """The format that the ending names; a file of a certain one may also have no ending."""
+    found = ENDINGS.get(path.suffix.lower(), "" if path.suffix else form)
+    if form and found != form:
+        fits = " or ".join(ending for ending, one in ENDINGS.items() if one == form)
+        raise EndingError(f"{shown(str(path))} ends in {shown(path.suffix)}, and to_{form} writes {fits}: rename it")
+    if not found:
+        if not path.suffix:
+            raise EndingError(f"{shown(str(path))} has no ending; give one of {', '.join(ENDINGS)}, such as 'run.csv'")
         known = ", ".join(ENDINGS)
         raise EndingError(
             f"{shown(str(path))} ends in {shown(path.suffix)}{near(path.suffix, ENDINGS, f'formats are {known}')}"

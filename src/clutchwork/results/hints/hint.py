@@ -10,6 +10,7 @@ from typing import Any
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import advised
 from clutchwork.base.shown import printable
+from clutchwork.declare.calls import explained_methods
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,7 @@ class Hint:
         return printable(f"{', '.join(self.elements)}: {advised(self.message, self.remedy)}")
 
 
+@explained_methods("hints")
 class Hints(tuple[Hint, ...]):
     """The hints about a model or a run; print it to read them."""
 

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, near
+from clutchwork.base.paths import path_fault
 from clutchwork.base.shown import listed, shown
+from clutchwork.declare.speech import where_signals
 from clutchwork.results.plot.panels import busy, driven
 from clutchwork.results.selection import meant
 
@@ -73,8 +75,8 @@ def _is_path(word: str, known: Collection[str]) -> bool:
 
 
 def _path_fault(path: Any, endings: Collection[str]) -> str:
-    if not isinstance(path, str | Path):
-        return f"path is {shown(path)}: it must be a string or a Path"
+    if fault := path_fault(path, f"run{next(iter(endings))}"):
+        return fault
     if Path(path).suffix.lower() in endings:
         return ""
     known = " or ".join(endings) if len(endings) < 3 else f"{', '.join(list(endings)[:-1])} or {list(endings)[-1]}"
@@ -116,7 +118,7 @@ def _matching(runs: Mapping[str, Recorded], word: str) -> tuple[list[str], list[
         known = list(dict.fromkeys(name for run in runs.values() for name in run.channels))
         matching = meant(word, known)
         plain = word.replace("*", "").replace("?", "")
-        fault = f"no signal matches {shown(word)}{near(plain, known, '`names` lists all signals')}"
+        fault = f"no signal matches {shown(word)}{near(plain, known, where_signals())}"
         return (matching, []) if matching else ([], [fault])
     return [], [f"run {shown(label)}: {fault}" if label else fault for label, fault in faults.items()]
 
@@ -128,7 +130,7 @@ def _fault(run: Recorded, word: str) -> str:
     except UnknownName as error:
         for pattern in (f"{word}.*", f"*.{word}"):
             if meant(pattern, run.channels):
-                return f"no signal {shown(word)}; did you mean {pattern!r}? `names` lists all signals"
+                return f"no signal {shown(word)}; did you mean {pattern!r}? {where_signals()}"
         return str(error)
     return ""
 

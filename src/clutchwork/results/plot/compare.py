@@ -16,6 +16,7 @@ from clutchwork.results.plot.measured import samples, with_samples
 from clutchwork.results.plot.view import viewed
 
 if TYPE_CHECKING:
+    from clutchwork.declare.node import Number
     from clutchwork.results.plot.canvas import Picture
     from clutchwork.results.recorded import Recorded
 
@@ -28,7 +29,7 @@ def compare(
     labels: Sequence[str] | None = None,
     unit: str | Sequence[str] | None = None,
     path: str | Path | None = None,
-    zoom: tuple[float, float] | None = None,
+    zoom: tuple[Number, Number] | None = None,
     events: Any = False,
     colour: str = "run",
     measured: Mapping[str, Any] | None = None,

@@ -10,6 +10,7 @@ import numpy as np
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
+from clutchwork.base.paths import made
 from clutchwork.base.shown import shown
 from clutchwork.results.plot.chosen import PAGES, Asked, Chosen, asked, panels, usual_groups
 from clutchwork.results.plot.curves import WORDS, Array, Curve, Panel, Side, panels_of, thinned, units_of
@@ -42,9 +43,8 @@ def explore(run: Recorded, chosen: Chosen, points: int | None) -> Any:
     view = viewed(runs, chosen.zoom, chosen.events, call)
     figure = _figure(view, panels_of(view.runs, groups, extra, call, shown_in), points)
     if wanted.path is not None:
-        wanted.path.parent.mkdir(parents=True, exist_ok=True)
         # with all that it needs, so that it opens without a network
-        figure.write_html(str(wanted.path), include_plotlyjs=True, include_mathjax=False, config=CONFIG)
+        figure.write_html(str(made(wanted.path)), include_plotlyjs=True, include_mathjax=False, config=CONFIG)
     return figure
 
 

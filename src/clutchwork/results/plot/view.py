@@ -12,6 +12,7 @@ import numpy as np
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
+from clutchwork.declare.quantity import QuantityError, in_si
 from clutchwork.results.events import Event, Events
 
 if TYPE_CHECKING:
@@ -73,8 +74,8 @@ def _of(label: str) -> str:
 
 def _window(zoom: Any, begin: float, end: float, call: str) -> tuple[float, float]:
     try:
-        ends = tuple(zoom)
-    except TypeError:
+        ends = tuple(in_si(t, "s") for t in zoom)
+    except (TypeError, QuantityError):
         ends = ()
     if len(ends) != 2 or not all(isinstance(t, Real) and math.isfinite(t) for t in ends):
         raise UseError(call, [f"zoom is {shown(zoom)}: give two times in s, such as zoom=({begin:g}, {end:g})"])

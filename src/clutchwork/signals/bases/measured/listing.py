@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator, Sequence
-from os import PathLike
 from pathlib import Path
 from typing import overload
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import FileError, UseError
+from clutchwork.base.errors import FileError
+from clutchwork.base.paths import path_of
 from clutchwork.base.regular import open_regular, reason
 from clutchwork.base.shown import shown
 from clutchwork.base.text import columns
@@ -64,15 +64,13 @@ class FileColumns(Sequence[Listed]):
     __repr__ = __str__
 
 
-@explained("read_columns")
+@explained("cw.read_columns", path="'measured.mf4'")
 def read_columns(path: str | Path) -> FileColumns:
     """What a file of measurements holds, which `cw.Column` can follow: names, units, numbers of samples, groups.
 
     Parameters: path of a CSV, MDF, MAT, Parquet or NetCDF file. FileError, a ValueError, where it cannot be read.
     """
-    if not isinstance(path, str | PathLike):
-        raise UseError("read_columns", [f"path: {shown(path)} is not a path; give a string, such as 'measured.mf4'"])
-    where, told = Path(path), str(path)
+    where, told = path_of("cw.read_columns", path, "measured.mf4"), str(path)
     try:
         form = format_of(where)
         if form:
