@@ -204,9 +204,13 @@ class Sweep:
         return told(system, code, int(component), time, value, int(column))
 
     def __repr__(self) -> str:
+        return f"<{self._words()}; {', '.join(self.names)}>"
+
+    def _words(self) -> str:
+        """How many variants there are, and how they ended."""
         ends = Counter(np.array(NAMES)[self.codes].tolist())
         told_of = ", ".join(f"{count} {name}" for name, count in ends.most_common())
-        return f"<Sweep of {counted(len(self), 'variants')}: {told_of}; {', '.join(self.names)}>"
+        return f"Sweep of {counted(len(self), 'variants')}: {told_of}"
 
     def _repr_html_(self) -> str:
         """The first lines of the table for a notebook."""
@@ -217,7 +221,7 @@ class Sweep:
         cells = [[f"{cell:.6g}" if isinstance(cell, float) else str(cell) for cell in line] for line in lines]
         more = len(self) - len(cells)
         words = [html.paragraph(f"... and {counted(more, 'more variants')}")] if more else []
-        return html.page(html.heading(repr(self)), html.table(heads, cells, right=range(len(heads) - 1)), *words)
+        return html.page(html.heading(self._words()), html.table(heads, cells, right=range(len(heads) - 1)), *words)
 
     # --------------------------------------------------------------------------------------------------------- tables
 
