@@ -16,9 +16,11 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.base import html
+from clutchwork.command import report
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.face.laws import curves
 from clutchwork.results.plot.signals import curve
+from clutchwork.results.ratios import phases
 from clutchwork.signals.bases.waveform import value
 from support import samples
 
@@ -243,3 +245,21 @@ def test_without_packages_there_are_words() -> None:
         "explore needs plotly: pip install 'clutchwork[interactive]'",
         "progress=True needs tqdm: pip install 'clutchwork[notebook]'",
     ], done.stderr
+
+
+def test_a_ratio_of_springs_is_not_called_one_of_gears() -> None:
+    """Two shafts on a spring have one speed where the spring does not twist; no gear is there that could say so."""
+    d = cw.Driveline("torsion")
+    a, b = d.shaft("engine", inertia=1.0, speed=5.0), d.shaft("vehicle", inertia=1.0)
+    d.add(cw.Torque("drive", shaft=a, torque=1.0))
+    d.add(cw.SpringDamper("half_shaft", base=a, follower=b, stiffness=100.0, damping=1.0))
+    d.add(cw.Torque("road", shaft=b, torque=-1.0))
+    run = d.simulate(0.1)
+    text = report.run_text(run, phases(run, ("engine", "vehicle")), ("engine", "vehicle"))
+    assert "engine/vehicle with rigid springs" in text
+    assert "by gears" not in text
+    assert "engine/vehicle with rigid springs" in report.model_text(run.system, ("engine", "vehicle"))
+    assert "engine/vehicle with rigid springs" in " ".join(shown(run.system).texts)
+    d.add(cw.Gear("gear", input=a, output=d.shaft("third"), ratio=2.0))
+    geared = d.simulate(0.1)
+    assert "engine/third by gears" in report.run_text(geared, phases(geared, ("engine", "third")), ("engine", "third"))

@@ -194,7 +194,7 @@ class Linear:
         return html.page(
             html.heading(repr(self)[1:-1]),
             html.table(head, lines, right=(2, 3), most=len(lines)),
-            self.modes._repr_html_(),  # noqa: SLF001, what a notebook asks for
+            self.modes._repr_html_(),
             *map(html.paragraph, self.notes),
         )
 
