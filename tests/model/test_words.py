@@ -136,3 +136,10 @@ def test_a_cell_that_was_run_again_is_told_as_the_likely_cause() -> None:
     twice, taken = d.check()
     assert "where a cell of a notebook was run again, make the driveline anew in it" in str(twice)
     assert "notebook" not in str(taken)
+
+
+def test_shafts_and_masses_are_nodes_by_their_domain() -> None:
+    d = cw.Driveline("car")
+    wheel, body, engine = d.shaft("wheel"), d.mass("body", mass=1.0), d.shaft("engine", inertia=1.0)
+    assert d.nodes == (wheel, body, engine)
+    assert (d.shafts, d.masses) == ((wheel, engine), (body,))
