@@ -124,7 +124,7 @@ def warm(last: float, friction: cw.Law | None = None, capacity: float = 200.0) -
 
 
 def racing(last: float, gain: float = 1.0) -> cw.Driveline:
-    """An engine of 100 N m at all speeds of its table, from 0 to the last one, that turns 0.5 kg m2 from 100 rad/s on."""
+    """An engine of 100 N m at 0 to the last speed [rad/s] of its table, which turns 0.5 kg m2 from 100 rad/s on."""
     d = cw.Driveline("racing")
     shaft = d.shaft("engine", inertia=0.5, speed=100.0)
     d.add(cw.SpeedTorque("ice", shaft=shaft, torque=[(0.0, 100.0), (last, 100.0)], gain=gain))

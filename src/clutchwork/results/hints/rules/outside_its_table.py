@@ -69,8 +69,8 @@ def _too_fast(look: Look) -> Iterator[Hint]:
         unit = SPEED[branch.domain]
         moves, what = ("turns", "torques") if branch.domain is Domain.ROTATION else ("moves", "forces")
         message = (
-            f"{moves} at up to {shown(worst, unit)} between {begin:.4g} and {end:.4g} s, but its table of {what} ends at"
-            f" {shown(known[-1] if worst > known[-1] else known[0], unit)}, where it goes on in a straight line"
+            f"{moves} at up to {shown(worst, unit)} between {begin:.4g} and {end:.4g} s, but its table of {what} ends"
+            f" at {shown(known[-1] if worst > known[-1] else known[0], unit)}, where it goes on in a straight line"
         )
         remedy = "extend the table to that speed, or limit the speed"
         numbers = {f"speed [{unit}]": worst, f"lowest [{unit}]": known[0], f"highest [{unit}]": known[-1]}
