@@ -14,8 +14,10 @@ import kept  # noqa: E402
 import launches  # noqa: E402
 import schematics  # noqa: E402
 import shuffle  # noqa: E402
+import stories  # noqa: E402
 
 import clutchwork  # noqa: E402
+import examples  # noqa: E402
 import gen_docs  # noqa: E402
 import gen_lists  # noqa: E402
 import parity  # noqa: E402
@@ -28,6 +30,8 @@ kept.write(launches.write, HERE / "reference" / "car")
 kept.write(sweeps.write, HERE / "reference" / "sweeps")
 kept.write(drawings.write, HERE / "reference" / "pictures")
 kept.write(schematics.write, HERE / "reference" / "schematics")
+kept.write(examples.write, HERE / "reference" / "examples")
+kept.write(stories.write, HERE / "reference" / "stories")
 kept.write(shuffle.write, HERE / "reference" / "linear")
 parity.write(HERE / "reference")
 

@@ -7,10 +7,13 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
+import stories
+
 import clutchwork
 from clutchwork.declare.core import core
 
 ROOT = Path(__file__).resolve().parents[2]
+PAGES = (*stories.PAGES, "linearise", "pictures")
 
 
 @cache
@@ -24,8 +27,8 @@ def fingerprint() -> str:
     )
     files = [
         Path(core().__file__),
-        # its programs draw its pictures
-        ROOT / "docs" / "guide" / "pictures.md",
+        # their programs draw their pictures
+        *(ROOT / "docs" / "guide" / f"{name}.md" for name in PAGES),
         *(file for folder in folders for file in sorted(folder.rglob("*.py"))),
     ]
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()

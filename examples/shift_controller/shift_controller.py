@@ -16,13 +16,13 @@ ON, OFF, HELD = "F1", "F2", "F4"  # closes, opens, stays closed: third gear to f
 
 @dataclass
 class ShiftController:
-    """Third gear to fourth: one clutch takes over from another, then pulls the turbine down along a wanted slip.
+    """Third gear to fourth: F1 takes over from F2, then pulls the turbine down.
 
     waiting   third gear
-    filling   the oncoming clutch is filled, the offgoing one falls towards what it has to hold
-    torque    the oncoming clutch takes over the torque, until the offgoing one slips
-    inertia   the offgoing clutch is open; the slip of the oncoming one follows a straight line down to zero
-    closing   the oncoming clutch holds: up to full pressure
+    filling   F1 is filled, F2 falls towards what it has to hold
+    torque    F1 takes over the torque, until F2 slips
+    inertia   F2 is open; the slip of F1 follows a straight line down to zero
+    closing   F1 holds: up to full pressure
     done      fourth gear
     """
 
@@ -85,17 +85,27 @@ class ShiftController:
 
 
 def gearbox(**changes: object) -> cw.Simulator:
-    """The six-speed gearbox, launching in third gear; changes as of `System.changed`."""
-    sim = cw.Simulator(cw.Driveline.load(MODEL).assemble().changed(changes))
+    """The six-speed gearbox at rest in third gear; changes as of `System.changed`."""
+    sim = cw.Simulator(cw.Driveline.load(MODEL).assemble().changed({"w1.speed": 0.0, **changes}))
     sim.set({f"{ON}.pressure": 0.0, f"{OFF}.pressure": FULL, f"{HELD}.pressure": FULL})
     return sim
 
 
-def drive(sim: cw.Simulator, controller: ShiftController, until: float) -> list[tuple[float, str]]:
+def lining(factor: float) -> dict[str, object]:
+    """The lining of the oncoming clutch with its coefficients times a factor, as changes of the gearbox."""
+    cold = {"static": 0.16, "slow": 0.14, "fast": 0.065}
+    return {f"{ON}.friction.{name}": factor * value for name, value in cold.items()}
+
+
+def drive(
+    sim: cw.Simulator,
+    controller: ShiftController,
+    until: float,
+) -> list[tuple[float, str]]:
     """Let a controller shift up to a time [s]; when it entered which state."""
     states = [(sim.time, controller.state)]
     while sim.time < until - 1e-9:
-        sim.set(controller.step(sim.time, sim[f"{ON}.slip"], sim[f"{OFF}.slip"]))
+        sim.set(controller.step(sim.time, *sim[[f"{ON}.slip", f"{OFF}.slip"]]))
         if controller.state != states[-1][1]:
             states.append((sim.time, controller.state))
         sim.advance(PERIOD)
@@ -103,8 +113,9 @@ def drive(sim: cw.Simulator, controller: ShiftController, until: float) -> list[
 
 
 def picture(run: cw.Trajectory, path: Path) -> None:
-    """Pressures, slips and the torque of the output shaft."""
-    run.plot((f"{ON}.pressure", f"{OFF}.pressure"), (f"{ON}.slip", f"{OFF}.slip"), "shaft.torque", path=path)
+    """Pressures, slips and the torque of the output shaft during the shift."""
+    pressures, slips = (f"{ON}.pressure", f"{OFF}.pressure"), (f"{ON}.slip", f"{OFF}.slip")
+    run.plot(pressures, slips, "shaft.torque", zoom=(1.9, 3.3), path=path)
 
 
 if __name__ == "__main__":

@@ -37,6 +37,14 @@ def test_a_bar_of_a_run(capsys: pytest.CaptureFixture[str], discs: cw.Trajectory
         assert capsys.readouterr().err == ""
 
 
+def test_a_bar_counts_from_where_a_run_begins(capsys: pytest.CaptureFixture[str]) -> None:
+    two_discs().simulate(5.5, t_start=5.0, progress=True)
+    assert "0.5 of 0.5 s" in capsys.readouterr().err
+    told: list[tuple[float, float]] = []
+    two_discs().simulate(5.5, t_start=5.0, progress=lambda time, end: told.append((time, end)))
+    assert told[-1] == (5.5, 5.5)
+
+
 def test_a_bar_of_a_sweep(capsys: pytest.CaptureFixture[str]) -> None:
     cw.sweep(two_discs(), 0.1, vary={"c1.gain": [1e-4, 2e-4]}, outputs="c1.torque", progress=True)
     assert "2/2" in capsys.readouterr().err

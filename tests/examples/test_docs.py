@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib
 import re
+import shutil
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -37,9 +39,12 @@ def named(path: Path) -> str:
 
 @pytest.fixture
 def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty working folder and pictures without a screen."""
+    """A working folder with the examples alone, as the root of a clone has them, and pictures without a screen."""
     pytest.importorskip("matplotlib").use("agg")
+    shutil.copytree(ROOT / "examples", tmp_path / "examples", ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.chdir(tmp_path)
+    # pages may add folders of examples
+    monkeypatch.setattr(sys, "path", list(sys.path))
     return tmp_path
 
 

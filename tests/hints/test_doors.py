@@ -13,6 +13,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.command.main import main
+from clutchwork.results.hints.hint import more_than
 from clutchwork.results.hints.registry import rules
 from support.hint_models import CASES, launch, lonely
 
@@ -141,3 +142,22 @@ def test_signals_of_what_is_not_used_are_not_there() -> None:
     # what is given later is there
     other = d.assemble().changed({"f.pressure": 1e3})
     assert (cw.simulate(other, 0.1)["f.pressure"] == 1e3).all()
+
+
+def test_a_run_from_a_file_that_cannot_be_repeated_has_hints(tmp_path: Path) -> None:
+    case = CASES["never locks"]
+    system = case.wrong().assemble()
+    torque = next(item.name for item in system.inputs if item.name.endswith(".torque"))
+    value = float(cw.simulate(system, 0.01)[torque][0])
+    run = cw.simulate(system.changed({torque: cw.Sampled(lambda *_: value, period=0.1)}), case.t_end, output="steps")
+    run.save(tmp_path / "a.run")
+    assert cw.load_run(tmp_path / "a.run").hints.rules == run.hints.rules == ("never locks",)
+
+
+@pytest.mark.parametrize("needed", [1.6111, 1.001, 9.999, 14.04, 136.2, 1.5])
+def test_a_factor_is_never_told_too_small(needed: float) -> None:
+    """What a remedy tells is enough: three digits, rounded up."""
+    told = float(more_than(needed))
+    assert needed <= told <= 1.01 * needed
+    assert more_than(1.5) == "1.5"
+    assert more_than(96.66666 / 60.0) == "1.62"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -44,6 +45,41 @@ def test_run_writes_a_folder_with_picture(model: Path, tmp_path: Path) -> None:
     assert main(["run", str(model), "--out", str(tmp_path / "out")]) == 0
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["events.csv", "picture.png", "trajectory.csv"]
     assert (tmp_path / "out" / "picture.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_units_of_files_and_of_the_picture(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib")
+    asked = ["run", str(model), "--quiet", "--dt", "0.1", "--signals", "*.speed", "--out", str(tmp_path), "--units"]
+    assert main([*asked, "*.speed=rpm", "--units", "load.speed=deg/s", "--units", "time=ms"]) == 0
+    head, first, *_, last = (tmp_path / "trajectory.csv").read_text().splitlines()
+    assert head == "time [ms],engine.speed [rpm],load.speed [deg/s]"
+    assert [float(cell) for cell in first.split(",")] == pytest.approx([0.0, 3000 / math.pi, 0.0])
+    assert float(last.split(",")[0]) == pytest.approx(2000.0)
+    for wrong, words in {
+        "*.speed=bar": "does not fit",
+        "*.sped=rpm": "no signal",
+        "rpm": "write NAME=UNIT",
+    }.items():
+        assert main([*asked, wrong]) != 0
+        assert words in capsys.readouterr().err
+
+
+def test_a_run_goes_on_from_a_state(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    state, files = tmp_path / "one.state", [tmp_path / name for name in ("whole.csv", "rest.csv")]
+    run = ["run", str(model), "--quiet"]
+    assert main([*run, "--t-end", "1", "--save-state", str(state)]) == 0
+    assert main([*run, "--times", "1,1.2,1.7,2", "--csv", str(files[0])]) == 0
+    assert main([*run, "--start", str(state), "--times", "1.2,1.7,2", "--csv", str(files[1])]) == 0
+    whole, rest = ([line.split(",") for line in file.read_text().splitlines()] for file in files)
+    assert len(rest) == 4
+    column = whole[0].index("load.speed [rad/s]")
+    wanted, found = ([float(row[column]) for row in table] for table in (whole[2:], rest[1:]))
+    # the whole run has no step that ends at 1 s
+    assert found == pytest.approx(wanted, rel=1e-9)
+    assert main([*run, "--start", str(state), "--t-start", "0.5"]) != 0
+    assert "t_start cannot be given beside start" in capsys.readouterr().err
+    assert main([*run, "--start", str(model)]) != 0
+    assert "cannot read a state" in capsys.readouterr().err
 
 
 def test_json(model: Path, capsys: pytest.CaptureFixture[str]) -> None:

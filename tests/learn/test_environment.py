@@ -150,6 +150,47 @@ def test_all_mistakes_at_once():
         environment(vary={"c1.gain": (1.0, 2.0)}, start=cw.Simulator(discs()).save())
 
 
+def test_values_have_units():
+    given = {
+        "actions": {"c1.pressure": ("0 bar", "2 bar")},
+        "observations": {"engine.speed": ("0 rpm", "955 rpm"), "c1.slip": (-100.0, 100.0)},
+        "vary": {"load.inertia": ("5000 kg cm2", "1 kg m2")},
+    }
+    env = cw.environment(discs(), "2 s", period="20 ms", reward=reward, **given)
+    drawn = env.reset(seed=1)[1]["values"]["load.inertia"]
+    assert 0.5 <= drawn <= 1.0
+    seen, *_, info = env.step(np.array([1.0]))
+    assert info["time"] == 0.02
+    assert env.unwrapped.sim["c1.pressure"] == 2e5
+    top = 955.0 * 2.0 * np.pi / 60.0
+    assert seen[0] == np.float32(2.0 * env.unwrapped.sim["engine.speed"] / top - 1.0)
+
+
+def test_what_varies_is_checked_at_once():
+    with pytest.raises(cw.ModelError, match=r"c1\.gain"):
+        environment(vary={"c1.gian": (4e-4, 6e-4)})
+    with pytest.raises(cw.ModelError, match="inertia"):
+        environment(vary={"load.inertia": (-1.0, 6e-4)})
+    with pytest.raises(cw.UseError, match="the lower one first"):
+        environment(actions={"c1.pressure": (2e5, 0.0)})
+    with pytest.raises(cw.UseError, match="with one that fits"):
+        environment(actions={"c1.pressure": ("0 N", "1 N")})
+
+
+@pytest.mark.parametrize("action", ["a", [0.0, 0.0], [np.nan], None])
+def test_actions_that_are_none(action):
+    env = environment()
+    env.reset()
+    with pytest.raises(cw.UseError, match=r"give 1 number from -1 to 1, for c1\.pressure"):
+        env.step(action)
+
+
+def test_times_are_those_of_a_simulator():
+    env = environment(period=0.02)
+    env.reset()
+    assert [env.step(np.array([0.0]))[4]["time"] for _ in range(100)] == [round(0.02 * n, 10) for n in range(1, 101)]
+
+
 def test_unknown_names_are_errors_at_once():
     with pytest.raises(cw.ModelError, match=r"c1\.pressure"):
         environment(actions={"c1.presure": (0.0, 2e5)})
@@ -168,3 +209,33 @@ def test_without_gymnasium(monkeypatch):
     monkeypatch.setitem(sys.modules, "gymnasium", None)
     with pytest.raises(ImportError, match=r"an environment needs gymnasium: pip install 'clutchwork\[learn\]'"):
         environment()
+
+
+def test_values_of_one_episode_are_not_those_of_the_next():
+    """What an episode was given by options is gone with it."""
+    env = environment(observations=["engine.speed"])
+    assert env.reset(options={"values": {"engine.speed": 50.0}})[0] == [50.0]
+    env.step(np.zeros(1))
+    assert env.reset()[0] == [100.0]
+    assert env.reset(options={"values": {"c1.gain": 6e-4}})[0] == [100.0]
+
+
+@pytest.mark.parametrize("period", [0.1, 0.01, 0.3])
+def test_instants_are_multiples_of_the_period(period):
+    """They are those of a Simulator that advances by the period, and the last one is the end."""
+    env, times = environment(period=period), []
+    env.reset()
+    over = False
+    while not over:
+        *_, over, info = env.step(np.zeros(1))
+        times.append(info["time"])
+    whole = int(2.0 / period + 1e-9)
+    assert times[:whole] == [float(f"{(k + 1) * period:.15g}") for k in range(whole)]
+    assert times[-1] == 2.0
+
+
+def test_an_episode_ends_after_it_begins():
+    sim = cw.Simulator(discs())
+    sim.advance(2.0)
+    with pytest.raises(cw.UseError, match=r"t_end is 2 s, and start is at 2 s"):
+        environment(start=sim.save())

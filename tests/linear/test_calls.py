@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
+from clutchwork.command.main import main
 
 LINING = {"friction": cw.Coulomb(static=0.12, kinetic=0.1), "gain": 1.0}
 
@@ -321,3 +322,21 @@ def test_a_result_that_is_asked_for_as_an_input_is_told_as_one():
     )
     assert "'car.speed' is a result" in speed
     assert "cw.Torque" not in speed
+
+
+def test_the_start_is_where_runs_of_the_model_begin(tmp_path, capsys):
+    """With t_start in its settings a model starts there, with signals and controllers of that time."""
+    d = launch()
+    d.simulation["t_start"] = 0.25
+    late = cw.simulate(d, 0.5)
+    sampled = d.assemble().changed({"c1.normal_force": cw.Sampled(lambda t, _: 1e3 * t, period=0.01)})
+    for lin in (cw.linearise(d), cw.linearise(d, at=0.25), cw.linearise(late, at=0.25)):
+        assert lin.time == 0.25
+        for quantity in lin.input_quantities:
+            assert quantity.value == late[quantity.name][0]
+    lin = cw.linearise(sampled)
+    assert lin.time == 0.25
+    assert {q.name: q.value for q in lin.input_quantities}["c1.normal_force"] == 250.0
+    d.save(tmp_path / "late.toml")
+    assert main(["linearise", str(tmp_path / "late.toml"), "--json"]) == 0
+    assert '"time": 0.25' in capsys.readouterr().out

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -307,3 +308,15 @@ def test_what_of_a_clutch_can_be_set_is_named() -> None:
     ):
         (problem,) = problems(cw.Simulator(d), wrong, 1.0)
         assert f"did you mean '{right}" in problem.message
+
+
+@pytest.mark.parametrize("value", [np.float32(3e-4), np.float64(3e-4), np.int64(1)])
+def test_parameters_may_be_numbers_of_numpy(value: Any, tmp_path: Path) -> None:
+    """A state holds them in its file."""
+    sim = cw.Simulator(clutch())
+    sim.set("c.gain", value)
+    sim.advance(0.1)
+    sim.save().save(tmp_path / "a.state")
+    other = cw.Simulator(clutch(), start=cw.State.load(tmp_path / "a.state"))
+    assert other.held == sim.held == {"c.gain": value}
+    assert other.save().row == sim.save().row

@@ -6,6 +6,7 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ import clutchwork as cw
 from clutchwork.base import archive
 from clutchwork.results.exchange.saved import RUN_PARTS, RunFormatError
 from support.amount import amount
+from support.random_contacts import driveline as random_contacts
 from support.random_drivelines import T_END, describe
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -420,3 +422,84 @@ def test_damaged_steps_of_a_saved_run_are_refused(tmp_path: Path, part: str, old
     archive.write(tmp_path / "bad", {**parts, part: parts[part].replace(old, new, 1)})
     with pytest.raises(RunFormatError, match="cannot read a run"):
         cw.load_run(tmp_path / "bad")
+
+
+def launched(engine: float = 100.0, torque: object = 50.0) -> cw.Driveline:
+    """An engine, and a car behind a clutch that is pressed."""
+    d = cw.Driveline("launched")
+    shaft, car = d.shaft("engine", inertia=0.2, speed=engine), d.shaft("car", inertia=1.0)
+    d.add(cw.Torque("drive", shaft=shaft, torque=torque))
+    friction = cw.Stribeck(static=0.35, kinetic=0.28, speed=10.0)
+    d.add(cw.Clutch("c1", base=shaft, follower=car, friction=friction, gain=4e-3, pressure=5e4))
+    return d
+
+
+def test_what_is_set_twice_is_decided_once_however_it_is_looked_at() -> None:
+    """Reading and saving between two values at one instant leaves no trace: not in the motion, events or the run."""
+    ends = []
+    for looks in (False, True):
+        sim = cw.Simulator(launched(engine=0.0, torque=10.0))
+        for _ in range(3):
+            sim.advance(0.01)
+            assert sim["c1.state"] == "locked"
+            sim.set("c1.pressure", 0.0)
+            if looks:
+                assert sim["c1.state"] == "open"
+                assert [event.after for event in sim.events] == ["open"]
+                state = sim.save()
+                assert cw.Simulator(launched(engine=0.0, torque=10.0), start=state).events[0].after == "open"
+            sim.set("c1.pressure", 4e4)
+        sim.advance(0.01)
+        assert not len(sim.events)
+        assert not len(sim.run.events)
+        assert sim.run.rows[-1].tobytes() == sim.save().row
+        ends.append((sim.save().row, sim.save().core))
+    assert ends[0] == ends[1]
+
+
+def test_events_of_the_start_come_back_with_its_state() -> None:
+    """What the start decides is told again after another start was tried."""
+    sim = cw.Simulator(random_contacts(1929))
+    sim.set("c1.normal_force", 250.0)
+    start, before = sim.save(), list(sim.events)
+    assert [event.cause for event in before] == ["impulse"]
+    sim.set("load.torque", 80.0)
+    sim.restore(start)
+    assert list(sim.events) == before
+    sim.advance(0.01)
+    assert list(sim.events)[:1] == before
+    assert list(sim.events) == list(sim.run.events)
+
+
+@pytest.mark.parametrize("first", [0.0, 0.05])
+def test_a_controller_sees_the_same_after_a_state(first: float, tmp_path: Path) -> None:
+    """A controller sees what was before a value that is set at its instant, in the run that goes on from there too."""
+
+    def read(_t: float, s: Any) -> float:
+        return 50.0 + 0.1 * s["c1.torque"] + 1e-4 * s["c1.pressure"]
+
+    d = launched(torque=cw.Sampled(read, period=0.01))
+    sim = cw.Simulator(d)
+    sim.advance_to(first)
+    sim.set("c1.pressure", 2e4)
+    state = sim.save()
+    state.save(tmp_path / "a.state")
+    sim.advance(0.03)
+    wanted = sim.save().row
+    other = cw.Simulator(d, start=cw.State.load(tmp_path / "a.state"))
+    other.advance(0.03)
+    assert other.save().row == wanted
+    sim.restore(state)
+    sim.advance(0.03)
+    assert sim.save().row == wanted
+    run = cw.simulate(d, first + 0.03, start=state, output="steps")
+    assert run.rows[-1].tobytes() == wanted
+    assert run.at([first + 0.03]).rows[-1].tobytes() == wanted
+
+
+def test_the_instant_of_a_state_may_have_a_unit() -> None:
+    """As that of run.at has."""
+    run = cw.simulate(launched(), 0.1)
+    assert run.state(at="50 ms").core == run.state(at=0.05).core
+    with pytest.raises(cw.UseError, match="has a unit that does not fit; give a time in s"):
+        run.state(at="5 m")

@@ -79,6 +79,7 @@ def test_a_variant_that_stops_early(model, capsys):
         (["--vary", "c1.gain=1,2 rpm"], 3, "gain = '1.0 rpm': has a unit that does not fit"),
         (["--vary", "c1.gain=1 m,2"], 2, "write one unit, behind the last value"),
         (["--vary", "c1.gain"], 2, "write NAME=FIRST:LAST:COUNT"),
+        (["--vary", "c1.gain", "--vary", "load.inertia=1:2"], 2, "sweep: 2 problems"),
         (["--vary", "c1.gian=1,2"], 3, "did you mean 'c1.gain'"),
         (["--vary", "c1.gain=-1,2"], 3, "gain = -1.0 m3: must be > 0 m3"),
         (["--outputs", "lokc(c1)"], 2, "no output 'lokc'; did you mean 'lock'"),

@@ -155,10 +155,54 @@ def test_names_for_outputs_and_functions_of_the_run():
         found["wenn"]
 
 
-def test_a_function_that_fails_tells_the_variant():
-    with pytest.raises(ZeroDivisionError) as caught:
-        cw.sweep(discs(), 3.0, vary={"c1.gain": [0.5]}, outputs=lambda run: 1 / 0)
-    assert "in variant 0 of the sweep: {'c1.gain': 0.5}" in caught.value.__notes__
+def test_a_function_that_fails_loses_its_value_alone():
+    def fussy(run):
+        return 1.0 / (run.t_end - 3.0) if run["load.speed"][-1] > 15.0 else 7.0
+
+    with pytest.warns(cw.OutputWarning, match=r"output 'fussy' of variant \d: ZeroDivisionError: .*missing"):
+        found = cw.sweep(discs(), 3.0, vary={"c1.gain": [0.01, 2.0, 0.02]}, outputs=[fussy, "load.speed"])
+    assert found.finished.all()
+    assert np.isnan(found["fussy"]).tolist() == (found["load.speed"] > 15.0).tolist() == [False, True, False]
+    assert [(one.variant, one.output) for one in found.problems] == [(1, "fussy")]
+    assert found.problems[0].reason.startswith("ZeroDivisionError: ")
+    assert not cw.sweep(discs(), 3.0, vary={"c1.gain": [0.5]}, outputs="load.speed").problems
+
+
+@pytest.mark.parametrize("many", [lambda run: run["load.speed"], lambda run: [1.0, 2.0], lambda run: {"a": 1.0}])
+def test_a_function_gives_one_value(many):
+    with pytest.raises(cw.UseError, match=r"the output .* gave .*: give one number for each variant; cw\.at"):
+        cw.sweep(discs(), 3.0, vary={"c1.gain": [0.5]}, outputs={"many": many})
+    found = cw.sweep(discs(), 3.0, vary={"c1.gain": [0.5]}, outputs=lambda run: np.array(2.5))
+    assert found["<lambda>"].tolist() == [2.5]
+
+
+def test_what_is_no_number_name_or_variant():
+    with pytest.raises(cw.UseError, match=r"options is 5: it must be cw\.Options"):
+        cw.sweep(discs(), 3.0, vary={"c1.gain": [0.5]}, outputs="load.speed", options=5)
+    with pytest.raises(cw.UseError, match="changes is 5: give values by name"):
+        discs().assemble().changed(5)
+    with pytest.raises(cw.UseError, match="times is missing"):
+        cw.at(object())
+    with pytest.raises(cw.UseError, match="is not a name"):
+        cw.at(object(), 1.0)
+    for times in (object(), "soon", [[1.0, 2.0], [3.0]], None):
+        with pytest.raises(cw.ClutchworkError):
+            cw.at("load.speed", times)
+    found = cw.sweep(discs(), 3.0, vary={"c1.gain": [0.5, 0.6]}, outputs="load.speed")
+    for number in (99, -3, 0.5, "first", None, True):
+        for ask in (found.run, found.variant, found.message):
+            with pytest.raises(cw.UseError, match=r"there is no variant .*; give a whole number from 0 to 1"):
+                ask(number)
+    assert found.variant(-1) == {"c1.gain": 0.6}
+
+
+def test_wrong_values_of_all_names_at_once():
+    vary = {"c1.normal_force": ["two", "3 bar", 3.0], "c1.gain": [-1.0, 2.0], "load.inertia": [-0.8, 1.0]}
+    with pytest.raises(cw.ModelError) as caught:
+        cw.sweep(discs(), 3.0, vary=vary, outputs="load.speed")
+    text = str(caught.value)
+    for words in ("'two'", "'3 bar'", "gain = -1.0", "inertia = -0.8"):
+        assert words in text
 
 
 def test_controllers():

@@ -11,9 +11,11 @@ from typing import NamedTuple
 
 from clutchwork.declare.unit_words import OTHER_ZERO, TABLE, TOLERANT, Powers
 
-_FACTOR = re.compile(r"([A-Za-z%]{1,20}|1)\^?(-?\d)?")
+_FACTOR = re.compile(r"([A-Za-z%]{1,20}|1)\^?(-?[1-9])?")
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 _COMMA = re.compile(r"\s*[-+]?\d*,\d+([eE][-+]?\d+)?\s*[^\d,;]*")
+# what a unit looks like: factors, and at most one bracket behind a slash
+_SHAPE = re.compile(r"\s*(?:1(?=\s*/)|1\s*|[^\s./()1][^()/]*)(?:/[^()/]+|/\s*\([^()/]+\))*\s*")
 # more is no quantity
 LONGEST = 200
 _SIGNS = {"·": " ", "⋅": " ", "*": " ", "°": "deg", "µ": "u", "μ": "u", "−": "-", "⁻": "-"}
@@ -57,6 +59,8 @@ def _plain(text: str) -> str:
 def _parsed(text: str) -> Unit:
     if text.strip() == "-":
         return Unit(1.0, NONE)
+    if text.strip() and (not _SHAPE.fullmatch(text) or text.strip().endswith((".", "/"))):
+        raise ValueError(text.strip())
     # factors are put together without round-off: a cm3 is 1e-6 m3 to the last bit
     from fractions import Fraction
 
@@ -64,12 +68,12 @@ def _parsed(text: str) -> Unit:
     # what follows a slash divides, up to the end: N m/rad, m/s2
     for side, part in enumerate(text.split("/")):
         sign = -1 if side else 1
-        for word in re.split(r"[\s.()]+", part.strip()):
-            if not word:
-                continue
+        words = [word for word in re.split(r"[\s.()]+", part.strip()) if word]
+        for word in words:
             match = _FACTOR.fullmatch(word)
             name = match and (match[1] if match[1] in TABLE else TOLERANT.get(match[1].lower(), ""))
-            if match is None or name not in TABLE:
+            # a one stands alone, as in 1/s
+            if match is None or name not in TABLE or (word == "1" and (len(words) > 1 or side)):
                 raise ValueError(word)
             power = sign * int(match[2] or 1)
             base, dimension = TABLE[name]

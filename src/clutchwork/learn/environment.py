@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from math import inf
 from typing import TYPE_CHECKING, Any, Unpack
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.shown import shown
+from clutchwork.declare import quantity
 from clutchwork.declare.calls import explained
+from clutchwork.declare.given import Wanted
 from clutchwork.learn.moment import Moment
 from clutchwork.learn.ranges import ranges
-from clutchwork.learn.variation import variation
+from clutchwork.learn.variation import refuse_unfit, variation
+from clutchwork.model.changes import in_si, named, target
+from clutchwork.results.channels import channels
 from clutchwork.run.simulation import Assembles, model_of
 from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.learn.gym import DrivelineEnv
     from clutchwork.results.state import State
@@ -25,12 +32,12 @@ if TYPE_CHECKING:
 @explained("cw.environment")
 def environment(
     model: Assembles | System,
-    t_end: float,
+    t_end: Number,
     *,
-    actions: Mapping[str, tuple[float, float]],
-    observations: Mapping[str, tuple[float, float] | None] | Iterable[str],
+    actions: Mapping[str, tuple[Number, Number]],
+    observations: Mapping[str, tuple[Number, Number] | None] | Iterable[str],
     reward: Callable[[Moment], float],
-    period: float = 0.01,
+    period: Number = 0.01,
     ends: Callable[[Moment], bool] | None = None,
     vary: Mapping[str, Any] | None = None,
     start: State | None = None,
@@ -54,25 +61,46 @@ def environment(
     """
     need("gymnasium", "learn", "an environment")
     system = model_of("cw.environment", model, None)
-    what, bad_actions = ranges("actions", actions, needed=True)
-    seen, bad_observations = ranges("observations", observations, needed=False)
-    varies, bad_variation = variation(vary or {})
+    what, bad_actions = ranges("actions", actions, True, partial(_given, system))
+    seen, bad_observations = ranges("observations", observations, False, partial(_signal, system))
+    varies, tried, bad_variation = variation(vary or {}, partial(_given, system))
+    times = {name: Wanted("s").number(value) for name, value in (("t_end", t_end), ("period", period))}
     wrong = [*bad_actions, *bad_observations, *bad_variation]
-    for name, value in (("t_end", t_end), ("period", period)):
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < float("inf"):
-            wrong.append(f"{name} is {shown(value)}: give a time above 0 in s")
-    for name, function in (("reward", reward), ("ends", ends or reward)):
-        if not callable(function):
-            wrong.append(f"{name} is {shown(function)}: give a function of a Moment")
+    for name, value in times.items():
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < inf:
+            wrong.append(f"{name} is {shown(value)}: give a time above 0, in s or with a unit")
+    wrong += [
+        f"{name} is {shown(function)}: give a function of a Moment"
+        for name, function in (("reward", reward), ("ends", ends))
+        if not (callable(function) or (name == "ends" and function is None))
+    ]
+    if start is not None and not wrong and times["t_end"] <= start.time:
+        end = times["t_end"]
+        wrong.append(f"t_end is {end:g} s, and start is at {start.time:g} s: give a later end of the episodes")
     if start is not None and vary:
         wrong.append("vary needs a new start in every episode: give vary or start")
     if render_mode not in (None, "rgb_array"):
         wrong.append(f'render_mode is {shown(render_mode)}: give "rgb_array" or None')
     if wrong:
         raise UseError("cw.environment", wrong)
+    refuse_unfit(system, tried)
     from clutchwork.learn.gym import DrivelineEnv
 
     def begin(changed: System) -> Simulator:
         return Simulator(changed, start=start, **changes)
 
-    return DrivelineEnv(system, begin, what, seen, reward, ends, varies, (float(t_end), float(period)), render_mode)
+    return DrivelineEnv(
+        system, begin, what, seen, reward, ends, varies, (float(times["t_end"]), float(times["period"])), render_mode
+    )
+
+
+def _given(system: System, name: str, value: Any) -> Any:
+    """A value of what is set or varies, in SI."""
+    aim = target(named(system.source), name) if system.source is not None else None
+    return value if aim is None else in_si(aim, value)
+
+
+def _signal(system: System, name: str, value: Any) -> Any:
+    """A value of a signal of results, in SI."""
+    known = channels(system, True, True)
+    return quantity.in_si(value, known[name].unit) if name in known else value

@@ -11,8 +11,9 @@ from gymnasium import Env, spaces
 from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
-from clutchwork.base.errors import ClutchworkError
+from clutchwork.base.errors import ClutchworkError, UseError
 from clutchwork.base.shown import shown
+from clutchwork.base.text import counted
 from clutchwork.learn.moment import Moment
 from clutchwork.learn.ranges import Ranges
 from clutchwork.learn.variation import Draw
@@ -51,7 +52,7 @@ class DrivelineEnv(Env[Observation, Observation]):
         self.metadata = {**self.metadata, "render_fps": max(1, round(1.0 / times[1]))}
         self.action_space = actions.space(spaces)
         self.observation_space = observations.space(spaces)
-        self.sim = begin(system)
+        self.sim = self._plain = begin(system)
         # names are looked up now: a wrong one is an error before the first episode
         self.sim.set(actions.values(np.zeros(len(actions.names))))
         self._seen()
@@ -70,6 +71,8 @@ class DrivelineEnv(Env[Observation, Observation]):
         if self._varies or given:
             self.sim = self._new(self._system.changed(values | given))
         else:
+            # that of the model, whatever the episode before was given
+            self.sim = self._plain
             self.sim.reset()
         return self._seen(), self._info(values | given)
 
@@ -77,11 +80,12 @@ class DrivelineEnv(Env[Observation, Observation]):
         """Set the inputs and go on by one period."""
         t_end, period = self._times
         before, begun, happened = self.sim.readings(), self.sim.time, len(self.sim.events)
-        values = self._actions.values(action)
+        values = self._actions.values(self._accepted(action))
         self.sim.set(values)
         failure = ""
         try:
-            self.sim.advance_to(min(t_end, begun + period))
+            # a multiple of the period, as `advance` ends at
+            self.sim.advance(min(period, t_end - begun))
         except SimulationError as error:
             failure = str(error)
         now = before if failure else self.sim.readings()
@@ -89,6 +93,18 @@ class DrivelineEnv(Env[Observation, Observation]):
         over = bool(failure) or (self._ends is not None and bool(self._ends(moment)))
         seen = self._observations.scaled([now[name] for name in self._observations.names])
         return seen, self._rewarded(moment), over, self.sim.time >= t_end - ROUND_OFF * period, self._info({})
+
+    def _accepted(self, action: Any) -> NDArray[np.float64]:
+        """An action as numbers; UseError for what is none."""
+        try:
+            numbers = np.asarray(action, dtype=float).reshape(-1)
+        except (TypeError, ValueError):
+            numbers = np.empty(0)
+        names = self._actions.names
+        if numbers.shape != (len(names),) or not np.all(np.isfinite(numbers)):
+            wanted = f"give {counted(len(names), 'numbers')} from -1 to 1, for {', '.join(names)}"
+            raise UseError("env.step", [f"action is {shown(action)}: {wanted}"])
+        return numbers
 
     def _rewarded(self, moment: Moment) -> float:
         reward = self._reward(moment)

@@ -16,6 +16,8 @@ class Moment:
     """One step of an environment, just done.
 
     `now["engine.speed"]` and `before["engine.speed"]` are signals at its end and at its begin: all that the model has.
+    `action` is what was set, in SI by name; `events` are those of this step; `failure` says why the run cannot go on,
+    "" where it can: `now` is then the same as `before`.
     """
 
     time: float  # s, its end

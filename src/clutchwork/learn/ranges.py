@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from math import inf, isfinite
 from numbers import Real
 from typing import Any
@@ -12,8 +13,11 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.shown import shown
+from clutchwork.declare.quantity import QuantityError, has_unit
 
 Array = NDArray[np.float64]
+InSI = Callable[[str, Any], Any]
+RANGE = "give (low, high): finite, in the unit of it or with one that fits, the lower one first"
 
 
 @dataclass(frozen=True)
@@ -48,10 +52,11 @@ class Ranges:
         return spaces.Box(-edge, edge, dtype=np.float32)
 
 
-def ranges(what: str, given: object, needed: bool) -> tuple[Ranges, list[str]]:
+def ranges(what: str, given: object, needed: bool, in_si: InSI) -> tuple[Ranges, list[str]]:
     """Ranges of actions or observations, and what is wrong with them.
 
-    Parameters: given, a mapping from names to (low, high), or names alone where a range is not needed.
+    Parameters: given, a mapping from names to (low, high), or names alone where a range is not needed; in_si, what a
+    value of a name is in SI.
     """
     if isinstance(given, str):
         given = [given]
@@ -60,8 +65,9 @@ def ranges(what: str, given: object, needed: bool) -> tuple[Ranges, list[str]]:
     if not isinstance(given, Mapping) or not given:
         wanted = "a mapping from names to (low, high)" + ("" if needed else ", or names")
         return Ranges((), np.empty(0), np.empty(0)), [f"{what} is {shown(given)}: give {wanted}"]
+    given = {name: plain(bounds, partial(in_si, name)) for name, bounds in given.items()}
     wrong = [
-        f"{what} of {shown(name)} is {shown(bounds)}: give (low, high), finite and different"
+        f"{what} of {shown(name)} is {shown(bounds)}: {RANGE}"
         for name, bounds in given.items()
         if not (bounds is None and not needed) and not is_range(bounds)
     ]
@@ -71,8 +77,20 @@ def ranges(what: str, given: object, needed: bool) -> tuple[Ranges, list[str]]:
     return Ranges(tuple(map(str, given)), *np.array(pairs, dtype=float).T), []
 
 
+def plain(bounds: Any, in_si: Callable[[Any], Any]) -> Any:
+    """Bounds with their units put into SI; what cannot be read stays as it is."""
+    if not isinstance(bounds, tuple | list) or not any(has_unit(one) for one in bounds):
+        return bounds
+    try:
+        return type(bounds)(in_si(one) if has_unit(one) else one for one in bounds)
+    except QuantityError:
+        return bounds
+
+
 def is_range(bounds: object) -> bool:
-    """Whether it is two different finite numbers."""
+    """Whether it is two finite numbers, the lower one first."""
     if not isinstance(bounds, Sequence | np.ndarray) or isinstance(bounds, str) or len(bounds) != 2:
         return False
-    return all(isinstance(one, Real) and isfinite(float(one)) for one in bounds) and bounds[0] != bounds[1]
+    if any(isinstance(one, bool) or not isinstance(one, Real) or not isfinite(float(one)) for one in bounds):
+        return False
+    return float(bounds[0]) < float(bounds[1])

@@ -49,7 +49,7 @@ def linearise(
 
     Parameters: model, a Driveline, a System, a run, or a `Simulator`, which is taken where it is with all that was
     set; at, the instant [s], needed with a run, which a model is run up to, or a `State` of a model; inputs and
-    outputs, names of signals or wildcards such as "*.speed". Inputs are all signals that the model is given by
+    outputs, names of signals or wildcards such as `*.speed`. Inputs are all signals that the model is given by
     default, outputs all speeds and the other states. A prescribed speed "motor.speed" may also be given by its
     acceleration, as the input "motor.acceleration".
 

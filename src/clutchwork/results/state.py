@@ -17,6 +17,7 @@ from clutchwork.base.errors import ClutchworkError, UseError
 from clutchwork.base.kept import kept
 from clutchwork.base.shown import shortened, shown
 from clutchwork.declare.calls import explained
+from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
 FORMAT = 1
-PARTS = ("head", "core", "row")
+PARTS = ("head", "core", "row", "left")
 
 
 class StateError(ClutchworkError, ValueError):
@@ -46,17 +47,23 @@ class State:
     fingerprint: str  # of its System
     core: bytes = field(repr=False)  # as the compiled core saves it
     row: bytes = field(repr=False)  # output row at this instant
+    left: bytes = field(default=b"", repr=False)  # the one before what was set there, which controllers see
     held: Mapping[str, float] = field(default_factory=dict)  # signals that were set from outside
     changed: Mapping[str, Any] = field(default_factory=dict)  # parameters that were
 
     def __repr__(self) -> str:
-        size = len(self.core) + len(self.row)
+        size = len(self.core) + len(self.row) + len(self.left)
         return f"<State of {shown(self.model)} at {self.time:g} s, {size / 1024:.1f} KiB>"
 
     @property
     def values(self) -> NDArray[np.float64]:
         """The output row of the core at this instant."""
         return np.frombuffer(self.row, dtype=np.float64)
+
+    @property
+    def before(self) -> NDArray[np.float64]:
+        """The output row before what was set at this instant."""
+        return np.frombuffer(self.left or self.row, dtype=np.float64)
 
     @explained("state.save")
     def save(self, path: str | Path) -> None:
@@ -72,12 +79,12 @@ class State:
 
         head = {"format": FORMAT, "time": self.time, "model": self.model, "fingerprint": self.fingerprint}
         head |= {"held": dict(self.held), "changed": dict(self.changed)}
-        return {"head": json.dumps(head).encode(), "core": self.core, "row": self.row}
+        return {"head": json.dumps(head).encode(), "core": self.core, "row": self.row, "left": self.left}
 
     @classmethod
-    def of_parts(cls, head: bytes, core: bytes, row: bytes) -> State:
+    def of_parts(cls, head: bytes, core: bytes, row: bytes, left: bytes) -> State:
         """The state of such parts; ValueError where they are none."""
-        return cls(core=core, row=row, **_read_head(head))
+        return cls(core=core, row=row, left=left, **_read_head(head))
 
     @classmethod
     @explained("cw.State.load")
@@ -120,6 +127,11 @@ def instant(at: object, begin: float, reached: float) -> float:
     """A time of a run [s] that goes from begin to what it has reached, None: its end; UseError for any other."""
     if at is None:
         return reached
+    if has_unit(at):
+        try:
+            at = in_si(at, "s")
+        except QuantityError as bad:
+            raise UseError("run.state", [f"at is {shown(at)}: {bad.message}; give a time in s"]) from None
     if isinstance(at, bool) or not isinstance(at, Real):
         raise UseError("run.state", [f"at is {shown(at)}: give a time in s, or nothing for the end"])
     if not begin <= float(at) <= reached:

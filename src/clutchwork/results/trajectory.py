@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError
+from clutchwork.base.errors import ClutchworkError, OptionError
 from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
@@ -75,7 +75,7 @@ class Trajectory(Exports):
     @property
     def reached(self) -> float:
         """Time up to which it is known [s]: its end, or where it stopped."""
-        return self.t_end if self.finished or not len(self) else float(self.time[-1])
+        return self.t_end if self.finished else float(self.time[-1]) if len(self) else self.options.t_start
 
     def raise_for_status(self) -> Trajectory:
         """Return itself when the run is complete, else raise SimulationError."""
@@ -148,9 +148,9 @@ class Trajectory(Exports):
     def energy(self) -> EnergyBalance:
         """Energy balance between the first and the last instant."""
         if not self.options.work:
-            raise ValueError("the energy balance needs the work integrals: run with work=True")
+            raise OptionError(["the energy balance needs the work integrals: run with work=True"])
         if not len(self):
-            raise ValueError(f"no instant was computed, so there is no energy balance: {self.message}")
+            raise SimulationError(f"no instant was computed, so there is no energy balance: {self.message}", self)
         from clutchwork.results.energy import balance
 
         window = [e for e in self.events if self.time[0] <= e.time <= self.time[-1]]
@@ -164,7 +164,7 @@ class Trajectory(Exports):
         """
         from clutchwork.results.dependence import dependent_phases
 
-        return dependent_phases(self)
+        return dependent_phases(self) if len(self) else ()
 
     @cached_property
     def hints(self) -> Hints:
@@ -197,7 +197,7 @@ class Trajectory(Exports):
         ones are marked: True for all unless there are more than 30, False, contacts by name, or events of the run;
         lockup, the event to look at closely where nothing is named, by default the last one in which a contact locks;
         measured, samples by the name of the signal: (times [s], values in SI), a `Column`, or a pandas Series; units,
-        in which signals are drawn, {"*.speed": "rpm"}, as in `to_pandas`; each has a panel where nothing is named.
+        in which signals are drawn, `{"*.speed": "rpm"}`, as in `to_pandas`; each has a panel where nothing is named.
 
         The figure of matplotlib that it returns shows itself in a notebook. docs/guide/pictures.md
         """

@@ -46,7 +46,8 @@ def put(run: Any, system: System, state: State) -> None:
     except ValueError:
         run_time = f"the state of {shown(state.model)} at {state.time:g} s"
         raise StateError(f"{run_time} is damaged, or of another version of clutchwork: save it again") from None
-    if run.time != state.time or len(state.row) != 8 * run.row_size:
+    size = 8 * run.row_size
+    if run.time != state.time or len(state.row) != size or len(state.left) not in (0, size):
         raise StateError(f"the state of {shown(state.model)} at {state.time:g} s is damaged: save it again")
 
 
@@ -58,25 +59,37 @@ def choose(run: Any, options: Options) -> None:
 
 
 def state_of(
-    run: Any, system: System, outside: tuple[Mapping[str, float], Mapping[str, Any]], row: bytes | None = None
+    run: Any,
+    system: System,
+    outside: tuple[Mapping[str, float], Mapping[str, Any]],
+    row: bytes | None = None,
+    left: bytes = b"",
 ) -> State:
-    """The State of a run whose events were taken."""
+    """The State of a run whose events were taken.
+
+    Parameters: row, that of the present time where it is known; left, the one before what was set there.
+    """
     saved = run.save()
     if row is None:
-        row = np.asarray(row_of(run, system)).tobytes()
+        row = np.asarray(row_of(run)).tobytes()
     held, changed = outside
-    return State(run.time, system.name, fingerprint(system), saved, row, dict(held), dict(changed))
+    return State(run.time, system.name, fingerprint(system), saved, row, left, dict(held), dict(changed))
 
 
-def row_of(run: Any, system: System) -> Any:
-    """The output row at the present time; asking for it does not change what comes, to the last bit."""
-    if not np.any(system.arrays["massless"]):
-        return run.row()
-    # speeds without inertia are balanced anew whenever the core is called
+def row_of(run: Any) -> Any:
+    """The output row at the present time, as `seen` gives it."""
+    return seen(run)[0]
+
+
+def seen(run: Any) -> tuple[Any, Any]:
+    """The output row at the present time, and the events of what is decided for it, which the run has yet to do.
+
+    Nothing of it stays: what was set is decided once, by what comes after, however often it was looked at.
+    """
     saved = run.save()
-    row = run.row()
+    row, events = run.row(), run.events()
     run.restore(saved)
-    return row
+    return row, events
 
 
 def reach(run: Any, stop: float, at: float) -> int:

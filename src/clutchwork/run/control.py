@@ -78,23 +78,26 @@ class Control:
     log: dict[float, Settings] = field(default_factory=dict)
     held: Mapping[str, float] = field(default_factory=dict)  # from outside, since before the run
     changed: Mapping[str, Any] = field(default_factory=dict)
+    first: NDArray[np.float64] | None = None  # the row that controllers see where a run goes on from a state
 
-    def act(self, run: Any, time: float, number: int) -> bool:  # noqa: ARG002, the time says it
+    def act(self, run: Any, time: float, number: int) -> bool:
         """Set the inputs that are due; False when there is nothing to do."""
+        # what was set there is decided together with what controllers say
+        given = self.first if number == 0 else None
         if time not in self.log:
-            self.log[time] = self._decide(run, time)
-        elif self.log[time]:
+            self.log[time] = self._decide(run, time, given)
+        elif self.log[time] and given is None:
             # a repetition takes the same path through the core
             run.row()
         for index, value in self.log[time]:
             run.set_input(index, value)
         return bool(self.log[time])
 
-    def _decide(self, run: Any, time: float) -> Settings:
+    def _decide(self, run: Any, time: float, given: NDArray[np.float64] | None) -> Settings:
         due = [controller for controller in self.controllers if is_due(controller.period, time)]
         if not due:
             return []
-        readings = Readings(self.channels(), run.row())
+        readings = Readings(self.channels(), run.row() if given is None else given)
         return [(controller.index, controller.value(time, readings)) for controller in due]
 
     def stops(self, begin: float, t_end: float) -> Iterator[float]:

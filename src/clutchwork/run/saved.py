@@ -6,6 +6,7 @@ import json
 import warnings
 from collections.abc import Mapping
 from functools import partial
+from math import inf
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -21,7 +22,7 @@ from clutchwork.base.regular import reason
 from clutchwork.base.shown import listed, shortened
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES
-from clutchwork.declare.options import Options, end_time
+from clutchwork.declare.options import Options
 from clutchwork.declare.status import NAMES
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Event, Events
@@ -87,11 +88,14 @@ def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
 
 
 def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Trajectory:
-    times, rows, events, tape, head, core, row, *model = parts
-    system, options, end = _system(about, model, path), Options(**about["options"]), end_time(about["t_end"])
+    times, rows, events, tape, head, core, row, left, *model = parts
+    system, options, end = _system(about, model, path), Options(**about["options"]), _end(about["t_end"])
+    # one that was never stepped ends where it begins
+    if not options.t_start <= end < inf:
+        raise ValueError(f"t_end is {end:g} s, before it begins")
     controllers = tuple(map(str, about.get("controllers", ())))
     time = np.frombuffer(times, "<f8").astype(float)
-    start = State.of_parts(head, core, row) if head else None
+    start = State.of_parts(head, core, row, left) if head else None
     if start is not None:
         start.fits(system)
     job = Job(system, end, options, _course(system, tape, start), start)
@@ -108,6 +112,13 @@ def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Tra
         repeat=NoRepeat(controllers) if controllers else job.again,
         capture=NoRepeat(controllers) if controllers else job.state,
     )
+
+
+def _end(given: Any) -> float:
+    """The end of a run [s]; TypeError where it is no number."""
+    if isinstance(given, bool) or not isinstance(given, int | float):
+        raise TypeError("its t_end is no number")
+    return float(given)
 
 
 def _course(system: System, tape: bytes, start: State | None) -> Course:

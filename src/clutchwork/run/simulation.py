@@ -68,7 +68,13 @@ class Job:
     def again(self, times: Any) -> Trajectory:
         """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
         wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
-        return trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
+        with warnings.catch_warnings():
+            # whoever has the run was warned
+            warnings.simplefilter("ignore", StoppedEarly)
+            made = trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
+        if not made.finished and len(made) < len(wanted):
+            warnings.warn(StoppedEarly(made.message, made), stacklevel=caller())
+        return made
 
     def state(self, at: float) -> State:
         """Repeat it up to a time [s], and save what it is there."""
@@ -115,7 +121,8 @@ def simulate(
     end, chosen = merged(system.settings, given, options)
     refuse_endless(system.inputs, chosen.t_start, end, chosen.max_steps)
     held, changed = (start.held, start.changed) if start else ({}, {})
-    control = Control(controllers(system.inputs, held), partial(channels, system), held=held, changed=changed)
+    asked, first = controllers(system.inputs, held), start.before if start else None
+    control = Control(asked, partial(channels, system), held=held, changed=changed, first=first)
     asks = "(time, t_end)"
     with followed(progress, end, "simulate", asks, chosen.t_start, bar_format=MEASURED, unit="s") as told:
         run = trajectory(Job(system, end, chosen, control, start), told)
@@ -191,7 +198,7 @@ def _once(job: Job, grid: Array | None, progress: Told | None) -> tuple[Recordin
     run = begun(job.system, job.options, job.start)
     # what was stepped or goes on from a state is looked at without a trace
     plain = job.start is None and isinstance(job.course, Control)
-    recording = Recording(run, job.start is not None, None if plain else partial(row_of, run, job.system))
+    recording = Recording(run, job.start is not None, None if plain else partial(row_of, run))
     try:
         record(recording, job.t_end, grid, job.course, progress)
     except SimulationError as error:

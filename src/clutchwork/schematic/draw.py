@@ -85,5 +85,8 @@ def _problems(model: Model, path: Any, run: Any, at: Any) -> Any:
         return
     if not isinstance(at, Real) or isinstance(at, bool) or not isfinite(float(at)):
         yield f"at is {shown(at)}: give one time in s"
-    elif not run.time[0] <= float(at) <= run.time[-1]:
-        yield f"at is {float(at):g} s: the run goes from {run.time[0]:g} to {run.time[-1]:g} s"
+        return
+    # one that got to its end is repeated for any instant
+    begin, end = (run.options.t_start, run.t_end) if run.finished else (run.time[0], run.time[-1])
+    if not begin <= float(at) <= end:
+        yield f"at is {float(at):g} s: the run goes from {begin:g} to {end:g} s"

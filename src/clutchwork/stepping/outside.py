@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from clutchwork.base.errors import Problem
 from clutchwork.base.shown import shown
 from clutchwork.declare.quantity import has_unit
@@ -97,7 +99,7 @@ class Outside:
             faults = [unknown(self._base, name)] if known is None else list(self._faults(name, value, known))
             problems += faults
             if known is not None and not faults:
-                values[name] = in_si(known.aim, value) if has_unit(value) else value
+                values[name] = in_si(known.aim, value) if has_unit(value) else plain(value)
         change, found = changed(self._base, self._present, self.changed, values) if values else (None, [])
         if change is None or problems:
             return Plan([], problems + found)
@@ -136,3 +138,8 @@ class Outside:
                 problems.append(Problem(name, "", NOTHING, remedy=NEW_RUN))
             acts.append(Act("param", name, value, () if acts else tuple(change.params.items())))
         return Plan([] if problems else acts, problems, change.new)
+
+
+def plain(value: Any) -> Any:
+    """A number of numpy as one of Python, which a file of a state can hold; anything else as it is."""
+    return value.item() if isinstance(value, np.generic) else value

@@ -61,7 +61,11 @@ class Past:
     @property
     def events(self) -> Events:
         """What happened to the contacts."""
-        return self.named(np.concatenate([np.empty((0, len(EVENT))), *self.rows]))
+        return self.events_and(np.empty((0, len(EVENT))))
+
+    def events_and(self, more: Array) -> Events:
+        """The same, and rows that follow."""
+        return self.named(np.concatenate([np.empty((0, len(EVENT))), *self.rows, np.asarray(more)]))
 
     def named(self, rows: Array) -> Events:
         """Rows of the core as events."""

@@ -20,7 +20,7 @@ from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.declare.status import DONE, EVENTS_FULL
 from clutchwork.results.state import State, StateError
 from clutchwork.results.trajectory import SimulationError
-from clutchwork.run.begin import begun, choose, put, row_of, state_of
+from clutchwork.run.begin import begun, choose, put, seen, state_of
 from clutchwork.run.control import Controller, Readings, controllers, instants, is_due
 from clutchwork.run.failure import warn_of_faults
 from clutchwork.run.settings import without_end
@@ -53,6 +53,7 @@ class Simulator:
     _called: float  # s, when controllers were called last
     _failure: SimulationError | None  # why it cannot go on
     _left: Array | None  # row just before what is set now
+    _ahead: Array | None  # events of what was set, which the core does when it goes on; None: not looked yet
     _controllers: tuple[Controller, ...]
 
     @explained("cw.Simulator")
@@ -80,7 +81,7 @@ class Simulator:
         self._start = start
         self._begin(start, start)
         self._row()
-        self._origin, self._first_events = self.save(), list(self._past.rows)
+        self._origin = self.save()
 
     # ---------------------------------------------------------------------------------------------------- going on
 
@@ -131,7 +132,7 @@ class Simulator:
             self._take_events()
             status, more, raised = run.advance(stop, self._instant, rows, filled, 0)
             filled += more
-        self._untouched, self._stale = False, filled == 0
+        self._stale, self._ahead = filled == 0, None
         # what is set later does not change what a controller sees just before that time
         self._left = rows.copy() if self._sampled else None
         if run.pending:
@@ -144,7 +145,7 @@ class Simulator:
 
     def _stop(self, status: int, stop: float, raised: BaseException | None) -> None:
         """The core did not get there: say why, with the run so far. After Ctrl-C it can go on."""
-        self._time, self._stale = self._run.time, True
+        self._time, self._stale, self._ahead = self._run.time, True, None
         self._past.stepped(self._time if raised is not None else stop)
         if raised is not None:
             raise raised
@@ -240,10 +241,7 @@ class Simulator:
 
     def _done(self, kind: str, name: str, value: Any, numbers: Numbers) -> None:
         self._past.note(kind, name, value, numbers)
-        self._stale = True
-        if self._untouched:
-            # the start is decided anew
-            self._past.rows.clear()
+        self._stale, self._ahead = True, None
 
     def _find_controllers(self) -> None:
         self._controllers = controllers(self._system.inputs, self._outside.held) if self._sampled else ()
@@ -302,18 +300,18 @@ class Simulator:
         if self._stale:
             if self._failure is not None:
                 raise self._failure
-            rows[0] = row_of(self._run, self._system)
+            rows[0], self._ahead = seen(self._run)
             self._stale = False
-            if self._run.pending:
-                self._take_events()
         return rows
 
     @property
     def events(self) -> Events:
-        """What happened to the contacts so far."""
-        if self._stale and self._failure is None:
-            self._row()
-        return self._past.events
+        """What happened to the contacts so far, with what follows at once from what was set."""
+        if self._failure is not None:
+            return self._past.events
+        if self._ahead is None:
+            self._ahead = np.asarray(seen(self._run)[1])
+        return self._past.events_and(self._ahead)
 
     @property
     def run(self) -> Trajectory:
@@ -328,8 +326,9 @@ class Simulator:
         """The complete state at the present time, with all that was set from outside: to go on from it anywhere."""
         if self._failure is not None:
             raise SimulationError(f"there is nothing to save: {self._failure}", self._failure.trajectory)
-        row = self._row().tobytes()
-        state = state_of(self._run, self._system, (self._outside.held, self._outside.changed), row)
+        row, left = self._row().tobytes(), b"" if self._left is None else self._left.tobytes()
+        outside = self._outside.held, self._outside.changed
+        state = state_of(self._run, self._system, outside, row, b"" if left == row else left)
         self._past.mark(state)
         return state
 
@@ -359,7 +358,6 @@ class Simulator:
         """Go back to where the Simulator began, with nothing set from outside but what it began with."""
         put(self._run, self._system, self._origin)
         self._begin(self._origin, self._start)
-        self._past.rows += self._first_events
 
     def _begin(self, here: State | None, start: State | None) -> None:
         """Forget the past; `start` is what the run is repeated from."""
@@ -368,11 +366,10 @@ class Simulator:
 
     def _here(self, state: State | None) -> None:
         self._time, self._called, self._failure = self._run.time, -inf, None
-        counts = self._run.statistics()
-        self._untouched = counts["steps"] + counts["rejected"] == 0
-        self._stale, self._left = state is None, None
+        self._stale, self._left, self._ahead = state is None, None, None
         if state is not None:
             self._readout.rows[0] = state.values
+            self._left = state.before.reshape(1, -1).copy() if self._sampled else None
         self._find_controllers()
 
     def __reduce__(self) -> NoReturn:

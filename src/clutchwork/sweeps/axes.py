@@ -99,12 +99,21 @@ class Plan:
             except ModelError as error:
                 problems += error.problems
         if problems:
-            raise ModelError(problems[:MOST_PROBLEMS], base.name)
+            problems += [found for one in plan.bound for found in plan._wrong(one)]
+            raise ModelError(list(dict.fromkeys(problems))[:MOST_PROBLEMS], base.name)
         problems = list(islice(plan._together(), MOST_PROBLEMS))
         if problems:
             raise ModelError(problems, base.name)
         plan._part()
         return plan
+
+    def _wrong(self, one: Varied) -> Iterable[Problem]:
+        """What is wrong with the values of a name, each alone."""
+        for value in one.values:
+            try:
+                self.base.changed({one.name: value})
+            except ModelError as error:
+                yield from error.problems
 
     def _add(self, one: Varied) -> None:
         """A name as an axis of its own where it is one."""

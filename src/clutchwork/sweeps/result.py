@@ -228,7 +228,7 @@ class Sweep:
     def columns(self, names: Any = None) -> Iterator[tuple[str, Array]]:
         """Columns of a table with one line for each variant: values that vary, outputs, the status.
 
-        Parameters: names, outputs by name, or wildcards such as "*.heat", all by default.
+        Parameters: names, outputs by name, or wildcards such as `*.heat`, all by default.
         """
         picked = self._picked(names)
         for one in self.swept.variants.varied:
@@ -252,7 +252,7 @@ class Sweep:
     def to_pandas(self, names: Any = None) -> Any:
         """A pandas DataFrame with one line for each variant; `attrs["units"]` holds the units. Needs pandas.
 
-        Parameters: names, outputs by name, or wildcards such as "*.heat", all by default.
+        Parameters: names, outputs by name, or wildcards such as `*.heat`, all by default.
         """
         frame = need("pandas", "tables", "a table").DataFrame(dict(self.columns(names)))
         frame.attrs["units"] = self.units
@@ -265,7 +265,7 @@ class Sweep:
     def to_xarray(self, names: Any = None) -> Any:
         """An xarray Dataset over the axes of the grid, or over the variants, with units as attributes. Needs xarray.
 
-        Parameters: names, outputs by name, or wildcards such as "*.heat", all by default.
+        Parameters: names, outputs by name, or wildcards such as `*.heat`, all by default.
         """
         xarray, units, swept = need("xarray", "tables", "a Dataset"), self.units, self.swept
         grid = swept.variants.shape is not None and len(swept.variants.varied) > 0
@@ -285,7 +285,7 @@ class Sweep:
     def to_parquet(self, path: str | Path, names: Any = None) -> None:
         """Write the table of `to_pandas` as a Parquet file, with the units as metadata. Needs pyarrow.
 
-        Parameters: names, outputs by name, or wildcards such as "*.heat", all by default.
+        Parameters: names, outputs by name, or wildcards such as `*.heat`, all by default.
         """
         pyarrow = need("pyarrow", "exchange", "a Parquet file")
         table = pyarrow.table({name: pyarrow.array(column.tolist()) for name, column in self.columns(names)})
@@ -298,7 +298,7 @@ class Sweep:
     def to_csv(self, path: str | Path, names: Any = None) -> None:
         """Write the table with all digits; heads are `name [unit]` where there is one.
 
-        Parameters: names, outputs by name, or wildcards such as "*.heat", all by default.
+        Parameters: names, outputs by name, or wildcards such as `*.heat`, all by default.
         """
         units, table = self.units, dict(self.columns(names))
         heads = [f"{name} [{units[name]}]" if units.get(name) else name for name in table]

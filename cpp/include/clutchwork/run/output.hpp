@@ -163,10 +163,10 @@ bool fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row)
 
 /// Rows that divide the step up to s_end into equal parts, the last one at its end. `running`: all is well.
 template <class Form>
-Status emit_parts(Form& form, Step<Form>& step, double s_end, Sink& sink) {
+Status emit_parts(Form& form, Step<Form>& step, double s_end, double end, Sink& sink) {
   const std::int64_t size = form.ws.row.size, parts = s_end > 0 ? sink.steps : 1;
   for (std::int64_t k = 1; k <= parts; ++k) {
-    const double t = step.t + (k == parts ? s_end : s_end * double(k) / double(parts)) * step.h;
+    const double t = k == parts ? end : step.t + s_end * double(k) / double(parts) * step.h;
     // as a grid with this instant has it, but for the bare steps
     const double s = parts == 1 ? s_end : smaller(s_end, (t - step.t) / step.h);
     sink.times[sink.at] = t;
@@ -176,11 +176,11 @@ Status emit_parts(Form& form, Step<Form>& step, double s_end, Sink& sink) {
   return Status::running;
 }
 
-/// Rows that fall into the step up to s_end. At its very end at most one, the left limit. `running`: all is well.
+/// Rows that fall into the step up to s_end, which is the time `end`. At its very end at most one, the left limit.
+/// `running`: all is well.
 template <class Form>
-Status emit(Form& form, Step<Form>& step, double s_end, Sink& sink) {
-  if (sink.steps > 0) return emit_parts(form, step, s_end, sink);
-  const double end = step.t + s_end * step.h;
+Status emit(Form& form, Step<Form>& step, double s_end, double end, Sink& sink) {
+  if (sink.steps > 0) return emit_parts(form, step, s_end, end, sink);
   const std::int64_t size = form.ws.row.size;
   while (sink.at < sink.count && sink.times[sink.at] <= end) {
     const double t = sink.times[sink.at];
@@ -219,7 +219,7 @@ Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
     }
     return Status::running;
   }
-  return emit(form, step, 0.0, sink);
+  return emit(form, step, 0.0, step.t, sink);
 }
 
 /// Take the integrals over the step up to s into the state.

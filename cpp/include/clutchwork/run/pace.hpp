@@ -48,6 +48,9 @@ struct Pace {
   }
   CLUTCHWORK_INLINE double end_of_step() const { return cut_ ? stop_ : ws_.time + reach_; }
 
+  /// The time at a share of the step: at its end the same to the last bit as the run then has.
+  CLUTCHWORK_INLINE double time_at(double s) const { return s >= 1 ? end_of_step() : ws_.time + s * reach_; }
+
   /// A shorter step. False: it is too short.
   CLUTCHWORK_INLINE bool shorten() {
     ++ws_.statistics.rejected;
@@ -59,7 +62,7 @@ struct Pace {
 
   /// Whether rows fall into the step up to the share s.
   CLUTCHWORK_INLINE bool has_rows(double s) const {
-    const double end = ws_.time + s * reach_;
+    const double end = time_at(s);
     // where no time passes the row is there already
     return end > ws_.time && (sink_.steps > 0 || (sink_.at < sink_.count && sink_.times[sink_.at] <= end));
   }

@@ -27,7 +27,8 @@ class Phase : public Pace<typename Form::Scalar> {
   using T = typename Form::Scalar;
   using Base = Pace<T>;
   using Base::landings_, Base::rejected_, Base::cut_, Base::over_, Base::status_;
-  using Base::what_is_spent, Base::plan_step, Base::end_of_step, Base::shorten, Base::has_rows, Base::move_on;
+  using Base::what_is_spent, Base::plan_step, Base::end_of_step, Base::time_at, Base::shorten, Base::has_rows,
+      Base::move_on;
   using Base::ws_, Base::sink_, Base::t_end_, Base::h_, Base::reach_, Base::stop_, Base::error_, Base::before_;
   // a step may be repeated so often to end on an event
   static constexpr int most_landings = 4;
@@ -194,7 +195,7 @@ class Phase : public Pace<typename Form::Scalar> {
     if (!(rows || ws_.options.work || ws_.options.angles) || s <= 0) return true;
     if (!step_.dense) Integrator::prepare_dense(form_, step_);
     if (ws_.options.work) fit_power(form_, step_, s);
-    const Status shown = rows ? emit(form_, step_, s, sink_) : Status::running;
+    const Status shown = rows ? emit(form_, step_, s, time_at(s), sink_) : Status::running;
     if (shown != Status::running) {
       leave(shown);
       return false;

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 class Exports:
     """Ways out of a run. All take the same choice of signals and instants.
 
-    Parameters: names, signals by name, or wildcards such as "c1.*" and "*.speed", all by default; dt, distance of the
+    Parameters: names, signals by name, or wildcards such as `c1.*` and `*.speed`, all by default; dt, distance of the
     instants [s], or times, the instants [s], all of the run by default. Other instants are computed, as by `at`, not
-    interpolated. units, other ones than those of SI by signal, `*` for any characters: {"engine.speed": "rpm",
-    "*.pressure": "bar", "time": "ms"}; events stay in SI. UnknownName, a KeyError, lists all names that mean nothing,
+    interpolated. units, other ones than those of SI by signal, `*` for any characters: `{"engine.speed": "rpm",
+    "*.pressure": "bar", "time": "ms"}`; events stay in SI. UnknownName, a KeyError, lists all names that mean nothing,
     with near ones; UseError all units that do not fit.
     """
 

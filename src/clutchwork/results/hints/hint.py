@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import field
+from math import ceil, floor, log10
 from typing import Any
 
 from clutchwork.base import html
@@ -75,6 +76,12 @@ class Hints(tuple[Hint, ...]):
 def shown(value: float, unit: str) -> str:
     """A number of a message with its unit."""
     return f"{value:.4g} {unit}".removesuffix(" 1")
+
+
+def more_than(factor: float) -> str:
+    """A factor above 0 in three digits that is not below it, but for round-off."""
+    place = 10.0 ** (2 - floor(log10(factor)))
+    return f"{ceil(factor * place * (1.0 - 1e-9)) / place:.4g}"
 
 
 def together(names: Iterable[str]) -> str:

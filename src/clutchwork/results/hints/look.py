@@ -44,9 +44,13 @@ class Look:
 
     @classmethod
     def at(cls, run: Recorded) -> Look:
-        """Look at a run; where its output has instants of its own it is repeated, unless it stopped early."""
+        """Look at a run; where its output has instants of its own it is repeated, unless it stopped early.
+
+        One from a file that does not hold all that it was made with is looked at as it is.
+        """
         own = run.options.dt is not None or run.options.times is not None or run.options.output == "steps"
-        return cls(run, run.at(_instants(run)) if own and run.finished else run)
+        lacks = hasattr(run.repeat, "controllers")
+        return cls(run, run.at(_instants(run)) if own and run.finished and not lacks else run)
 
     @property
     def system(self) -> System:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.results.hints.hint import Hint, shown
+from clutchwork.results.hints.hint import Hint, more_than, shown
 from clutchwork.results.hints.registry import run_rule
 from clutchwork.results.hints.rules.never_locks import never_locks
 from clutchwork.results.hints.slipping import FullSlip, full_slips, pressed
@@ -47,7 +47,8 @@ def _hint(slip: FullSlip, times: int) -> Hint:
         f" {shown(slip.kinetic, torque)} while it slips and breaks away at {shown(slip.capacity, torque)}; it burns"
         f" {shown(slip.heat, 'J')}{more}"
     )
-    remedy = f"give it more than {slip.needed / slip.kinetic:.3g} times the load, gain or coefficient, or less to hold"
+    factor = more_than(slip.needed / slip.kinetic)
+    remedy = f"give it more than {factor} times the load, gain or coefficient, or less to hold"
     numbers = {
         f"needed [{torque}]": slip.needed,
         f"slipping torque [{torque}]": slip.kinetic,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.assembly.wiring import HOUSING
-from clutchwork.results.hints.hint import Hint, shown
+from clutchwork.results.hints.hint import Hint, more_than, shown
 from clutchwork.results.hints.registry import run_rule
 from clutchwork.results.hints.slipping import FullSlip, full_slips, pressed
 
@@ -50,8 +50,8 @@ def _too_weak(look: Look, slip: FullSlip) -> Hint:
         f" while it slips, and {shown(slip.needed, torque)} would just keep its slip from growing, which is"
         f" {shown(slip.after, speed)} at {slip.end:.4g} s and nowhere below {shown(nearest, speed)}"
     )
-    factor = slip.needed / slip.kinetic
-    remedy = f"give it more than {factor:.3g} times the pressure, gain or coefficient, or a lower load"
+    factor = more_than(slip.needed / slip.kinetic)
+    remedy = f"give it more than {factor} times the pressure, gain or coefficient, or a lower load"
     return Hint(NAME, (name,), message, remedy, _numbers(slip), slip.begin, slip.end)
 
 
