@@ -10,6 +10,7 @@ import matplotlib as mpl
 
 mpl.use("agg")
 import clutchwork as cw
+from clutchwork.face.laws import parts as law_parts
 
 PAGE = Path(__file__).resolve().parents[1] / "guide" / "pictures.md"
 WRITTEN = ("launch.png", "named.png", "zoom.svg", "compare.png")
@@ -26,5 +27,7 @@ def write(folder: Path) -> list[Path]:
     with contextlib.chdir(folder):
         exec("\n".join(programs), {})
     law = cw.Stribeck(static=0.14, kinetic=0.1, speed=15.0)
-    (folder / "law.png").write_bytes(law._repr_mimebundle_()["image/png"])
+    drawn, _ = law_parts(law)
+    assert drawn is not None
+    (folder / "law.png").write_bytes(drawn.png())
     return [folder / name for name in (*WRITTEN, "law.png")]

@@ -115,3 +115,10 @@ def test_mistakes(discs: cw.Trajectory, given: list[Any], named: dict[str, Any],
         discs.explore(*given, **named)
     with pytest.raises(cw.UnknownName, match=r"did you mean 'c1\.torque'"):
         discs.explore("c1.torqe")
+
+
+def test_curves_keep_their_corners(six_speed: cw.Trajectory) -> None:
+    """Plotly would leave out points of a line, which are seen as a polygon when somebody zooms."""
+    lines = [trace for trace in six_speed.explore("F1.torque", "*.speed", "F1.state").data if trace.type == "scatter"]
+    assert lines
+    assert all(trace.line.simplify is False for trace in lines if trace.mode == "lines")

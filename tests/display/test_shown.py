@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import itertools
 import re
 import subprocess
@@ -15,9 +16,11 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.base import html
+from clutchwork.command import report
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.face.laws import curves
 from clutchwork.results.plot.signals import curve
+from clutchwork.results.ratios import phases
 from clutchwork.signals.bases.waveform import value
 from support import samples
 
@@ -49,6 +52,13 @@ def shown(thing: Any) -> Texts:
     if hasattr(type(thing), "_repr_mimebundle_"):
         return Texts(thing._repr_mimebundle_()["text/html"])
     return Texts(thing._repr_html_())
+
+
+def picture(bundle: dict[str, Any]) -> bytes:
+    """The only picture of a bundle, which is inside of its page."""
+    assert set(bundle) == {"text/plain", "text/html"}
+    _, found = bundle["text/html"].split("data:image/png;base64,")
+    return base64.b64decode(found.partition('"')[0])
 
 
 @pytest.mark.parametrize("name", ["<script>", "a & b", '"quoted"', "$x$", "größe", "_a"])
@@ -105,7 +115,7 @@ def test_a_sweep_shows_its_first_lines() -> None:
 def test_every_law_shows_its_curve_and_parameters(kind: str) -> None:
     law = samples.law(REGISTRY[Role.LAW][kind])
     bundle = law._repr_mimebundle_()
-    assert bundle["image/png"].startswith(b"\x89PNG")
+    assert picture(bundle).startswith(b"\x89PNG")
     assert bundle["text/plain"] == repr(law)
     texts = Texts(bundle["text/html"]).texts
     assert [item.name for item, _ in specs(type(law)) if item.name not in texts] == []
@@ -153,7 +163,7 @@ def test_the_curve_of_a_signal_is_its_values(kind: str) -> None:
     exact = np.array([value(signal, t) for t in middle[wide].tolist()])
     # a wave bends between two of 400 points by less than a thousandth of its height
     np.testing.assert_allclose(between, exact, atol=1e-3 * float(np.max(np.abs(values))))
-    assert signal._repr_mimebundle_()["image/png"].startswith(b"\x89PNG")
+    assert picture(signal._repr_mimebundle_()).startswith(b"\x89PNG")
 
 
 def test_signals_of_files_and_of_functions(tmp_path: Path) -> None:
@@ -163,10 +173,10 @@ def test_signals_of_files_and_of_functions(tmp_path: Path) -> None:
     assert found is not None
     assert found[0].tolist() == pytest.approx([0.0, 0.5, 1.0, 1.0, 1.05])
     assert found[1].tolist() == pytest.approx([1e5, 1e5, 2e5, 3e5, 3e5])
-    assert "image/png" in column._repr_mimebundle_()
+    assert picture(column._repr_mimebundle_()).startswith(b"\x89PNG")
     for bad in (cw.Column("missing.csv", "p"), cw.Sampled(print, 0.1), cw.Pulse(height=1.0, period=0.1, width=0.2)):
         bundle = bad._repr_mimebundle_()
-        assert "image/png" not in bundle
+        assert "image/png" not in "".join([*bundle, bundle["text/html"]])
         assert bundle["text/plain"] == repr(bad)
     assert "missing.csv" in cw.Column("missing.csv", "p")._repr_mimebundle_()["text/html"]
 
@@ -235,3 +245,21 @@ def test_without_packages_there_are_words() -> None:
         "explore needs plotly: pip install 'clutchwork[interactive]'",
         "progress=True needs tqdm: pip install 'clutchwork[notebook]'",
     ], done.stderr
+
+
+def test_a_ratio_of_springs_is_not_called_one_of_gears() -> None:
+    """Two shafts on a spring have one speed where the spring does not twist; no gear is there that could say so."""
+    d = cw.Driveline("torsion")
+    a, b = d.shaft("engine", inertia=1.0, speed=5.0), d.shaft("vehicle", inertia=1.0)
+    d.add(cw.Torque("drive", shaft=a, torque=1.0))
+    d.add(cw.SpringDamper("half_shaft", base=a, follower=b, stiffness=100.0, damping=1.0))
+    d.add(cw.Torque("road", shaft=b, torque=-1.0))
+    run = d.simulate(0.1)
+    text = report.run_text(run, phases(run, ("engine", "vehicle")), ("engine", "vehicle"))
+    assert "engine/vehicle with rigid springs" in text
+    assert "by gears" not in text
+    assert "engine/vehicle with rigid springs" in report.model_text(run.system, ("engine", "vehicle"))
+    assert "engine/vehicle with rigid springs" in " ".join(shown(run.system).texts)
+    d.add(cw.Gear("gear", input=a, output=d.shaft("third"), ratio=2.0))
+    geared = d.simulate(0.1)
+    assert "engine/third by gears" in report.run_text(geared, phases(geared, ("engine", "third")), ("engine", "third"))

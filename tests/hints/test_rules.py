@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 import clutchwork as cw
+from clutchwork.results.hints.hint import Hint
 from clutchwork.results.hints.registry import rules
-from support.hint_models import CASES, hill, juddering, launch, shift, warm
+from support.hint_models import CASES, hill, juddering, launch, racing, shift, warm
 
 NAMES = sorted(CASES)
 
@@ -150,6 +151,39 @@ def test_the_temperature_that_leaves_the_table() -> None:
     (hint,) = warm(400.0).simulate(30.0).hints
     assert hint.numbers["temperature [K]"] == pytest.approx(300.0 + 7.5 * 30.0, rel=1e-6)
     assert hint.begin == pytest.approx(110.0 / 7.5, abs=0.04)
+
+
+def outside(run: cw.Trajectory) -> list[Hint]:
+    """Hints of that rule alone."""
+    return [hint for hint in run.hints if hint.rule == "outside its table"]
+
+
+def test_the_speed_that_leaves_the_table() -> None:
+    """100 N m on 0.5 kg m2 add 200 rad/s2 to 100 rad/s; the table ends at 400 rad/s, its tenth more at 440 rad/s."""
+    run = racing(400.0).simulate(3.0)
+    (hint,) = outside(run)
+    assert hint.elements == ("ice",)
+    assert hint.numbers["speed [rad/s]"] == pytest.approx(700.0, rel=1e-9)
+    # an instant of the output later at most
+    assert hint.begin == pytest.approx(340.0 / 200.0, abs=2.0 * 3.0 / 1000.0)
+    assert hint.end == 3.0
+    assert "turns at up to 700 rad/s" in str(hint)
+    assert "ends at 400 rad/s, where it goes on in a straight line" in str(hint)
+    assert outside(racing(700.0).simulate(3.0)) == []
+    # one that is switched off says nothing
+    off = racing(1.0, gain=0.0).simulate(3.0)
+    assert off["engine.speed"][-1] > 10.0
+    assert outside(off) == []
+
+
+def test_a_force_over_speed_leaves_its_table_too() -> None:
+    d = cw.Driveline("sledge")
+    body = d.mass("body", mass=10.0, speed=-5.0)
+    d.add(cw.SpeedTorque("push", shaft=body, torque=[(0.0, 1.0), (2.0, 1.0)]))
+    (hint,) = outside(d.simulate(1.0))
+    assert hint.numbers["speed [m/s]"] == pytest.approx(-5.0)
+    assert "moves at up to -5 m/s" in str(hint)
+    assert "table of forces ends at 0 m/s" in str(hint)
 
 
 def test_the_temperature_that_no_lining_stands() -> None:

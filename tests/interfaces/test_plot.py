@@ -81,3 +81,15 @@ def test_spans_of_locked_phases() -> None:
 def test_matplotlib_is_imported_when_a_picture_is_drawn() -> None:
     code = "import sys, clutchwork.results.trajectory, clutchwork.results.plot; assert 'matplotlib' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_the_letter_of_the_frame_stays_in_its_panel(run: cw.Trajectory) -> None:
+    """Also where the lock-up is at the end of the run, so that the frame ends at the edge."""
+    lock = next(event for event in run.events if event.after == "locked")
+    for end in (float(run.time[-1]), lock.time + 1e-3):
+        figure = cw.simulate(run.system, end).plot()
+        figure.canvas.draw()
+        letters = [text for axes in figure.axes[:1] for text in axes.texts if text.get_text() in ("b", "c")]
+        assert letters
+        for text in letters:
+            assert text.get_window_extent().x1 <= figure.axes[0].get_window_extent().x1

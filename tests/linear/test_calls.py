@@ -293,6 +293,37 @@ def test_a_run_from_a_file_is_repeated_and_one_with_controllers_says_that_it_can
         cw.linearise(cw.load_run(tmp_path / "other.cw"), at=0.05)
 
 
+def engine_and_clutch() -> cw.Driveline:
+    d = cw.Driveline("car")
+    engine, car = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("car", inertia=2.0)
+    d.add(cw.SpeedTorque("ice", shaft=engine, torque=[(0.0, 50.0), (300.0, 100.0)]))
+    disk = {"surfaces": 2, "radius": 0.12, "normal_force": 2000.0}
+    d.add(cw.DiskClutch("clutch", base=engine, follower=car, friction=cw.Coulomb(static=0.3, kinetic=0.28), **disk))
+    d.add(cw.QuadraticTorque("rolling", shaft=car, nominal_torque=-50.0, nominal_speed=200.0))
+    return d
+
+
+def test_signals_that_nobody_gave_are_no_inputs_unless_they_are_named():
+    d = engine_and_clutch()
+    given = cw.linearise(d).inputs
+    assert set(given) <= set(d.simulate(0.01).names)
+    assert given == cw.linearise(d, inputs="*").inputs
+    assert "clutch.wear" not in given
+    assert cw.linearise(d, inputs=["clutch.wear"]).inputs == ("clutch.wear",)
+
+
+def test_a_result_that_is_asked_for_as_an_input_is_told_as_one():
+    with pytest.raises(cw.UseError) as caught:
+        cw.linearise(engine_and_clutch(), inputs=["ice.torque", "car.speed"])
+    torque, speed = caught.value.problems
+    assert torque == (
+        "inputs: 'ice.torque' is a result, which follows from the motion and the signals; inputs are"
+        " clutch.normal_force; a cw.Torque of 0 N m at a shaft of 'ice' makes an input for a torque there"
+    )
+    assert "'car.speed' is a result" in speed
+    assert "cw.Torque" not in speed
+
+
 def test_the_start_is_where_runs_of_the_model_begin(tmp_path, capsys):
     """With t_start in its settings a model starts there, with signals and controllers of that time."""
     d = launch()

@@ -202,3 +202,10 @@ def test_dimension():
     assert parse("N m s/rad").powers == parse("kg m2/s/rad").powers
     assert split("  7.5e-3 kg m2 ") == (7.5e-3, "kg m2")
     assert split("kg") is None
+
+
+def test_a_unit_of_one_quantity_is_listed_with_that_alone():
+    """N s/m and kg/s are one by their powers; damping and mass flow are not."""
+    named = {(row.quantity, row.name) for row in unit_table()}
+    assert {("damping", "N s/m"), ("mass flow", "kg/s")} <= named
+    assert not {("mass flow", "N s/m"), ("damping", "kg/s")} & named

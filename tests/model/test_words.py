@@ -114,3 +114,32 @@ def test_a_constant_load_below_zero_is_warned_of(cls: type, name: str) -> None:
     for load, warned in ((-1.0, True), (cw.Constant(-1.0), True), (0.0, False), (None, False), (dips, False)):
         advice = [str(one) for one in component_advice(replace(element, **{name: load}))]
         assert any(f": {name} = -1" in one and "never presses" in one for one in advice) == warned, (load, advice)
+
+
+def test_a_system_counts_in_the_words_of_its_driveline() -> None:
+    d = cw.Driveline("two discs")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.Clutch("c1", base=a, follower=b, gain=0.1, normal_force=1.0, friction=cw.Coulomb(static=0.2, kinetic=0.2)))
+    system = d.assemble()
+    same = "2 shafts and masses, 0 thermal nodes, 1 element"
+    assert repr(d) == f"<Driveline 'two discs': {same}>"
+    own = "2 independent speeds, 0 torque elements, 1 contact, 1 input"
+    assert repr(system) == f"<System 'two discs': {same}, {own}>"
+    assert repr(cw.System.from_bytes(system.to_bytes())) == f"<System 'system': 2 shafts and masses, {own}>"
+
+
+def test_a_cell_that_was_run_again_is_told_as_the_likely_cause() -> None:
+    d = cw.Driveline("car")
+    d.shaft("engine", inertia=1.0)
+    d.shaft("engine", inertia=1.0)
+    d.mass("housing", mass=1.0)
+    twice, taken = d.check()
+    assert "where a cell of a notebook was run again, make the driveline anew in it" in str(twice)
+    assert "notebook" not in str(taken)
+
+
+def test_shafts_and_masses_are_nodes_by_their_domain() -> None:
+    d = cw.Driveline("car")
+    wheel, body, engine = d.shaft("wheel"), d.mass("body", mass=1.0), d.shaft("engine", inertia=1.0)
+    assert d.nodes == (wheel, body, engine)
+    assert (d.shafts, d.masses) == ((wheel, engine), (body,))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -11,9 +12,11 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.declare.schema import inputs, specs
+from clutchwork.model.changes import all_names
 from support import samples
 from support.random_drivelines import describe
 
+QUOTED = re.compile(r"'([^']+)'")
 ELEMENTS = samples.declared(*samples.ELEMENT_ROLES)
 
 
@@ -260,6 +263,51 @@ def test_parameters_are_part_of_a_state() -> None:
         one.advance(0.3)
     assert sim.save().row == other.save().row
     assert sim.held == other.held == {}
+
+
+@pytest.mark.parametrize("cls", ELEMENTS, ids=lambda cls: cls.kind)
+def test_a_result_is_told_as_one_and_every_name_of_an_advice_is_known(cls: Any) -> None:
+    """What follows from the motion is none that could be set; what is said to be settable is known."""
+    sim = simulator(cls)
+    source = sim._system.source
+    changeable = set(all_names(source))
+    results = set(sim.run.names) - changeable - set(sim._outside.signals) - {link.name for link in sim._system.links}
+    assert results
+    for name in results:
+        (problem,) = problems(sim, name, 1.0)
+        if name.removesuffix("_signal") in set(sim._outside.signals) - {name}:
+            assert problem.remedy == f"set {name.removesuffix('_signal')!r}"
+            continue
+        assert problem.message.startswith("is a result, which follows from the motion"), name
+        assert "did you mean" not in problem.message
+        unknown = set(QUOTED.findall(problem.message.partition("what can be set of ")[2])[1:])
+        assert unknown <= changeable | set(sim._outside.signals), name
+        with pytest.raises(cw.ModelError) as caught:
+            sim._system.changed({name: 1.0})
+        advice = caught.value.problems[0].message.partition("what can be set of ")[2]
+        assert set(QUOTED.findall(advice)[1:]) <= changeable
+
+
+def test_what_of_a_clutch_can_be_set_is_named() -> None:
+    d = cw.Driveline("pair")
+    a, b = d.shaft("a", inertia=1.0, speed=5.0), d.shaft("b", inertia=1.0)
+    d.add(cw.Clutch("F1", base=a, follower=b, pressure=0.0, gain=1e-4, friction=cw.Coulomb(static=0.3, kinetic=0.2)))
+    d.add(cw.Torque("load", shaft=b, torque=1.0))
+    names = "what can be set of 'F1': 'F1.pressure', 'F1.friction', 'F1.gain'"
+    (problem,) = problems(cw.Simulator(d), "F1.torque", 3.0)
+    assert problem.message.startswith("is a result")
+    assert names in problem.message
+    with pytest.raises(cw.ModelError) as caught:
+        d.assemble().changed({"F1.slip": 3.0})
+    assert names in str(caught.value)
+    assert "results, which follow from the motion" in str(caught.value)
+    for wrong, right in (
+        ("F1.presure", "F1.pressure"),
+        ("F2.gain", "F1.gain"),
+        ("F1.friction.kinetc", "F1.friction.k"),
+    ):
+        (problem,) = problems(cw.Simulator(d), wrong, 1.0)
+        assert f"did you mean '{right}" in problem.message
 
 
 @pytest.mark.parametrize("value", [np.float32(3e-4), np.float64(3e-4), np.int64(1)])

@@ -123,6 +123,14 @@ def warm(last: float, friction: cw.Law | None = None, capacity: float = 200.0) -
     return d
 
 
+def racing(last: float, gain: float = 1.0) -> cw.Driveline:
+    """An engine of 100 N m at 0 to the last speed [rad/s] of its table, which turns 0.5 kg m2 from 100 rad/s on."""
+    d = cw.Driveline("racing")
+    shaft = d.shaft("engine", inertia=0.5, speed=100.0)
+    d.add(cw.SpeedTorque("ice", shaft=shaft, torque=[(0.0, 100.0), (last, 100.0)], gain=gain))
+    return d
+
+
 def juddering(damping: float) -> cw.Driveline:
     """A clutch that slips with 50 rad/s, where its torque falls by 0.4852 N m s/rad, on a spring with a damping."""
     d = cw.Driveline("judder")

@@ -22,6 +22,7 @@ from clutchwork.assembly.sparse import dense, entries
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelError, UseError, near, warn
 from clutchwork.base.shown import shortened, shown
+from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE
@@ -76,8 +77,13 @@ class System:
     wanted: tuple[str, ...] = ()  # names of the independent speeds where they were asked for
 
     def __repr__(self) -> str:
-        sizes = {name: self.counts[name] for name in ("nodes", "speeds", "elements", "contacts", "inputs")}
-        return f"<System {self.name!r}: {', '.join(f'{size} {name}' for name, size in sizes.items())}>"
+        sizes = {"shafts and masses": self.counts["nodes"]}
+        if self.source is not None:
+            # as a Driveline says it
+            sizes |= {"thermal nodes": len(self.source.thermal), "elements": len(self.source.elements)}
+        parts = {"independent speeds": "speeds", "torque elements": "elements", "contacts": "contacts"}
+        sizes |= {words: self.counts[name] for words, name in parts.items()} | {"inputs": self.counts["inputs"]}
+        return f"<System {shown(self.name)}: {', '.join(counted(size, words) for words, size in sizes.items())}>"
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         from clutchwork.base.rich import bundle

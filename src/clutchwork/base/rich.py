@@ -30,7 +30,11 @@ class Drawn(Protocol):
 
 
 def bundle(thing: object, kind: str) -> dict[str, Any]:
-    """What a notebook may choose from: plain text, a page with picture and tables, the picture alone."""
+    """What a notebook may choose from: plain text, and a page with tables and picture.
+
+    A notebook shows the richest alone, the page, so the picture is in that and, lest the file doubles, nowhere else;
+    it stands by itself where there are no tables.
+    """
     from clutchwork.base.html import image, page
 
     module, _, name = SHOWN_BY[kind].partition(":")
@@ -39,6 +43,7 @@ def bundle(thing: object, kind: str) -> dict[str, Any]:
     shown = list(tables)
     if drawn is not None:
         png = drawn.png()
-        made["image/png"] = png
+        if not shown:
+            return made | {"image/png": png}
         shown.append(image(png, drawn.width))
     return made | ({"text/html": page(*shown)} if shown else {})

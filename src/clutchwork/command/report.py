@@ -15,7 +15,7 @@ from clutchwork.model.changes import all_names, targets_of
 from clutchwork.results.channels import channels
 from clutchwork.results.hints.registry import of_model
 from clutchwork.results.overview import number, sizes
-from clutchwork.results.ratios import Gears, Phase, gears
+from clutchwork.results.ratios import Gears, Phase, follows_from, gears, head_of
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -34,8 +34,9 @@ def run_text(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
         return "nothing was computed"
     parts = [event_text(run.events)]
     if phases and shafts is not None:
-        parts.append(phase_text(phases, shafts))
-        parts += change_text(phases, shafts)
+        why = follows_from(run.system)
+        parts.append(phase_text(phases, shafts, why))
+        parts += change_text(phases, shafts, why)
     parts += dependent_text(run)
     if run.options.work:
         parts.append(str(run.energy))
@@ -50,9 +51,12 @@ def event_text(events: Events) -> str:
     return text + (f"\n... and {len(events) - MOST_LINES} more" if len(events) > MOST_LINES else "")
 
 
-def phase_text(phases: Sequence[Phase], shafts: tuple[str, str]) -> str:
-    """Which contacts were locked when, and the ratio that they gave."""
-    head = ("from s", "to s", "locked", f"{shafts[0]}/{shafts[1]} by gears", "at the end")
+def phase_text(phases: Sequence[Phase], shafts: tuple[str, str], why: str) -> str:
+    """Which contacts were locked when, and the ratio that they gave.
+
+    Parameters: why, what the ratio follows from.
+    """
+    head = ("from s", "to s", "locked", f"{shafts[0]}/{shafts[1]} {why}", "at the end")
     lines = [
         (f"{p.begin:.6f}", f"{p.end:.6f}", " ".join(p.closed) or "-", number(p.kinematic), number(p.measured))
         for p in phases[:MOST_LINES]
@@ -60,14 +64,14 @@ def phase_text(phases: Sequence[Phase], shafts: tuple[str, str]) -> str:
     return columns([head, *lines], right={0, 1, 3, 4})
 
 
-def change_text(phases: Sequence[Phase], shafts: tuple[str, str]) -> list[str]:
+def change_text(phases: Sequence[Phase], shafts: tuple[str, str], why: str) -> list[str]:
     """The ratio of the first and of the last gear, when there are two."""
     known = [phase for phase in phases if phase.kinematic is not None and math.isfinite(phase.kinematic)]
     if len(known) < 2:
         return []
     gears, seen = ([number(getattr(known[k], name)) for k in (0, -1)] for name in ("kinematic", "measured"))
     ratio = f"ratio {shafts[0]}/{shafts[1]}"
-    return [f"{ratio} before and after: {' -> '.join(seen)} at the ends of the phases, {' -> '.join(gears)} by gears"]
+    return [f"{ratio} before and after: {' -> '.join(seen)} at the ends of the phases, {' -> '.join(gears)} {why}"]
 
 
 def dependent_text(run: Trajectory) -> list[str]:
@@ -133,7 +137,7 @@ def model_text(system: System, shafts: tuple[str, str] | None) -> str:
     found = gears(system, shafts)
     lines = [(" ".join(closed) or "-", number(value)) for closed, value in found.ratios]
     if lines:
-        table = columns([("closed", f"{shafts[0]}/{shafts[1]}"), *lines], right={1}).split("\n")
+        table = columns([("closed", head_of(system, shafts)), *lines], right={1}).split("\n")
         parts.append("\n".join([table[0], *_first(table[1:])]))
     if found.untried is not None:
         parts.append(f"not tried: {found.untried} or more contacts closed at once, there are too many combinations")

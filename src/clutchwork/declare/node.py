@@ -37,7 +37,7 @@ class Domain(Enum):
     TRANSLATION = "translation"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Node:
     """A shaft, a mass or the housing, as `Driveline.shaft`, `.mass` and `.housing` hand it out.
 
@@ -63,6 +63,11 @@ class Node:
         for name, unit in zip(PLACES, NODE_UNITS[self.domain], strict=True):
             values[name] = given.Wanted(unit).number(values[name])
 
+    def __repr__(self) -> str:
+        from clutchwork.declare.described import node
+
+        return node(self)
+
     def __reduce__(self) -> str | tuple[Any, ...]:
         # there is one housing, copies included
         if self is HOUSING:
@@ -75,7 +80,7 @@ NODE_UNITS = {Domain.ROTATION: ("kg m2", "rad/s", "rad"), Domain.TRANSLATION: ("
 HOUSING = Node("housing", fixed=True)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ThermalNode:
     """A mass that holds heat, or an ambient of given temperature, as `Driveline.thermal` and `.ambient` hand it out.
 
@@ -97,6 +102,11 @@ class ThermalNode:
         values["capacity"] = given.Wanted("J/K").number(values["capacity"])
         values["temperature"] = given.driving(given.Wanted("K").number(values["temperature"]), "K")
         values["limit"] = given.Wanted("K").number(values["limit"])
+
+    def __repr__(self) -> str:
+        from clutchwork.declare.described import thermal_node
+
+        return thermal_node(self)
 
 
 PLAIN |= {Node, ThermalNode, Domain}
@@ -144,12 +154,17 @@ class Declared(metaclass=Listed):
         """Values with units are put into SI."""
         given.accept(self)
 
+    def __repr__(self) -> str:
+        from clutchwork.declare.described import called
+
+        return called(self)
+
     def __dir__(self) -> list[str]:
         known: Any = self
         return [*(item.name for item in fields(known) if item.repr), *dir(type(self))]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Element(Declared):
     """An element with a name that is its path in results and errors, as its users see it.
 
@@ -159,8 +174,13 @@ class Element(Declared):
 
     name: str
 
+    def __repr__(self) -> str:
+        from clutchwork.declare.described import element
 
-@dataclass(frozen=True)
+        return element(self)
+
+
+@dataclass(frozen=True, repr=False)
 class Component(Element):
     """An element as its authors see it: what it is to the engine, by class variables and methods.
 
@@ -241,7 +261,7 @@ class Component(Element):
         return ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Law(Declared):
     """A friction law; it has no name of its own.
 
@@ -320,7 +340,7 @@ class Sampling(NamedTuple):
     function: Callable[[float, Mapping[str, float]], float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Signal(Declared):
     """A value over time in the unit of the quantity that it drives."""
 

@@ -261,7 +261,7 @@ def _check_work(cls: Any) -> None:
 )
 def family(cls: C) -> C:
     """Freeze fields that several declarations share, as a base that is itself none."""
-    frozen: Any = dataclass(frozen=True)(cls)
+    frozen: Any = dataclass(frozen=True, repr=False)(cls)
     return frozen  # type: ignore[no-any-return]
 
 
@@ -286,7 +286,7 @@ def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, .
     """Freeze a declaration, register it under its kind, the stem of its module; `hooks`: clutchwork.declare.hooks."""
 
     def register(cls: C) -> C:
-        frozen: Any = dataclass(frozen=True)(cls)
+        frozen: Any = dataclass(frozen=True, repr=False)(cls)
         kind = cls.__module__.rpartition(".")[2]
         wrong = hook_problems(role.value, hooks)
         if wrong:

@@ -57,6 +57,9 @@ def _measures(name: str, quantity: Quantity) -> bool:
     if name in turns:
         return quantity.unit == "rad/s"
     torque = name in ("N m", "Nm", "mNm", "kNm", "lbf ft")
+    # a force per speed is no mass flow, though it has the powers of one, and the other way round
+    if name != quantity.unit and name in (other.unit for other in QUANTITIES):
+        return False
     if powers_of(name) == powers_of("J"):
         return quantity.unit == ("N m" if torque else "J")
     return powers_of(name) == powers_of(quantity.unit)

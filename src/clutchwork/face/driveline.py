@@ -73,6 +73,16 @@ class Driveline:
         return tuple(self._model.nodes)
 
     @property
+    def shafts(self) -> tuple[Node, ...]:
+        """Shafts alone, in the order in which they were added."""
+        return tuple(node for node in self.nodes if node.domain is Domain.ROTATION)
+
+    @property
+    def masses(self) -> tuple[Node, ...]:
+        """Masses on a line alone, in the order in which they were added."""
+        return tuple(node for node in self.nodes if node.domain is Domain.TRANSLATION)
+
+    @property
     def thermal_nodes(self) -> tuple[ThermalNode, ...]:
         """Thermal masses and ambients in the order in which they were added."""
         return tuple(self._model.thermal)

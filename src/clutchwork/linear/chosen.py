@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
@@ -54,12 +54,18 @@ def _ports(component: Any) -> list[Any]:
 
 def chosen_inputs(system: System, wanted: Any, problems: list[str]) -> list[Given]:
     """The inputs that were asked for; by default all signals."""
-    known = possible_inputs(system)
+    known, unused = possible_inputs(system), wiring(system).unused
     if wanted is None:
-        return [given for given in known.values() if not given.accelerates]
+        return [given for given in known.values() if not given.accelerates and given.name not in unused]
     # a signal is also known by the name that it has in a result
-    aliases = {f"{name}_signal": name for name in known if f"{name}_signal" in channels(system, True, True)}
-    names = _matching("inputs", wanted, [*known, *aliases], problems)
+    results = channels(system, True, True)
+    aliases = {f"{name}_signal": name for name in known if f"{name}_signal" in results}
+    there = [name for name in (*known, *aliases) if name not in unused]
+
+    def unlike(name: str) -> str:
+        return _not_given(name, there) if name in results else ""
+
+    names = _matching("inputs", wanted, there, problems, unlike, unused)
     found = {aliases.get(name, name): known[aliases.get(name, name)] for name in names}
     twice = {given.signal: given.name for given in found.values()}
     problems.extend(
@@ -103,8 +109,29 @@ def _integrals(system: System) -> set[int]:
     return {column for part in parts for column in range(columns[part].start, columns[part].stop)}
 
 
-def _matching(what: str, wanted: Any, known: Sequence[str], problems: list[str]) -> list[str]:
-    """Names that fit a name or a wildcard, or several of them, each once."""
+def _not_given(name: str, known: Sequence[str]) -> str:
+    """What to say of a result that is asked for as an input."""
+    owner, _, quantity = name.rpartition(".")
+    made = f"; a cw.Torque of 0 N m at a shaft of {owner!r} makes an input for a torque there"
+    return (
+        f"inputs: {name!r} is a result, which follows from the motion and the signals; inputs are {_some(known)}"
+        f"{made if quantity == 'torque' else ''}"
+    )
+
+
+def _matching(
+    what: str,
+    wanted: Any,
+    known: Sequence[str],
+    problems: list[str],
+    unlike: Callable[[str], str] = lambda _: "",
+    hidden: Collection[str] = (),
+) -> list[str]:
+    """Names that fit a name or a wildcard, or several of them, each once.
+
+    Parameters: unlike, says why a name that is not among those known is none of them; hidden, names that no wildcard
+    fits.
+    """
     asked = [wanted] if isinstance(wanted, str) else wanted
     if not isinstance(asked, Iterable) or isinstance(asked, bytes):
         problems.append(f"{what} = {shown(wanted)}: must be a name, such as '*.speed', or a list of names")
@@ -113,7 +140,7 @@ def _matching(what: str, wanted: Any, known: Sequence[str], problems: list[str])
     for name in asked:
         if not isinstance(name, str):
             problems.append(f"{what}: {shown(name)} is not a name; give names as strings, such as '*.speed'")
-        elif name in known:
+        elif name in known or name in hidden:
             names[name] = None
         elif WILD & set(name):
             # brackets stand for themselves: they are part of names
@@ -121,6 +148,8 @@ def _matching(what: str, wanted: Any, known: Sequence[str], problems: list[str])
             if not found:
                 problems.append(f"{what}: no signal fits {shown(name)}; `{what}` may be {_some(known)}")
             names.update(dict.fromkeys(found))
+        elif reason := unlike(name):
+            problems.append(reason)
         else:
             problems.append(f"{what}: no signal {shown(name)}{near(name, known, f'it may be {_some(known)}')}")
     return list(names)

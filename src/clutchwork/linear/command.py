@@ -41,7 +41,7 @@ def add_command(subparsers: Any) -> None:
     )
     shell.add_model(parser)
     parser.add_argument("--at", type=_time, metavar="T", help="instant [s] up to which it runs; default: the start")
-    parser.add_argument("--inputs", metavar="A,B", help="signals or wildcards; default: all signals of the model")
+    parser.add_argument("--inputs", metavar="A,B", help="signals or wildcards; default: all that the model is given")
     parser.add_argument("--outputs", metavar="A,B", help="signals or wildcards; default: speeds and other states")
     parser.add_argument("--plot", type=Path, metavar="FILE", help="write a picture of the modes (png, svg or pdf)")
     shell.add_json(parser)

@@ -47,11 +47,11 @@ def linearise(
     constraints: what they hold is gone from the system. Slipping ones contribute the slopes of their friction laws over
     slip, load and temperature.
 
-    Parameters: model, a Driveline, a System, a run, or a `Simulator`, which is taken where it is with all that was set;
-    at, the instant [s], needed with a run, which a model is run up to, or a `State` of a model; inputs and outputs,
-    names of signals or wildcards such as `*.speed`. Inputs are all signals of the model by default, outputs all speeds
-    and the other states. A prescribed speed "motor.speed" may also be given by its acceleration, as the input
-    "motor.acceleration".
+    Parameters: model, a Driveline, a System, a run, or a `Simulator`, which is taken where it is with all that was
+    set; at, the instant [s], needed with a run, which a model is run up to, or a `State` of a model; inputs and
+    outputs, names of signals or wildcards such as `*.speed`. Inputs are all signals that the model is given by
+    default, outputs all speeds and the other states. A prescribed speed "motor.speed" may also be given by its
+    acceleration, as the input "motor.acceleration".
 
     UseError names all that is wrong with the call; ModelError all mistakes of the model; SimulationError says why the
     instant was not reached.

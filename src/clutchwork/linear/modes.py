@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import html
 from clutchwork.base.classes import dataclass
 from clutchwork.base.text import columns
 from clutchwork.declare.calls import explained_methods
@@ -68,6 +69,10 @@ class NaturalMode:
         return f"<NaturalMode {self.kind}: {self.frequency:.4g} Hz, damping {self.damping:.3g}, {moves}>"
 
 
+HEAD = ("mode", "", "frequency", "undamped", "damping", "time constant", "who moves")
+RIGHT = (0, 2, 3, 4, 5)
+
+
 @explained_methods("lin.modes")
 class NaturalModes(Sequence[NaturalMode]):
     """The modes, slowest first; `print` shows them as a table."""
@@ -90,9 +95,12 @@ class NaturalModes(Sequence[NaturalMode]):
         return tuple(mode for mode in self if mode.frequency > 0.0)
 
     def __str__(self) -> str:
-        head = ("mode", "", "frequency", "undamped", "damping", "time constant", "who moves")
-        lines = [head, *(_line(number, mode) for number, mode in enumerate(self, 1))]
-        return columns(lines, right=(0, 2, 3, 4, 5))
+        lines = [HEAD, *(_line(number, mode) for number, mode in enumerate(self, 1))]
+        return columns(lines, right=RIGHT)
+
+    def _repr_html_(self) -> str:
+        """The same table for a notebook."""
+        return html.table(HEAD, [_line(number, mode) for number, mode in enumerate(self, 1)], right=RIGHT)
 
     def __repr__(self) -> str:
         return str(self)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import html
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
@@ -191,7 +192,21 @@ class Linear:
     def _parts(self) -> Sequence[Sequence[Quantity]]:
         return self.state_quantities, self.input_quantities, self.output_quantities
 
+    def _repr_html_(self) -> str:
+        """States, inputs and outputs, modes and notes for a notebook."""
+        head, *lines = self._lines()
+        return html.page(
+            html.heading(repr(self)[1:-1]),
+            html.table(head, lines, right=(2, 3), most=len(lines)),
+            self.modes._repr_html_(),
+            *map(html.paragraph, self.notes),
+        )
+
     def _table(self) -> str:
+        return columns(self._lines(), right=(2, 3))
+
+    def _lines(self) -> list[tuple[str, str, str, str]]:
+        """Lines of the table of states, inputs and outputs, the head first."""
         lines = [("", "", "value", "rate of change")]
         for word, part in zip(("state", "input", "output"), self._parts, strict=True):
             for place, quantity in enumerate(part[:MOST_SHOWN]):
@@ -203,7 +218,7 @@ class Linear:
                 lines.append((word if place == 0 else "", quantity.name, amount(quantity.value, quantity.unit), rate))
             if len(part) > MOST_SHOWN:
                 lines.append(("", f"and {len(part) - MOST_SHOWN} more", "", ""))
-        return columns(lines, right=(2, 3))
+        return lines
 
 
 def _in_hertz(frequencies: Any) -> Any:

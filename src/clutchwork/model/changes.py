@@ -6,11 +6,11 @@ of a friction law or a signal follows: "c1.friction.kinetic", "c1.pressure.heigh
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
-from clutchwork.base.errors import ModelError, Problem, near
+from clutchwork.base.errors import ModelError, Problem, near, nearest
 from clutchwork.base.shown import shown
 from clutchwork.declare.given import Wanted, field_in_si, settled
 from clutchwork.declare.node import (
@@ -32,6 +32,9 @@ from clutchwork.model.thermal import node_kind
 
 # sorts of fields that are joined, named or called, and make another driveline
 FIXED = ("port", "thermal", "text", "function")
+SIGNALS = ("signal", "alternative")
+MOST_OWN = 6
+RESULTS = "speeds, torques, slips and the like are results, which follow from the motion"
 # fields of a mass by the names of a shaft
 PLACES = ("inertia", "speed", "angle")
 # what may be, or refer to, something that is changed
@@ -93,7 +96,7 @@ def in_si(aim: Target, value: Any) -> Any:
     thing, driven = aim.owner, None
     for name in aim.path[:-1]:
         spec = _spec(thing, name)
-        if spec.what in ("signal", "alternative"):
+        if spec.what in SIGNALS:
             fits = settled(name, spec, type(thing), vars(thing))
             driven = Wanted(fits.unit, fits.units)
         thing = getattr(thing, name)
@@ -172,9 +175,42 @@ def _unknown(model: Model, owners: Mapping[str, Any], name: object) -> Problem:
     joined = [item.name for item, _ in specs(type(thing), *FIXED)] if isinstance(thing, Component) else []
     if last in joined or (thing is not None and last == "name"):
         return Problem(path, "", "is not a number", remedy="build another driveline for it")
+    message, owner = "is not a number, initial value or signal of this driveline", owner_of(owners, path)
+    if owner:
+        return Problem(path, "", f"{message}{of_owner(path, owner, own_names(owners[owner]), RESULTS)}")
     such = 'names are such as "engine.inertia", "c1.gain", "c1.friction.kinetic"'
-    remedy = near(path, all_names(model)) or f"; {such}"
-    return Problem(path, "", f"is not a number, initial value or signal of this driveline{remedy}")
+    return Problem(path, "", f"{message}{near(path, all_names(model)) or f'; {such}'}")
+
+
+def owner_of(owners: Collection[str], path: str) -> str:
+    """The shaft, node or element that a name begins with; the longest, empty where there is none."""
+    words = path.split(".")
+    begins = (".".join(words[:cut]) for cut in range(len(words) - 1, 0, -1))
+    return next((name for name in begins if name in owners), "")
+
+
+def own_names(thing: Any) -> list[str]:
+    """What of a thing may be changed and has a value, signals first, then what is inside of laws and signals."""
+    fields_ = changeable(thing)
+    driven = {item.name for item, _ in specs(type(thing), *SIGNALS)} if isinstance(thing, Component) else set()
+    there = [word for word, item in fields_.items() if getattr(thing, item) is not None]
+    inside = [name.partition(".")[2] for name in _below("", thing)]
+    return list(dict.fromkeys([*sorted(there, key=lambda word: word not in driven), *inside]))
+
+
+def of_owner(path: str, owner: str, own: Sequence[str], rest: str = "", exact: bool = False) -> str:
+    """What to do about a name of something that is there: a name of it that is like it, or what of it can be set.
+
+    Parameters: own, names without that of the owner; rest, what else to say; exact, whether the name is right, but
+    that of something else.
+    """
+    like = "" if exact else nearest(path[len(owner) + 1 :], own)
+    if like:
+        return f"; did you mean '{owner}.{like}'?"
+    some = ", ".join([repr(f"{owner}.{word}") for word in own[:MOST_OWN]])
+    more = " ..." if len(own) > MOST_OWN else ""
+    can = f"what can be set of {owner!r}: {some}{more}" if own else f"nothing of {owner!r} can be set"
+    return f"; {can}{f'; {rest}' if rest else ''}"
 
 
 def _twice(targets: Mapping[str, Target]) -> Iterator[Problem]:

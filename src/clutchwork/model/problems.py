@@ -102,6 +102,7 @@ NO_NAME, GIVE_NAME = (
     "must be a printable string",
     "give a name of printable characters on one line, without blanks at its ends",
 )
+RUN_AGAIN = "where a cell of a notebook was run again, make the driveline anew in it with cw.Driveline(...)"
 LONGEST_NAME = 200
 
 
@@ -126,6 +127,8 @@ def name_problems(nodes: Sequence[Node], elements: Sequence[Component], parts: P
             problems.append(Problem(path, "name", NO_NAME, shown(name), GIVE_NAME))
         elif name in seen:
             remedy = "choose another name: results are looked up by name"
+            if path == seen[name]:
+                remedy += say("", f"; {RUN_AGAIN}")
             problems.append(Problem(path, "name", f"is already the name of {seen[name]}", shown(name), remedy))
         else:
             seen[name] = path

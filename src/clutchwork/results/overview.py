@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base import html
-from clutchwork.results.ratios import gears, input_and_output
+from clutchwork.results.ratios import gears, head_of, input_and_output
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -51,7 +51,7 @@ def _tables(system: System) -> Iterator[str]:
     found = gears(system, shafts) if shafts is not None else None
     if shafts is not None and found is not None and found.ratios:
         lines = [(" ".join(closed) or "-", number(ratio)) for closed, ratio in found.ratios]
-        yield html.table(("closed", f"{shafts[0]}/{shafts[1]}"), lines, right={1})
+        yield html.table(("closed", head_of(system, shafts)), lines, right={1})
     if found is not None and found.untried is not None:
         yield html.paragraph(f"not tried: {found.untried} or more contacts closed at once")
     for names in system.dependent:

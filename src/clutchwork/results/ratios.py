@@ -43,6 +43,20 @@ def input_and_output(parts: Wiring) -> tuple[str, str] | None:
     return (shafts[0], shafts[-1]) if shafts and shafts[0] != shafts[-1] else None
 
 
+def follows_from(system: System) -> str:
+    """What the ratio of two shafts follows from while contacts are closed, for the head of a table."""
+    if system.gears:
+        return "by gears"
+    springs = any(branch.component.elastic for branch in wiring(system).elements)
+    return "with rigid springs" if springs else "by locked contacts"
+
+
+def head_of(system: System, shafts: tuple[str, str]) -> str:
+    """The head of a table of ratios; what they follow from is said where it is no gear."""
+    plain = f"{shafts[0]}/{shafts[1]}"
+    return plain if system.gears else f"{plain} {follows_from(system)}"
+
+
 def ratio(system: System, closed: Collection[str], shafts: tuple[str, str]) -> float | None:
     """Speed of the first shaft over that of the second with the named contacts closed.
 

@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from clutchwork.assembly.wiring import wiring
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.kept import kept
 from clutchwork.base.shown import shown
@@ -13,8 +14,10 @@ from clutchwork.declare.node import Component, is_reference
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.declare.schema import Spec, inputs, specs
 from clutchwork.declare.speech import path_of
+from clutchwork.model.changes import named, of_owner, own_names, owner_of
 from clutchwork.model.fields import number_problems
 from clutchwork.model.numbers import At
+from clutchwork.results.channels import channels
 from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
@@ -134,10 +137,21 @@ def _owner(system: System, shared: int) -> str:
 def unknown(system: System, name: object) -> Problem:
     """A name that is that of nothing that could be set."""
     path = name if isinstance(name, str) else shown(name)
-    known = signals(system)
-    such = f"signals are such as {', '.join(map(repr, list(known)[:3]))}" if known else ""
-    return Problem(
-        path,
-        "",
-        f"is neither a signal nor a parameter of this driveline{near(path, [*known, *system.parameters], such)}",
-    )
+    given = [signal for signal in signals(system) if signal not in wiring(system).unused]
+    plain = path.removesuffix("_signal")
+    if plain != path and plain in given:
+        return Problem(path, "", f"is what results call the signal {plain!r}", remedy=f"set {plain!r}")
+    is_result = path in channels(system, True, True)
+    message = f"is {'a result, which follows from the motion, and no' if is_result else 'neither a signal nor a'}"
+    message += " signal or parameter of this driveline" if is_result else " parameter of this driveline"
+    owners = named(system.source) if system.source else {}
+    owner = owner_of({*owners, *(signal.rpartition(".")[0] for signal in given)}, path)
+    if owner:
+        thing = owners.get(owner)
+        own = [signal[len(owner) + 1 :] for signal in given if signal.startswith(f"{owner}.")]
+        own += [word for word in (own_names(thing) if isinstance(thing, Component) else ()) if word not in own]
+        return Problem(path, "", f"{message}{of_owner(path, owner, own, exact=is_result)}")
+    such = f"signals are such as {', '.join(map(repr, given[:3]))}" if given else ""
+    if is_result:
+        return Problem(path, "", message, remedy=such)
+    return Problem(path, "", f"{message}{near(path, [*given, *system.parameters], such)}")

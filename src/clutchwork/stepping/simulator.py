@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
+from clutchwork.base import html
 from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained, explained_methods
@@ -380,6 +381,15 @@ class Simulator:
     def __repr__(self) -> str:
         status = "" if self._failure is None else f", {self._failure}"
         return f"<Simulator of {shown(self._system.name)} at {self._time:g} s{status}>"
+
+    def _repr_html_(self) -> str:
+        """Where it is, and what was set, for a notebook."""
+        units, lines = self.units, []
+        for name in self.names:
+            value = self[name]
+            number = value if isinstance(value, str) else f"{value:.6g}"
+            lines.append((name, number, units[name], "set" if name in self.held else ""))
+        return html.page(html.heading(repr(self)[1:-1]), html.table(("", "value", "unit", ""), lines, right={1}))
 
 
 def _same(one: float, other: float) -> bool:

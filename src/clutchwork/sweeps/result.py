@@ -206,9 +206,13 @@ class Sweep:
         return told(system, code, int(component), time, value, int(column))
 
     def __repr__(self) -> str:
+        return f"<{self._words()}; {', '.join(self.names)}>"
+
+    def _words(self) -> str:
+        """How many variants there are, and how they ended."""
         ends = Counter(np.array(NAMES)[self.codes].tolist())
         told_of = ", ".join(f"{count} {name}" for name, count in ends.most_common())
-        return f"<Sweep of {counted(len(self), 'variants')}: {told_of}; {', '.join(self.names)}>"
+        return f"Sweep of {counted(len(self), 'variants')}: {told_of}"
 
     def __str__(self) -> str:
         """What `print` shows: how the variants ended, and the first lines of the table."""

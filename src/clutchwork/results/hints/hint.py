@@ -7,6 +7,7 @@ from dataclasses import field
 from math import ceil, floor, log10
 from typing import Any
 
+from clutchwork.base import html
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import advised
 from clutchwork.base.shown import printable
@@ -65,6 +66,13 @@ class Hints(tuple[Hint, ...]):
         return "\n".join(f"[{hint.rule}] {hint}" for hint in self) if self else "no hints"
 
     __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        """A table for a notebook: of what, what is so, what to do."""
+        if not self:
+            return html.paragraph("no hints")
+        lines = [(hint.rule, ", ".join(hint.elements), hint.message, hint.remedy) for hint in self]
+        return html.table(("hint", "about", "what is so", "what to do"), lines, most=len(lines))
 
 
 def shown(value: float, unit: str) -> str:

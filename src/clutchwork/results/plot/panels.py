@@ -27,6 +27,7 @@ MOST_ROWS = 15  # of one column of a legend
 # what presses contacts together where they have different words for it
 SEVERAL = "actuating force"
 # (unit in the result, from this size on, unit in the picture, factor)
+LETTER = 0.03  # share of the width of a panel that the letter of a frame needs
 SCALES = (
     ("Pa", 1e5, "MPa", 1e-6), ("N m", 5e3, "kN m", 1e-3), ("N", 5e3, "kN", 1e-3), ("W", 5e3, "kW", 1e-3),
     ("J", 5e6, "MJ", 1e-6), ("J", 5e3, "kJ", 1e-3),
@@ -48,7 +49,10 @@ def frame(axes: Axes, run: Recorded, event: Event, label: str) -> None:
     low, high = _meeting(fine(run, left, right), event)
     corner, size = (left, low), (right - left, high - low)
     axes.add_patch(_rectangle(corner, *size, fill=False, edgecolor="#404040", linewidth=0.7, zorder=3))
-    axes.annotate(label, (right, low), (2, 1), textcoords="offset points", va="top", fontsize=8.0)
+    # beside the frame, unless the letter would leave the panel
+    room = axes.transAxes.inverted().transform(axes.transData.transform((right, low)))[0] < 1.0 - LETTER
+    place, shift, side = (right, 2, "left") if room else (left, -2, "right")
+    axes.annotate(label, (place, low), (shift, 1), textcoords="offset points", va="top", ha=side, fontsize=8.0)
 
 
 def zoom(axes: Axes, run: Recorded, event: Event) -> None:
