@@ -26,8 +26,8 @@ shafts = [loose.shaft(name, inertia=1.0) for name in ("engine", "idle")]
 loose.add(cw.Torque("drive", shaft=shafts[0], torque=1.0))
 None
 """
-# a page with tables and one picture; a notebook shows nothing beside a page
-PAGE = {"text/html", "picture"}
+# a page with tables and one picture, and the picture for what knows no pages
+PAGE = {"text/html", "picture", "image/png"}
 # cell -> the kinds of output that a browser chooses from, and words that it must show
 CELLS = {
     "run": (PAGE, ["two &lt;b&gt;discs", "residual of the energy balance"]),

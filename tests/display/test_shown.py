@@ -55,10 +55,12 @@ def shown(thing: Any) -> Texts:
 
 
 def picture(bundle: dict[str, Any]) -> bytes:
-    """The only picture of a bundle, which is inside of its page."""
-    assert set(bundle) == {"text/plain", "text/html"}
+    """The picture of a bundle, once in its page and once by itself."""
+    assert set(bundle) == {"text/plain", "text/html", "image/png"}
     _, found = bundle["text/html"].split("data:image/png;base64,")
-    return base64.b64decode(found.partition('"')[0])
+    content = base64.b64decode(found.partition('"')[0])
+    assert content == bundle["image/png"]
+    return content
 
 
 @pytest.mark.parametrize("name", ["<script>", "a & b", '"quoted"', "$x$", "größe", "_a"])

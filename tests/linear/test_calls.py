@@ -154,7 +154,7 @@ def test_all_that_is_wrong_is_said_at_once(run):
         (lambda run: cw.linearise(3), "is not a model"),
         (lambda run: cw.linearise(run, at=1.0, output="x"), "did you mean 'outputs'"),
         (lambda run: cw.linearise(run, at=1.0, inputs=3), "must be a name"),
-        (lambda run: cw.linearise(run, at=1.0).frequency_response("high"), "must be finite numbers in Hz"),
+        (lambda run: cw.linearise(run, at=1.0).frequency_response("high"), "or a string such as '5 Hz'"),
         (lambda run: cw.linearise(run, at=1.0).frequency_response(0.0), "frequency of an undamped mode"),
     ],
 )

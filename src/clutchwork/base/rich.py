@@ -30,10 +30,9 @@ class Drawn(Protocol):
 
 
 def bundle(thing: object, kind: str) -> dict[str, Any]:
-    """What a notebook may choose from: plain text, and a page with tables and picture.
+    """What a notebook may choose from: plain text, a page with picture and tables, the picture alone.
 
-    A notebook shows the richest alone, the page, so the picture is in that and, lest the file doubles, nowhere else;
-    it stands by itself where there are no tables.
+    A notebook shows the richest alone, the page; what turns one into a PDF takes the picture.
     """
     from clutchwork.base.html import image, page
 
@@ -43,7 +42,6 @@ def bundle(thing: object, kind: str) -> dict[str, Any]:
     shown = list(tables)
     if drawn is not None:
         png = drawn.png()
-        if not shown:
-            return made | {"image/png": png}
+        made["image/png"] = png
         shown.append(image(png, drawn.width))
     return made | ({"text/html": page(*shown)} if shown else {})

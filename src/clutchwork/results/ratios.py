@@ -52,7 +52,7 @@ def follows_from(system: System) -> str:
 
 
 def head_of(system: System, shafts: tuple[str, str]) -> str:
-    """The head of a table of ratios; what they follow from is said where it is no gear."""
+    """The head of a table of ratios; what they follow from is said where there are no gears."""
     plain = f"{shafts[0]}/{shafts[1]}"
     return plain if system.gears else f"{plain} {follows_from(system)}"
 

@@ -46,7 +46,8 @@ def page(found: Tabled) -> str:
     """The same for a notebook."""
     heads, cells = _table(found, "{}, {}")
     words = [html.paragraph(line) for line in (*_more(found), *without_values(found))]
-    return html.page(html.heading(repr(found).strip("<>")), html.table(heads, cells, right=range(len(heads) - 1)), *words)
+    head = html.heading(repr(found).strip("<>"))
+    return html.page(head, html.table(heads, cells, right=range(len(heads) - 1)), *words)
 
 
 def without_values(found: Tabled) -> Iterator[str]:
