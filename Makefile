@@ -125,6 +125,7 @@ wheel: $(STAMPS)/wheel
 # the picture at the top of the README
 picture: $(STAMPS)/package $(STAMPS)/plot
 	@$(BIN)/python docs/figures/engagement.py docs/_static/engagement.png
+	@$(BIN)/clutchwork draw examples/six_speed/model.toml --at 2.5 --out docs/_static/six_speed.svg
 
 clean:
 	rm -rf $(VENV) build out docs/reference
