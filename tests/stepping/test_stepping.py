@@ -272,8 +272,14 @@ def test_a_run_that_stops_early_says_so_at_once() -> None:
     assert len(run.events) == len(sim.run.events)
     with pytest.raises(cw.SimulationError, match="cannot come to rest"):
         sim.advance(0.01)
-    with pytest.raises(cw.SimulationError, match="cannot come to rest"):
-        sim["a.speed"]
+    for again in (
+        lambda: sim["a.speed"],
+        lambda: sim.set("c.normal_force", 0.0),
+        lambda: sim.set({"c.gain": 2.0}),
+    ):
+        with pytest.raises(cw.SimulationError, match="cannot come to rest"):
+            again()
+    assert sim.held == {}
     sim.reset()
     sim.set("c.normal_force", 0.0)
     sim.advance(1.0)

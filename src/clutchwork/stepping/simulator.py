@@ -199,7 +199,7 @@ class Simulator:
         """
         if isinstance(value, float) and isinstance(name, str):
             known, number = self._outside.signals.get(name), float(value)
-            if known is not None and isfinite(number) and known.spec.allows(number):
+            if known is not None and isfinite(number) and known.spec.allows(number) and self._failure is None:
                 numbers = known.told(number)
                 for place, one in numbers:
                     self._run.set_input(place, one)
@@ -229,6 +229,8 @@ class Simulator:
 
     def _set(self, given: Mapping[Any, Any]) -> None:
         plan = self._outside.plan(given)
+        if self._failure is not None:
+            raise self._failure
         if plan.problems:
             raise ModelError(plan.problems, self._system.name)
         for act in plan.acts:
