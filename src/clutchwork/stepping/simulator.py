@@ -318,7 +318,10 @@ class Simulator:
 
     @property
     def run(self) -> Trajectory:
-        """Everything so far as a `Trajectory`: since the start, or since `restore`. The run is repeated for it."""
+        """Everything so far as a `Trajectory`: since the start, or since `restore`. The run is repeated for it.
+
+        What was set since the last `advance` shows in it after the next one.
+        """
         if self._failure is not None and self._failure.trajectory is not None:
             return self._failure.trajectory
         return self._past.trajectory(self._time, self._options)

@@ -45,10 +45,12 @@ def never_locks(look: Look) -> Iterator[Hint]:
 def _too_weak(look: Look, slip: FullSlip) -> Hint:
     torque, speed, name = slip.torque_unit, slip.speed_unit, slip.branch.name
     nearest = min(slip.before, float(np.min(np.abs(look.slip[slip.span.first + 1 :, slip.contact]))))
+    # one that passes zero without a stop has no lowest slip
+    lowest = f" and nowhere below {shown(nearest, speed)}" if nearest > 0.0 else ""
     message = (
         f"is full from {slip.begin:.4g} s to the end and never locks: it transmits {shown(slip.kinetic, torque)}"
         f" while it slips, and {shown(slip.needed, torque)} would just keep its slip from growing, which is"
-        f" {shown(slip.after, speed)} at {slip.end:.4g} s and nowhere below {shown(nearest, speed)}"
+        f" {shown(slip.after, speed)} at {slip.end:.4g} s{lowest}"
     )
     factor = more_than(slip.needed / slip.kinetic)
     remedy = f"give it more than {factor} times the pressure, gain or coefficient, or a lower load"
