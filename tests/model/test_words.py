@@ -48,9 +48,9 @@ def test_what_print_shows() -> None:
 def test_units_answer_a_misspelt_signal_with_near_ones() -> None:
     units = _driveline().simulate(0.1).units
     assert units["c1.torque"] == "N m"
-    with pytest.raises(UnknownName, match=r"^no signal 'c1.torqe'; did you mean 'c1.torque'\? `names` lists all"):
+    with pytest.raises(UnknownName, match=r"^no signal 'c1.torqe'; did you mean 'c1.torque'\? `run.names` lists all"):
         units["c1.torqe"]
-    with pytest.raises(UnknownName, match=r"^no signal 'zzz'; `names` lists all"):
+    with pytest.raises(UnknownName, match=r"^no signal 'zzz'; `run.names` lists all"):
         units["zzz"]
 
 
