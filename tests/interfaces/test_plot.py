@@ -93,3 +93,14 @@ def test_the_letter_of_the_frame_stays_in_its_panel(run: cw.Trajectory) -> None:
         assert letters
         for text in letters:
             assert text.get_window_extent().x1 <= figure.axes[0].get_window_extent().x1
+
+
+def test_only_a_single_instant_is_dotted() -> None:
+    d = cw.Driveline("two discs")
+    engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)
+    lining = cw.Coulomb(static=0.125, kinetic=0.1)
+    d.add(cw.Clutch("c1", base=engine, follower=load, friction=lining, gain=5e-4, pressure=2e5))
+    run = d.simulate(2.5)
+    # its lines at the lock-up are upright
+    assert {line.get_marker() for axes in run.plot().axes for line in axes.get_lines()} == {"None"}
+    assert "o" in {line.get_marker() for line in run.at(1.0).plot().axes[0].get_lines()}

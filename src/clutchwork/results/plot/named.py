@@ -33,7 +33,7 @@ def draw(view: View, panels: Sequence[Panel], path: Path | None, colour: str) ->
         rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
         for axes, panel in zip(rows, panels, strict=True):
             _panel(axes, panel, view, colour)
-        rows[0].set_xlim(*view.limits)
+        rows[0].set_xlim(view.begin, view.end)
         rows[-1].set_xlabel("time, s")
         _words(rows[0], view)
         figure.align_ylabels(rows)
@@ -103,7 +103,7 @@ def curve_looks(curves: Sequence[Curve], runs: Sequence[str], colour: str) -> li
 
 def _words(axes: Axes, view: View) -> None:
     """What happens, above the first panel, as far as there is room."""
-    begin, end = view.limits
+    begin, end = view.begin, view.end
     taken = 0.0
     for instant in sorted({event.time for _, event in view.marks}):
         found = list(dict.fromkeys(happened(event) for _, event in view.marks if event.time == instant))

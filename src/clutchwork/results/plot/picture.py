@@ -110,10 +110,12 @@ def _draw(figure: Figure, view: View, lockup: Event | None, chosen: list[Panel])
     for row, panel in enumerate(chosen):
         axes = figure.add_subplot(grid[row])
         panel.draw(axes)
-        panels.dotted(axes.get_lines())
+        # lines at events are upright, and no instants
+        if run.time[0] == run.time[-1]:
+            panels.dotted(axes.get_lines())
         axes.set_title(f"{ascii_lowercase[row]})  {panel.title}", loc="left")
         if panel.whole:
-            axes.set_xlim(*view.limits)
+            axes.set_xlim(view.begin, view.end)
             _mark(axes, instants)
         # one label is enough for panels over the same time
         if row + 1 < len(chosen) and panel.whole and chosen[row + 1].whole:

@@ -36,14 +36,6 @@ class View:
     end: float  # s
     marks: tuple[tuple[str, Event], ...]  # label of the run, event
 
-    @property
-    def limits(self) -> tuple[float, float]:
-        """Ends of the axis of time [s]; those of a single instant are a little around it."""
-        if self.begin < self.end:
-            return self.begin, self.end
-        around = 1e-3 * max(abs(self.begin), 1.0)
-        return self.begin - around, self.end + around
-
 
 def viewed(runs: Mapping[str, Recorded], zoom: Any, events: Any, call: str) -> View:
     """The runs in a window of time, computed anew there, with the events that are wanted."""
