@@ -105,7 +105,8 @@ UNSEEN = {
     # their speeds are prescribed
     "rt_TestSpeed": {"inertia1.J", "inertia2.J", "mass1.m", "mass2.m"},
 }
-NUMBERS = ("J", "m", "c", "d", "cgeo", "fn_max", "tau_nominal", "tau_constant", "amplitude", "height", "cr")
+NUMBERS = ("J", "m", "c", "d", "cgeo", "fn_max", "tau_nominal", "tau_constant", "amplitude", "height", "cr",
+    "w_nominal", "alpha20", "heat_capacity", "T0")  # fmt: skip
 
 
 def perturbed(name: str) -> Iterator[tuple[str, dict[str, Any]]]:

@@ -63,7 +63,7 @@ class Wires:
         for names, spec in inputs(type(thing)):
             name = next((name for name in names if getattr(thing, name) is not None), names[0])
             value = getattr(thing, name)
-            if value is None and spec.unit == "K" and thing is not component:
+            if value is None and spec.unit == "K":
                 value = _warming(component)
             unit = _unit(component, type(thing).__dataclass_fields__[name].metadata["spec"])
             if is_reference(value):

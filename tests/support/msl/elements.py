@@ -107,6 +107,21 @@ def _position(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
     return _motion(name, at, as_signal(speed, b.t_end))
 
 
+def _eddy_current(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    """With its heat capacity, whose temperature is an output of the case."""
+    brake = cw.EddyCurrentBrake(
+        name,
+        shaft=at("flange"),
+        base=at("support"),
+        nominal_torque=float(e["tau_nominal"]),
+        nominal_speed=float(e["w_nominal"]),
+        temperature_coefficient=float(e["alpha20"]),
+        reference_temperature=float(e["TRef"]),
+        heat=b.driveline.thermal(f"{name}_heat", capacity=float(e["heat_capacity"]), temperature=float(e["T0"])),
+    )
+    return [brake]
+
+
 def _sign_torque(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
     """2/(1 + exp(-w/(0.01 w0))) - 1 = tanh(w/(0.02 w0))."""
     if e.get("reg", "exp") != "exp":
@@ -209,6 +224,7 @@ ENTRIES: dict[str, Entry] = {
     "constant_torque": _constant_torque,
     "linear_speed_dependent_torque": _speed_dependent,
     "quadratic_speed_dependent_torque": _speed_dependent,
+    "eddy_current_torque": _eddy_current,
     "speed": _speed,
     "constant_speed": _constant_speed,
     "accelerate": _accelerate,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -159,9 +160,12 @@ class Builder:
 
     def model(self) -> Model:
         """Everything together."""
-        outputs = {}
+        outputs = dict[str, Callable[[Any], np.ndarray]]()
         for output in self.case["outputs"]:
-            if output["signal"].rpartition(".")[2] not in (*MODE_COLUMNS, "lossPower"):
+            what = output["signal"].rpartition(".")[2]
+            if what == "T":
+                outputs[output["csv"]] = itemgetter(f"{output['signal'][:-2]}.temperature")
+            elif what not in (*MODE_COLUMNS, "lossPower"):
                 outputs[output["csv"]] = self.kinematic(output["signal"])
         friction = {"clutch", "brake", "bearing_friction", "one_way_clutch", "lossy_gear"}
         made = {contact.name for contact in self.driveline.elements if contact.role is Role.CONTACT}

@@ -139,6 +139,10 @@ def _resisting(_: Any) -> list[Point]:
     return [(0.1 * k, -tanh(0.6 * k)) for k in range(-10, 11)]
 
 
+def _eddy(_: Any) -> list[Point]:
+    return [(0.5 * k, -k / (1.0 + 0.25 * k * k)) for k in range(11)]
+
+
 def unknown(pen: Pen, shown: Drawn) -> None:
     """An element that has no symbol of its own: a box, its ports one below the other."""
     tall = max(10.0, *(abs(y) + 6.0 for y in shown.pins.values())) if shown.pins else 10.0
@@ -160,5 +164,6 @@ TORQUES = {
     "speed_torque": Symbol(over_speed(_table), 15.0, 11.0, 11.0),
     "linear_torque": Symbol(over_speed(_linear), 15.0, 11.0, 11.0),
     "quadratic_torque": Symbol(over_speed(_quadratic), 15.0, 11.0, 11.0),
+    "eddy_current_brake": Symbol(over_speed(_eddy), 15.0, 11.0, 11.0),
     "resisting_torque": Symbol(over_speed(_resisting), 15.0, 11.0, 11.0),
 }
