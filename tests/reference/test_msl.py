@@ -94,6 +94,8 @@ def test_case(name: str) -> None:
 
 # what 10 % more of it does not show in the columns of its case
 UNSEEN = {
+    # the published results have no column of the third branch
+    "rot_Backlash": {"inertia3.J", "elastoBacklash2.c", "elastoBacklash2.d"},
     # 5 N m s/rad beside 1e5 N m/rad: less than the error of the reference
     "rot_ElasticBearing": {"springDamper.d"},
     # never engaged

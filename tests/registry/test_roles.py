@@ -27,6 +27,8 @@ VALUES = {
         "speed": 50.0,
         "reversed": False,
     },
+    cw.ElasticBacklash: {"stiffness": 60.0, "damping": 0.3, "gap": 0.02, "initial_twist": 0.06},
+    cw.ElasticGap: {"stiffness": 60.0, "damping": 0.3, "initial_gap": -0.05},
     cw.QuadraticTorque: {"nominal_torque": -0.5, "nominal_speed": 5.0, "same_direction": False},
     cw.WetDrag: {"peak": 4.0, "speed": 2.0},
     cw.ResistingTorque: {"torque": 3.0, "speed": 1.0},

@@ -37,6 +37,31 @@ def _spring(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
     return [cw.SpringDamper(name, stiffness=float(e["c"]), damping=float(e["d"]), **ends)]
 
 
+def _backlash(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    if abs(float(e["b"])) <= 1e-10:
+        return _spring(b, name, {**e, "type": "spring_damper"}, at)
+    return [
+        cw.ElasticBacklash(
+            name,
+            base=at("flange_a"),
+            follower=at("flange_b"),
+            stiffness=float(e["c"]),
+            damping=float(e["d"]),
+            gap=abs(float(e["b"])),
+            limited=e["type"] == "elasto_backlash",
+            initial_twist=b.start_distance(name) - float(e.get("rel0", 0.0)),
+        )
+    ]
+
+
+def _elastic_gap(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    if float(e.get("n", 1.0)) != 1.0:
+        raise UnsupportedError(f"elasto_gap with n = {e['n']}")
+    gap = b.start_distance(name) - float(e["rel0"])
+    values = {"stiffness": float(e["c"]), "damping": float(e["d"]), "initial_gap": gap}
+    return [cw.ElasticGap(name, base=at("flange_a"), follower=at("flange_b"), **values)]
+
+
 def _damper(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
     return [cw.Damper(name, base=at("flange_a"), follower=at("flange_b"), damping=float(e["d"]))]
 
@@ -218,6 +243,9 @@ ENTRIES: dict[str, Entry] = {
     "relative_states": _nothing,
     "spring": _spring,
     "spring_damper": _spring,
+    "elasto_backlash": _backlash,
+    "elasto_backlash2": _backlash,
+    "elasto_gap": _elastic_gap,
     "damper": _damper,
     "torque": _torque,
     "torque2": _torque2,

@@ -8,10 +8,11 @@ from clutchwork.declare.schema import Role, specs
 from clutchwork.schematic.symbols.contacts import CONTACTS
 from clutchwork.schematic.symbols.gears import GEARS
 from clutchwork.schematic.symbols.heat import FLOW, FLOWS, PROCESS, PROCESSES
+from clutchwork.schematic.symbols.play import PLAY
 from clutchwork.schematic.symbols.symbol import Symbol
 from clutchwork.schematic.symbols.torques import TORQUES, unknown
 
-OWN = {**CONTACTS, **GEARS, **TORQUES, **FLOWS, **PROCESSES}
+OWN = {**CONTACTS, **GEARS, **TORQUES, **PLAY, **FLOWS, **PROCESSES}
 
 
 def symbol_of(element: Any) -> Symbol:
