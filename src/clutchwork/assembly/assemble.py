@@ -196,7 +196,7 @@ def _gears(model: Mechanism) -> Iterable[Gearing]:
     for gear in model.role(Role.GEAR):
         joined = ports(gear)
         for row in gear.rows():
-            yield Gearing(gear, {port: (model.index.get(id(joined[port]), -1), float(c)) for port, c in row.items()})
+            yield Gearing(gear, {port: (model.places.of(joined[port]), float(c)) for port, c in row.items()})
 
 
 def _shaped(arrays: Mapping[str, Any], model: Mechanism, made: Kinematics) -> dict[str, Array]:

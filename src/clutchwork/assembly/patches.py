@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.inputs import plain_signal
-from clutchwork.declare.node import Component, HeatFlow, Rate, ThermalNode, is_reference
+from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode, is_reference
 from clutchwork.declare.schema import Role, inputs, specs
 from clutchwork.model.parts import role
 from clutchwork.model.pools import Pools
@@ -53,6 +53,7 @@ def numbered(
     groups: Mapping[Role, tuple[Component, ...]],
     given: tuple[Input, ...],
     thermal: tuple[ThermalNode, ...],
+    nodes: tuple[Node, ...],
     source: Model,
 ) -> Numbered:
     """The places of everything in a System."""
@@ -62,7 +63,7 @@ def numbered(
         {item.name: number for number, item in enumerate(given)},
         {node.name: number for number, node in enumerate(thermal)},
         {int(direction): number for number, direction in enumerate(arrays["heat_direction"])},
-        any(not node.inertia for node in source.nodes),
+        any(not node.inertia for node in nodes),
         frozenset(name for element in source.elements for name in _referred(element)),
     )
 

@@ -16,6 +16,7 @@ from clutchwork.declare.node import Component, Domain, Node
 from clutchwork.declare.ports import ends, ports
 from clutchwork.declare.schema import State
 from clutchwork.model.parts import Sensor
+from clutchwork.model.structure import Places
 
 if TYPE_CHECKING:
     from clutchwork.assembly.records import Link
@@ -96,7 +97,7 @@ class Wiring:
 @kept
 def wiring(system: System) -> Wiring:
     """The connections of a System, found once."""
-    places = {id(node): index for index, node in enumerate(system.nodes)}
+    places = Places(system.nodes)
     gears = [GearRow(row.gear.name, dict(row.ports), _domains(row.gear)) for row in system.gears]
     branches = [_branch(component, places) for component in (*system.elements, *system.contacts)]
     branches = _with_states(branches)
@@ -137,12 +138,12 @@ def row_columns(sizes: Mapping[str, int]) -> dict[str, slice]:
     return columns
 
 
-def _branch(component: Component, places: Mapping[int, int]) -> Branch:
+def _branch(component: Component, places: Places) -> Branch:
     """Direction follower - base or shaft - base, over the nodes and the housing."""
     moving, base = ends(component)
     direction: dict[int, float] = {}
     for node, factor in ((moving, 1.0), (base, -1.0)):
-        index = places.get(id(node), HOUSING)
+        index = places.of(node, HOUSING)
         direction[index] = direction.get(index, 0.0) + factor
     return Branch(component.name, component, direction, base.domain if moving.fixed else moving.domain)
 

@@ -210,15 +210,16 @@ class Component(Element):
         """What it cannot do with its friction law, as `problems`; asked once both make sense."""
         return []
 
-    def parts(self) -> Iterable[Component | ThermalNode]:
+    def parts(self) -> Iterable[Part]:
         """What it is made of, named `{self.name}.{part}`; nothing: it is one piece.
 
         One part may have the name of the component itself and stands for it in events and results. Parts refer to
-        each other by name, so `HeatFlow(self)` is that of this part.
+        each other by name, so `HeatFlow(self)` is that of this part. A shaft or mass among them starts at the speed
+        that its springs in here give it, unless it has one of its own.
         """
         return ()
 
-    def part(self, name: str) -> Element | ThermalNode:
+    def part(self, name: str) -> Element | ThermalNode | Node:
         """A part by its name within this component; KeyError when there is none."""
         named = {part.name: part for part in self.parts()}
         return named[f"{self.name}.{name}"]
@@ -405,6 +406,8 @@ class HeatFlow:
     of: Element
 
 
+# what a composite is made of
+Part: TypeAlias = "Component | Node | ThermalNode"
 # what an input accepts
 SignalLike: TypeAlias = "float | Signal | ThermalNode | Element | tuple[Element, str] | Node | Rate | HeatFlow"
 # (x, y) pairs of a curve

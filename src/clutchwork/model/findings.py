@@ -119,11 +119,11 @@ def _values(value: Any) -> Any:
 def _find(model: Model, incomplete: Sequence[str]) -> Findings:
     problems, sound, touched = part_problems(model, incomplete)
     advice = model_advice(model)
-    if not model.nodes:
+    if not model.nodes and not sound.nodes:
         return Findings([*problems, no_shaft()], advice, None)
     # a sensor may be on a shaft that is not there, and moves nothing
     components = [part for part in sound.components if not problems or not isinstance(part, Sensor)]
-    mechanism = Mechanism(tuple(model.nodes), tuple(components))
+    mechanism = Mechanism((*model.nodes, *sound.nodes), tuple(components), len(sound.nodes))
     try:
         made, wrong = kinematics(mechanism, incomplete=frozenset((*incomplete, *touched)))
         if made is None:

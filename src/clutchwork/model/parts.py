@@ -1,12 +1,13 @@
-"""Composites taken apart into the elements and thermal nodes that the assembly works on."""
+"""Composites taken apart into the elements, shafts and thermal nodes that the assembly works on."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field
 from typing import Any
 
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import HOUSING, Component, Node, Rate, ThermalNode
+from clutchwork.declare.node import HOUSING, Component, Node, Part, Rate, ThermalNode
 from clutchwork.declare.schema import Role, inputs
 from clutchwork.elements.damper import Damper
 
@@ -19,13 +20,15 @@ class Sensor(Damper):
 class Parts:
     """What a driveline is made of in the end."""
 
-    components: tuple[Component, ...]
-    thermal: tuple[ThermalNode, ...]
-    sums: Mapping[str, tuple[str, ...]]  # "c1" -> parts whose torque, power, work and heat count as those of "c1"
+    components: tuple[Component, ...] = ()
+    thermal: tuple[ThermalNode, ...] = ()
+    nodes: tuple[Node, ...] = ()  # shafts and masses inside of composites
+    # "c1" -> parts whose torque, power, work and heat count as those of "c1"
+    sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def take_apart(components: Sequence[Component], thermal: Sequence[ThermalNode] = ()) -> Parts:
-    """All elements and thermal nodes, those of composites in their place, and a sensor per shaft that is asked."""
+    """All elements and nodes, those of composites in their place, and a sensor per shaft that is asked."""
     pieces = [piece for component in components for piece in _pieces(component)]
     elements = [piece for piece in pieces if isinstance(piece, Component)]
     nodes = [*thermal, *(piece for piece in pieces if isinstance(piece, ThermalNode))]
@@ -35,7 +38,8 @@ def take_apart(components: Sequence[Component], thermal: Sequence[ThermalNode] =
     sensors = [Sensor(sensor_name(node), base=HOUSING, follower=node, damping=0.0) for node in asked.values()]
     there = {element.name for element in elements}
     sums = {whole.name: tuple(there.intersection(_full(whole))) for whole in components if whole.name in there}
-    return Parts((*elements, *sensors), tuple(nodes), {name: names for name, names in sums.items() if names})
+    shafts = tuple(piece for piece in pieces if isinstance(piece, Node))
+    return Parts((*elements, *sensors), tuple(nodes), shafts, {name: names for name, names in sums.items() if names})
 
 
 def _full(whole: Component) -> list[str]:
@@ -47,13 +51,13 @@ def sensor_name(node: Node) -> str:
     return f"{node.name}.speed_sensor"
 
 
-def _pieces(component: Component) -> Iterator[Component | ThermalNode]:
+def _pieces(component: Component) -> Iterator[Part]:
     parts = list(component.parts())
     if not parts and role(component) is not Role.COMPOSITE:
         yield component
     for part in parts:
         # the part with the name of the whole is one piece
-        if isinstance(part, ThermalNode) or part.name == component.name:
+        if isinstance(part, Node | ThermalNode) or part.name == component.name:
             yield part
         else:
             yield from _pieces(part)

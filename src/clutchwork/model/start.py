@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import Problem
 from clutchwork.declare.node import Domain, Signal
-from clutchwork.declare.rational import ONE, ZERO, Echelon, Row, exact, smallest
+from clutchwork.declare.rational import ONE, ZERO, Echelon, Row, exact, plus, smallest
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
 from clutchwork.signals.bases.waveform import low_pass, value
@@ -48,14 +48,16 @@ def initial_speeds(
     """Speeds of the independent nodes, and given speeds that contradict each other.
 
     A shaft without a given speed takes the one that follows from the others; what is free starts at rest, in the
-    order in which the shafts were added.
+    order in which the shafts were added. A shaft inside of a composite turns so that its springs stay in balance.
     """
     inputs = {len(model.nodes) + number: exact(speed) for number, speed in enumerate(prescribed)}
     given = {node: speed for node, speed in enumerate(model.speed) if speed is not None and node not in made.loose}
     slack = ROUNDING * max([ONE, *map(abs, given.values())])
     echelon, used, problems = Echelon(made.independent, traced=False), dict[int, Row](), list[Problem]()
-    # shafts between springs follow from all others, so they come last
-    rest = sorted(set(range(len(model.nodes))) - given.keys(), key=lambda node: (node in made.loose, node))
+    # shafts between springs follow from all others and come last, after those inside of composites
+    own = len(model.nodes) - model.inner
+    free = set(range(len(model.nodes))) - given.keys()
+    rest = sorted(free, key=lambda node: (node in made.loose, node >= own, node))
     for node in (*given, *rest):
         # all speeds are known: those that nobody gave follow
         if node not in given and len(used) == len(made.independent):
@@ -63,11 +65,24 @@ def initial_speeds(
         row = _row(made.speeds[node], inputs, given.get(node, ZERO))
         left = echelon.rest(row)
         if left.keys() - {KNOWN}:
+            balance = _row(made.over(_balance(model, node)), inputs, ZERO) if node >= own and node not in given else {}
+            row = balance if echelon.rest(balance).keys() - {KNOWN} else row
             echelon.add(row)
             used[node] = row
         elif node in given and abs(left.get(KNOWN, ZERO)) > slack:
             problems.append(_problem(model, used, node, row, left[KNOWN]))
     return [echelon.solved[node].get(KNOWN, ZERO) for node in made.independent], problems
+
+
+def _balance(model: Mechanism, node: int) -> Row:
+    """Sum of stiffness times rate over the springs at a node inside of a composite: their torques stay in balance."""
+    row: Row = {}
+    whole = model.nodes[node].name.rpartition(".")[0]
+    for component, direction in model.acting:
+        passive = component.passive() if component.name.startswith(f"{whole}.") else None
+        if node in direction and passive is not None and passive.stiffness:
+            row = plus(row, exact(passive.stiffness) * direction[node], direction)
+    return row
 
 
 def _row(speed: Row, inputs: dict[int, Fraction], wanted: Fraction) -> Row:

@@ -17,8 +17,23 @@ from clutchwork.declare.speech import path_of
 from clutchwork.model.numbers import as_float
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from fractions import Fraction
+
+
+class Places:
+    """Place of each node by identity; by name where it is inside of a composite, which makes it anew when asked."""
+
+    def __init__(self, nodes: Sequence[Node]) -> None:
+        self._by_identity = {id(node): place for place, node in enumerate(nodes)}
+        self._by_name = {node.name: place for place, node in enumerate(nodes)}
+
+    def of(self, node: Node, housing: int = -1) -> int:
+        """Place of a node."""
+        if node.fixed:
+            return housing
+        found = self._by_identity.get(id(node))
+        return self._by_name[node.name] if found is None else found
 
 
 @dataclass(frozen=True)
@@ -30,6 +45,7 @@ class Mechanism:
 
     nodes: tuple[Node, ...]
     components: tuple[Component, ...]
+    inner: int = 0  # of the nodes the last ones, which are inside of composites
 
     def role(self, role: Role) -> list[Any]:
         """The elements of one role, in order."""
@@ -41,9 +57,9 @@ class Mechanism:
         return [(c, self.direction(c)) for role in (Role.TORQUE, Role.CONTACT) for c in self.role(role)]
 
     @cached_property
-    def index(self) -> dict[int, int]:
-        """Place of each node by identity; the housing has none."""
-        return {id(node): place for place, node in enumerate(self.nodes)}
+    def places(self) -> Places:
+        """Place of each node."""
+        return Places(self.nodes)
 
     @cached_property
     def inertia(self) -> list[Fraction]:
@@ -61,7 +77,7 @@ class Mechanism:
         return plus(self._at(moving, ONE), ONE, self._at(base, MINUS))
 
     def _at(self, node: Node, factor: Fraction) -> Row:
-        return {} if node.fixed else {self.index[id(node)]: factor}
+        return {} if node.fixed else {self.places.of(node): factor}
 
     def rigid_rows(self) -> Iterator[RigidRow]:
         """Rows of all gears, then of all prescribed speeds."""

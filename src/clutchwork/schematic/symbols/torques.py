@@ -50,6 +50,15 @@ def spring_damper(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -14.0, 14.0)
 
 
+def flexible_shaft(pen: Pen, shown: Drawn) -> None:
+    """Inertias with springs between them."""
+    for x in (-16.0, 0.0, 16.0):
+        pen.box(x - 1.6, -7.0, x + 1.6, 7.0, look=BODY._replace(width=1.0))
+    zigzag(pen, -14.4, -1.6, 0.0, 3.6)
+    zigzag(pen, 1.6, 14.4, 0.0, 3.6)
+    ends(pen, shown, -17.6, 17.6)
+
+
 def wet_drag(pen: Pen, shown: Drawn) -> None:
     """Two plates with oil between them."""
     for x in (-7.0, 7.0):
@@ -158,6 +167,7 @@ TORQUES = {
     "spring": Symbol(spring, 18.0, 8.0, 8.0),
     "damper": Symbol(damper, 16.0, 8.0, 8.0),
     "spring_damper": Symbol(spring_damper, 18.0),
+    "flexible_shaft": Symbol(flexible_shaft, 22.0, 8.0, 8.0),
     "wet_drag": Symbol(wet_drag),
     "torque": Symbol(torque, 15.0, 11.0, 11.0),
     "prescribed_speed": Symbol(prescribed, 15.0, 11.0, 11.0),
