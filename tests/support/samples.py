@@ -136,11 +136,14 @@ def driveline(cls: type) -> cw.Driveline:
     nodes: dict[str, Any] = {"rotation": d.shaft("a", inertia=0.3), "other": d.shaft("b", inertia=0.7)}
     nodes |= {"plates": d.thermal("plates", capacity=800.0), "air": d.ambient("air", temperature=290.0)}
     third = d.shaft("c", inertia=0.2)
+    fourth = d.shaft("d", inertia=0.4) if "large_sun" in {item.name for item, _ in specs(cls, "port")} else None
     nodes["translation"] = d.mass("m", mass=2.0)
     values = fields(cls, nodes)
     # three members of a planetary gear are three shafts
     if "carrier" in values:
         values["carrier"] = third
+    if fourth is not None:
+        values["large_sun"] = fourth
     d.add(cls("x", **values))
     return d
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from math import pi, sin, sqrt
+from math import inf, pi, sin, sqrt
 
 from clutchwork.declare import Found, Node, Role, component, param, port
 from clutchwork.declare.node import Part
@@ -97,6 +97,8 @@ class FlexibleShaft(Heating):
             if end is not None and nodes[-1] is not end:
                 yield Gear(f"{self.name}.end_{number + 1}", input=end, output=nodes[-1], ratio=1.0)
         stiffness = count * self.whole_stiffness
+        if not all(0.0 < value < inf for value in (stiffness, self.whole_inertia)):
+            raise OverflowError
         for number, (before, after) in enumerate(pairwise(nodes), 1):
             yield SpringDamper(
                 f"{self.name}.segment_{number}",
