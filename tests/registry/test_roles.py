@@ -36,6 +36,7 @@ VALUES = {
     cw.SpringDamper: {"stiffness": 60.0, "damping": 0.3, "initial_twist": 0.05},
     cw.Spring: {"stiffness": 60.0, "initial_twist": 0.05},
     cw.Torque: {"torque": cw.Sine(amplitude=5.0, frequency=2.0)},
+    cw.AirDrag: {"area": 2.0},
     EddyBrake: {"peak": 4.0, "speed": 2.0},
     Coil: {"rate": 60.0, "wound": 0.05},
     OiledCoil: {"rate": 60.0, "oil": 0.3, "wound": 0.05},
@@ -50,7 +51,8 @@ def _name(cls):
 def _driveline(cls, heat=None, share=1.0):
     """An element between two shafts that turn against each other."""
     d = cw.Driveline(cls.__name__)
-    a, b = d.shaft("a", inertia=0.4, speed=4.0), d.shaft("b", inertia=0.7, speed=-2.0)
+    body = samples.bodies(d, cls)
+    a, b = body("a", inertia=0.4, speed=4.0), body("b", inertia=0.7, speed=-2.0)
     nodes = {"rotation": b, "other": a, "plates": None, "air": None, "translation": None}
     values = samples.fields(cls, nodes) | VALUES.get(cls, {})
     for item, _ in specs(cls, "port"):

@@ -148,6 +148,12 @@ def driveline(cls: type) -> cw.Driveline:
     return d
 
 
+def bodies(d: cw.Driveline, cls: type) -> Any:
+    """What makes the bodies that a class joins: shafts, or masses where its ports say so."""
+    moves = any(spec.domain == "translation" for _, spec in specs(cls, "port"))
+    return (lambda name, inertia=0.0, **more: d.mass(name, mass=inertia, **more)) if moves else d.shaft
+
+
 def nodes() -> dict[str, Any]:
     """Nodes without a driveline."""
     thermal = {name: cw.ThermalNode(name, 1.0) for name in ("plates", "air")}

@@ -31,7 +31,7 @@ def lines() -> Iterator[str]:
 def probes() -> Iterator[str]:
     """Whether a component has a member of a name, whatever its form: a second one beside it makes it ambiguous."""
     yield "template <class E, class Probe> struct Beside : E, Probe {};"
-    for name in ("state_rates", *(name for hook in HOOKS for name in hook.names)):
+    for name in ("state_rates", *dict.fromkeys(name for hook in HOOKS for name in hook.names)):
         yield f"struct Probe_{name} {{ int {name}; }};"
         yield f"template <class E> concept has_{name} = !requires(Beside<E, Probe_{name}>& b) {{ b.{name}; }};"
 

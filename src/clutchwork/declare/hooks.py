@@ -22,6 +22,7 @@ class Hook:
 HOOKS = (
     Hook(("edges", "edge"), "Kinked", ("torque", "law"), "kinks over the rate or the slip"),
     Hook(("margin", "cross", "turns"), "SwitchingLaw", ("torque", "law"), "smooth pieces that its own states switch"),
+    Hook(("margin", "cross"), "SwitchingProcess", ("process",), "smooth pieces that its states and inputs switch"),
     Hook(("runs_on",), "RunningOn", ("law",), "pieces that may be left on the way back"),
     Hook(("heat",), "HeatingElement", ("torque",), "heat that is not -torque rate"),
     Hook(("outside",), "BoundedLaw", ("law",), "tables that can be left"),

@@ -243,7 +243,10 @@ def told(system: System, status: int, index: int, at: float, value: float, colum
     """Why a run stopped at a time: an element or contact by its number, and its value, or a number of the row."""
     parts = [*system.elements, *system.contacts]
     if NAMES[status] == "zeno" and index < 0:
-        return explain(status, None, at, value, system.inputs[int(value)].name)
+        number = int(value)
+        if number >= len(system.inputs):
+            return explain(status, system.processes[number - len(system.inputs)], at, value)
+        return explain(status, None, at, value, system.inputs[number].name)
     if status != NOT_FINITE or names_part(system, index):
         return explain(status, parts[index] if names_part(system, index) else None, at, value)
     from clutchwork.results.rows import numbers

@@ -146,6 +146,15 @@ concept ProcessElement = requires(const typename E::template Params<double>& p, 
   { E::inputs } -> std::convertible_to<int>;
 };
 
+/// Process that changes between smooth pieces by its states and inputs: `margin` is positive inside `at.piece` and
+/// tells who is closest to leaving; `cross` gives the next piece and may move states. A margin does not look at heats.
+template <class E>
+concept SwitchingProcess =
+    requires(const typename E::template Params<double>& p, const At<double>& at, double* state, int& who) {
+      { E::margin(p, at, who) } -> std::same_as<double>;
+      { E::cross(p, at, 0, state) } -> std::same_as<int>;
+    };
+
 /// Law that sticks exactly: kinetic coefficient over slip (slip >= 0, continued smoothly below), static at rest.
 template <class L>
 concept StickingLaw = requires(const typename L::template Params<double>& p, const At<double>& at) {

@@ -203,7 +203,7 @@ class LocalDerivatives {
       for (int i = 0; i < E::inputs; ++i) input[i] = D::variable(ws_.in.u[refs + i], E::states + i);
       for (int i = 0; i < E::states; ++i) own[i] = D::variable(ws_.state[first + i], i);
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws_.params + sys_.process_param[c]);
-      E::state_rates(p, At<D>{D(0), own, input, 0, sys_.points}, rates);
+      E::state_rates(p, process_at<T, D>(ws_, c, own, input), rates);
       for (int s = 0; s < E::states; ++s) {
         double* row = row_of_state(first + s);
         for (int j = 0; j < E::states; ++j) row[n_.directions + first + j] += value(rates[s].d[j]);

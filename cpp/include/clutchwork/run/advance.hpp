@@ -14,6 +14,7 @@
 #include <clutchwork/run/methods.hpp>
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/phase.hpp>
+#include <clutchwork/run/processes.hpp>
 #include <clutchwork/run/switch.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -53,6 +54,7 @@ void take_initial(Workspace<T>& ws) {
   for (int i = 0; i < sys.states; ++i) ws.state[i] = T(sys.initial_state[i]);
   for (int i = 0; i < sys.nodes; ++i) ws.angle[i] = T(sys.initial_angle[i]);
   for (int d = 0; d < ws.n_directions; ++d) ws.work[d] = T(0), ws.piece[d] = 0;
+  for (int i = 0; i < sys.processes; ++i) ws.shared.piece[i] = 0;
   for (int d = 0; d < ws.n_directions; ++d) ws.heading[d] = forward, ws.branch_of[d] = -1;
   for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_work[p] = T(0);
 }
@@ -87,6 +89,8 @@ bool start(Workspace<T>& ws) {
   input_slopes_at(ws, ws.time);
   start_contacts(ws);
   find_pieces(ws);
+  list_processes(ws);
+  find_process_pieces(ws);
   refresh_loads(ws);
   ws.happened.cause = Cause::initial;
   ws.happened.contact = -1;
@@ -116,6 +120,7 @@ Status take_outside(Workspace<T>& ws) {
   keep_prescribed(ws);
   load_inputs(ws, ws.time);
   input_slopes_at(ws, ws.time);
+  find_process_pieces(ws);
   refresh_loads(ws);
   ws.happened.cause = Cause::input;
   ws.happened.contact = -1;

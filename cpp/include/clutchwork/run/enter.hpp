@@ -10,6 +10,7 @@
 #include <clutchwork/motion/reduce.hpp>
 #include <clutchwork/motion/sparse.hpp>
 #include <clutchwork/run/methods.hpp>
+#include <clutchwork/run/processes.hpp>
 #include <clutchwork/run/stiffness.hpp>
 #include <clutchwork/run/watch.hpp>
 #include <clutchwork/workspace.hpp>
@@ -122,6 +123,7 @@ bool enter_mode(Workspace<T>& ws) {
   list_locked(ws);
   pack_branches(ws);
   list_laws(ws);
+  list_processes(ws);
   turn_jumped(ws);
   if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);

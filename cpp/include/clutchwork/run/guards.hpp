@@ -8,6 +8,7 @@
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/locate.hpp>
+#include <clutchwork/run/processes.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Where inside a step something changes: docs/theory/events.md.
@@ -149,6 +150,47 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
   }
 }
 
+/// Where processes leave their pieces. docs/theory/events.md, rule 12
+template <class Form, class Integrator>
+[[gnu::noinline]] void find_process_hit(Form& form, Step<Form>& step, Hit& hit) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  const int nz = form.nz();
+  constexpr double noise = 1e-12;
+  for (int i = 0; i < ws.guard.n_processes; ++i) {
+    const int c = ws.guard.process[i];
+    int who = 0;
+    auto at_end = [&](double t, const T* y, const T* f, const Edge<T>& edge) {
+      auto rate = [&](int d, T& slope) {
+        const int k = ws.branch_of[d];
+        if (k < 0 || k >= ws.n_branches) return T(0);
+        return slope = edge.slope[k], edge.rate[k];
+      };
+      return process_margin(ws, c, t, y + nz, f + nz, rate, who);
+    };
+    const auto start = at_end(step.t, step.y0(), step.f0(), ws.here);
+    const auto end = at_end(step.t + step.h, step.y1(), step.f1(), ws.there);
+    const double change = abs(value(end.v - start.v));
+    const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
+    if (smaller(value(start.v), value(end.v)) > larger(change, drift)) continue;
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    auto f = [&](double s) {
+      const double t = step.t + s * step.h;
+      interpolate(form, step, s, step.point());
+      inputs_at(ws, t);
+      auto rate = [&](int d, T&) {
+        const int k = ws.branch_of[d];
+        return k < 0 || k >= ws.n_branches ? T(0) : form.rate(k, step.point()) + offset_rate(ws, k);
+      };
+      return noise + value(process_margin(ws, c, t, step.point() + nz, step.f0() + nz, rate, who).v);
+    };
+    const double s = first_crossing(f, noise + value(start.v), noise + value(end.v), hit.s);
+    if (!is_first(hit, s)) continue;
+    f(s);
+    hit = {Hit::process, c, s, who};
+  }
+}
+
 /// Whether a cubic through values and slopes proves that branch k stays on its side of a level; its distances at both
 /// ends.
 template <class T>
@@ -221,6 +263,7 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   list_near_loads(ws, step.h);
   find_line<Form, Integrator>(form, step, hit);
   if (ws.guard.n_switching > 0) find_law_hit<Form, Integrator>(form, step, hit);
+  if (ws.guard.n_processes > 0) find_process_hit<Form, Integrator>(form, step, hit);
   if (ws.held.n > 0) find_break_away<Form, Integrator>(form, step, hit);
   if (ws.held.n_sets > 0) find_set_limit<Form, Integrator>(form, step, hit);
   if (ws.held.n_driven > 0) find_parting<Form, Integrator>(form, step, hit);

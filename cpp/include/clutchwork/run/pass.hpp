@@ -9,6 +9,7 @@
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/processes.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/watch.hpp>
@@ -70,6 +71,22 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   for (int i = 0; i < b.states; ++i) ws.state[b.state + i] = state[b.state + i];
   list_lines(ws);
   return !events_crowd(ws, b.direction);
+}
+
+/// A process goes to its next piece. False: it does so without end. `moved`: it has set its states, which others may
+/// read.
+template <class Form>
+bool pass_process(Form& form, Step<Form>& step, int c, int who, bool& moved) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  T* state = step.y0() + form.nz();
+  moved = process_cross(ws, c, who, state);
+  if (moved) {
+    export_state(form, step.y0());
+    shared_inputs(ws, ws.state);
+    refresh_loads(ws);
+  }
+  return !process_crowds(ws, c);
 }
 
 /// Whether a contact whose torque jumps with the sign of its slip reverses again and again within a few steps: it

@@ -261,6 +261,7 @@ class Phase : public Pace<typename Form::Scalar> {
 
   /// Guards that need no decision: the next piece of a law or a table, an open contact that passes zero.
   CLUTCHWORK_INLINE bool passes(const Hit& hit) {
+    if (hit.what == Hit::process) return passes_process(hit);
     const LineGuard* guard = hit.what == Hit::line ? &ws_.guard.line[hit.index] : nullptr;
     const bool law = hit.what == Hit::law || (guard != nullptr && guard->kind == LineGuard::turn);
     if (!law && (guard == nullptr || guard->kind == LineGuard::slip)) return false;
@@ -271,6 +272,19 @@ class Phase : public Pace<typename Form::Scalar> {
     if (!law) pass_line(form_, *guard);
     look_here();
     if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(ws_, hit.index));
+    h_ = ws_.last_step;
+    return true;
+  }
+
+  /// A process on its next piece; states that it has set may be loads of contacts.
+  bool passes_process(const Hit& hit) {
+    bool moved = false;
+    if (!pass_process(form_, step_, hit.index, hit.who, moved)) {
+      leave(Status::zeno);
+      return false;
+    }
+    if (moved) return false;
+    look_here();
     h_ = ws_.last_step;
     return true;
   }
@@ -296,6 +310,8 @@ class Phase : public Pace<typename Form::Scalar> {
       case Hit::fault:
         hand_over(Cause::fault, hit.index);
         return fail(ws_, hit.index);
+      case Hit::process:
+        return hand_over(Cause::input);
       default:
         hand_over(Cause::input, hit.index);
         return turn_load(ws_, hit.index);

@@ -13,7 +13,8 @@ inline bool is_few(const System& s) { return s.speeds <= few_speeds; }
 
 /// Numbers of things in a system, by which arrays are sized; for few speeds the matrices are whole.
 struct Sizes {
-  std::int64_t speeds, prescribed, states, shared, nodes, elements, contacts, directions, references, signals;
+  std::int64_t speeds, prescribed, states, shared, nodes, elements, contacts, directions, references, signals,
+      processes;
   bool few;
   std::int64_t spares;      ///< most locked contacts that can depend on others
   std::int64_t set;         ///< most contacts of a set that depend on each other
@@ -36,6 +37,7 @@ struct Sizes {
         directions(s.elements + s.contacts),
         references(s.n_input_refs + s.prescribed),
         signals(s.inputs),
+        processes(s.processes),
         few(is_few(s)) {
     const auto nv = speeds, nc = contacts;
     spares = few ? (nc > 1 ? nc : 0) : s.spares, set = few ? spares : s.set_size;

@@ -40,9 +40,11 @@ struct Guards {
   int *bounded = nullptr, *faulty = nullptr;        ///< contacts whose laws can be left; contacts that can fail
   int *load = nullptr, *near = nullptr;  ///< contacts whose loads may pass zero; those that may in the present step
   int* limit = nullptr;                  ///< carriers that may break away: scratch
+  int* process = nullptr;                ///< processes that switch between pieces
   double* load_size = nullptr;           ///< largest size that the load of a contact may have, 0: not known
   double* turned_at = nullptr;           ///< [s] when the load of a contact passed zero last
   int n_lines = 0, n_switching = 0, n_chattering = 0, n_bounded = 0, n_faulty = 0, n_loads = 0, n_near = 0;
+  int n_processes = 0;
   int n_undirected = 0;  ///< open contacts at rest
   int reversals = 0;     ///< of slips that chatter
   int strained = 0;      ///< explicit steps in a row at the limit of their stability
@@ -53,7 +55,7 @@ struct Guards {
     a.take(p.line, 3 * n.directions + n.contacts), a.take(p.switching, n.directions), a.take(p.chattering, n.contacts);
     a.take(p.bounded, n.contacts), a.keep(p.faulty, n.contacts, 0, n.contacts - 1);
     a.keep(p.load, n.contacts, 0, n.contacts - 1), a.take(p.near, n.contacts), a.take(p.limit, n.contacts);
-    a.take(p.load_size, n.contacts), a.take(p.turned_at, n.contacts);
+    a.take(p.load_size, n.contacts), a.take(p.turned_at, n.contacts), a.take(p.process, n.processes);
   }
 };
 
@@ -94,12 +96,13 @@ struct EventBuffer {
   static constexpr int room = 256;
   double* at = nullptr;
   int n = 0;
-  int* crowd = nullptr;  ///< events of each direction, then knots of each signal, within the last microsecond
+  int* crowd = nullptr;  ///< within the last microsecond: events of each direction, knots of each signal, of processes
   double crowd_time = -infinity;
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    a.keep(p.crowd, n.directions + n.signals, 0, 1 << 30), a.take(p.at, event_size * (room + 2 * n.contacts));
+    a.keep(p.crowd, n.directions + n.signals + n.processes, 0, 1 << 30),
+        a.take(p.at, event_size * (room + 2 * n.contacts));
   }
 };
 

@@ -11,8 +11,9 @@ from clutchwork.schematic.symbols.heat import FLOW, FLOWS, PROCESS, PROCESSES
 from clutchwork.schematic.symbols.play import PLAY
 from clutchwork.schematic.symbols.symbol import Symbol
 from clutchwork.schematic.symbols.torques import TORQUES, unknown
+from clutchwork.schematic.symbols.vehicles import VEHICLES
 
-OWN = {**CONTACTS, **GEARS, **TORQUES, **PLAY, **FLOWS, **PROCESSES}
+OWN = {**CONTACTS, **GEARS, **TORQUES, **PLAY, **FLOWS, **PROCESSES, **VEHICLES}
 
 
 def symbol_of(element: Any) -> Symbol:
