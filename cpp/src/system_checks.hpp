@@ -27,8 +27,8 @@ inline bool signal_fits(const System& s, std::int64_t i) {
   return end - start <= period && start > -1e8 * period && abs(end) < 1e12 * period;
 }
 
-/// Calls curve(place) and choice(place, words) for every parameter that says where numbers stand or which of a few
-/// words is meant: they never change.
+/// Calls curve(place) and choice(place, words) for every parameter that says where numbers stand, which of a few words
+/// is meant, or how many states there are (words = 0: any number): they never change.
 template <class Curve, class Choice>
 void visit_fixed(const System& s, Curve&& curve, Choice&& choice) {
   std::int64_t first = 0;
@@ -70,7 +70,7 @@ inline bool choices_fit(const System& s) {
       s, [](std::int64_t) {},
       [&](std::int64_t at, int n) {
         const double x = s.params[at];
-        good = good && x >= 0 && x < n && x == double(int(x));
+        good = good && (n == 0 || (x >= 0 && x < n && x == double(int(x))));
       });
   return good;
 }
@@ -126,6 +126,9 @@ inline bool shared_in_range(const System& s) {
   bool good = s.shared <= s.states;
   for (std::int64_t i = 0; good && i < s.flows; ++i) good = flow_fits(s, i);
   for (std::int64_t i = 0; good && i < s.processes; ++i) good = process_fits(s, i);
+  for (std::int64_t i = 0; good && i < s.supplies; ++i) {
+    good = s.supply_element[i] >= 0 && s.supply_element[i] < s.elements;
+  }
   for (std::int64_t h = 0; good && h < s.heats; ++h) {
     good = s.heat_direction[h] >= 0 && s.heat_direction[h] < s.elements + s.contacts && s.heat_to[h] >= 0 &&
            s.heat_to[h] < s.shared;
@@ -162,8 +165,12 @@ inline bool element_fits(const System& s, std::int64_t i, std::int64_t& states) 
   visit_torque(s.element_kind[i], [&](auto tag) {
     using E = typename decltype(tag)::type;
     good = s.element_param[i] + param_count<E> <= s.n_params && s.element_input[i] + E::inputs <= s.n_input_refs &&
-           s.element_state[i] + E::states <= s.states - s.shared && plain_inputs(s, s.element_input[i], E::inputs);
+           plain_inputs(s, s.element_input[i], E::inputs);
     states = E::states;
+    if constexpr (Sized<E>) {
+      if (good) states = states_of(s.element_kind[i], -1, s.params + s.element_param[i]);
+    }
+    good = good && s.element_state[i] + states <= s.states - s.shared;
   });
   visit_torque_curves(s.element_kind[i], [&](int at) { good = good && curve_fits(s, s.element_param[i] + at); });
   return good;

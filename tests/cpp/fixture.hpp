@@ -50,7 +50,7 @@ int law_kind() {
 /// Number of states that a law uses with these parameters.
 template <class L>
 int law_states(const Numbers& law) {
-  if constexpr (SizedLaw<L>) return L::count(*reinterpret_cast<const typename L::template Params<double>*>(law.data()));
+  if constexpr (Sized<L>) return L::count(*reinterpret_cast<const typename L::template Params<double>*>(law.data()));
   return int(L::states);
 }
 

@@ -98,7 +98,7 @@ void over_pieces(const P& p, check::Random& g, F&& visit) {
     for (int piece = 0; piece <= E::edges(p); ++piece) visit(piece);
   } else if constexpr (SwitchingLaw<E>) {
     int count = 1;
-    if constexpr (SizedLaw<E>) count = E::count(p);
+    if constexpr (Sized<E>) count = E::count(p);
     const int all = (1 << count) - 1;
     visit(0), visit(all);
     // elements that slide, and some that are on their way back
@@ -230,7 +230,7 @@ int law_values(const P& p, const At<S>& at, S* out) {
 template <class L>
 int states_in_use(const Fields& fields) {
   using P = typename L::template Params<double>;
-  if constexpr (SizedLaw<L>) return L::count(*reinterpret_cast<const P*>(fields.start));
+  if constexpr (Sized<L>) return L::count(*reinterpret_cast<const P*>(fields.start));
   return L::states;
 }
 
@@ -424,7 +424,7 @@ void one_element() {
   check::Random g{31};
   for (int law = 0; law < law_kinds; ++law) {
     visit_law(law, [&](auto tag) {
-      if constexpr (SizedLaw<typename decltype(tag)::type>) {
+      if constexpr (Sized<typename decltype(tag)::type>) {
         Probe probe(torque_kinds + law, g);
         visit_law_curves(law, [&](int k) { probe.law[k + 1] = 1; });
         probe.b.states = states_of<double>(probe.b.kind, law, probe.law);

@@ -106,7 +106,7 @@ def test_a_thermal_node_takes_its_share_and_changes_nothing_else(cls, share):
 @pytest.mark.parametrize("cls", [*TORQUES, *NEW], ids=_name)
 def test_declared_roles_fit_each_other(cls):
     element = _driveline(cls).elements[0]
-    assert len(element.initial_states()) == len(cls.states)
+    assert len(element.initial_states()) == len(element.own_states())
     passive = element.passive()
     if passive is not None:
         # nothing comes from outside where all is stiffness and damping

@@ -53,7 +53,7 @@ def fixed(role: Role) -> Iterator[str]:
     """Functions that say which parameters of a kind a run never changes.
 
     `curve` gets the place of each curve, `choice` that of a parameter that is one of a few words or a flag, and how
-    many there are.
+    many there are; 0: any number, which stays.
     """
     name = f"visit_{role.value}"
     yield "template <class Curve, class Choice>"
@@ -73,4 +73,4 @@ def fixed_call(field: Field) -> str:
     if field.size == 2:
         return f"curve({field.offset})"
     few = len(field.spec.choices) or 2 * field.spec.flag
-    return f"choice({field.offset}, {few})" if few else ""
+    return f"choice({field.offset}, {few})" if few or field.spec.fixed else ""

@@ -162,6 +162,7 @@ def _elements(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
         refs.append(wires.connect(element))
         states += element.initial_states() if element.states else ()
     return {
+        "supply_element": [k for k, element in enumerate(model.role(Role.TORQUE)) if element.supply],
         "element_param": params,
         "element_state": offsets,
         "element_input": refs,

@@ -110,6 +110,8 @@ def _parameters(where: Numbered, old: Component, new: Component) -> Iterator[Pat
     kind, number = where.places[old.name]
     prefix = "element" if kind is Role.TORQUE else kind.value
     yield from _pool(where, int(where.arrays[f"{prefix}_param"][number]), old, new)
+    if len(old.own_states()) != len(new.own_states()):
+        raise Unpatched
     if kind is not Role.CONTACT:
         return
     before, after = old.friction, new.friction

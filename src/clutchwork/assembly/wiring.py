@@ -74,6 +74,7 @@ class Wiring:
     columns: Mapping[str, slice]
     thermal: tuple[Source, ...] = ()
     processes: tuple[Source, ...] = ()
+    supplies: tuple[Branch, ...] = ()  # elements that draw work and heat from a supply
     flows: tuple[str, ...] = ()
     links: tuple[Link, ...] = ()
     sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -111,6 +112,7 @@ def wiring(system: System) -> Wiring:
         columns=row_columns(system.counts),
         thermal=tuple(_shared(system, system.thermal)),
         processes=tuple(_shared(system, system.processes)),
+        supplies=tuple(branches[place] for place in system.supply_element),
         flows=tuple(flow.name for flow in system.flows),
         links=system.links,
         sums=system.sums,
@@ -153,7 +155,7 @@ def _with_states(branches: list[Branch]) -> list[Branch]:
     made, first = list[Branch](), 0
     for branch in branches:
         law = branch.component.friction
-        own = tuple(branch.component.states if law is None else law.own_states())
+        own = tuple((branch.component if law is None else law).own_states())
         states = tuple((state.name, state.unit, first + k) for k, state in enumerate(own))
         made.append(replace(branch, states=states))
         first += len(own)

@@ -23,6 +23,7 @@ COUNTS = (
     ("flows", "flows between shared states"),
     ("processes", "components that only have shared states"),
     ("heats", "paths of the heat of a direction to a shared state"),
+    ("supplies", "elements that draw work and heat from a supply"),
     ("inputs", "signals"),
     ("segments", "segments of all signals"),
     ("params", "numbers in the parameter pool"),
@@ -88,6 +89,7 @@ FIELDS = (
     ("heat_direction", "i4", ("heats",), "direction whose heat it is"),
     ("heat_to", "i4", ("heats",), "shared state that takes it"),
     ("heat_share", "f8", ("heats",), "share of it"),
+    ("supply_element", "i4", ("supplies",), "element that draws its work and its heat"),
     ("shared_scale", "f8", ("shared",), "a shared state as an input is offset + scale * state"),
     ("shared_offset", "f8", ("shared",), "offset of that"),
     ("prescribed_input", "i4", ("prescribed",), "signal that gives the prescribed speed"),
@@ -133,6 +135,8 @@ ROW = (
     ("contact_capacity", "contacts"),
     ("flow", "flows"),
     ("prescribed_work", "prescribed"),
+    ("supply_power", "supplies"),
+    ("supply_energy", "supplies"),
     ("input", "inputs"),
 )
 

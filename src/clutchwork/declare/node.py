@@ -195,6 +195,7 @@ class Component(Element):
 
     one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
     work: ClassVar[Work] = Work.SOURCE  # of a torque element; the work of a contact is always heat
+    supply: ClassVar[str] = ""  # of a source with the hook `heat`: what it draws work and heat from, such as "electric"
     elastic: ClassVar[bool] = False  # joins its ends as a shaft does: counts as rigid in ratios of speeds
     jumps: ClassVar[bool] = False  # a torque element whose torque jumps: its shafts need inertia, as at a contact
 
@@ -228,8 +229,12 @@ class Component(Element):
         """Names of parts, within it, whose torque, power, work and heat count as those of its own name."""
         return ()
 
+    def own_states(self) -> tuple[State, ...]:
+        """The states in use, by its parameters; the hook `count` says how many."""
+        return self.states
+
     def initial_states(self) -> tuple[float, ...]:
-        """Its states at the start, each in its unit."""
+        """Its states in use at the start, each in its unit."""
         return ()
 
     def state_scales(self) -> tuple[float, ...]:

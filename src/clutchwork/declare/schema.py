@@ -57,6 +57,7 @@ class Spec:
     otherwise: float | None = None  # of a signal: its value when neither it nor its alternative is given
     presses: bool = False  # of a signal: below zero it counts as zero, so that a constant below zero never acts
     flag: bool = False  # true or false in Python, 1 or 0 in the core
+    fixed: bool = False  # says how many states there are: it stays while a run goes on
     whole: bool = False  # a whole number
     rising: str = ""  # of a curve: "strictly", or "weakly" where equal x mean a jump
     constant: bool = False  # of a curve: a number stands for the same value everywhere
@@ -113,14 +114,16 @@ def param(
     whole: bool = False,
     example: float | None = None,
     difference: bool = False,
+    fixed: bool = False,
     kw_only: bool = True,
 ) -> Any:
     """A constant number in SI units: one scalar of the C++ `Params`, in order of declaration.
 
-    A `difference` of temperatures is never in degrees Celsius.
+    A `difference` of temperatures is never in degrees Celsius. What is `fixed` says how many states there are.
     """
     bounds = (above, at_least, below, at_most)
     more: dict[str, Any] = {"units": units, "whole": whole, "example": example, "difference": difference}
+    more["fixed"] = fixed
     spec = Spec("param", unit, doc, default is None, *bounds, **more)
     return _field(spec, default, kw_only)
 

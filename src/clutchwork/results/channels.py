@@ -63,7 +63,7 @@ class Channels(Mapping[str, Channel]):
 
     def __init__(self, wiring: Wiring, *, angles: bool = True, work: bool = True) -> None:
         self._wiring = wiring
-        self._left_out = _left_out(angles, work)
+        self._left_out = _left_out(angles, work, wiring)
         self._channels: dict[str, Channel] = {}
         # heat of a thermal node is a state, no work integral
         known = {f"{node.name}.heat" for node in wiring.thermal}
@@ -124,7 +124,15 @@ class Channels(Mapping[str, Channel]):
         yield f"{branch.name}.rate", Channel(SPEED[branch.domain], rate)
         yield f"{branch.name}.power", Channel("W", Power(torque, rate))
         yield f"{branch.name}.work", Channel("J", self._total("work", branch))
+        if branch.component.supply:
+            yield from self._supply(branch)
         yield from self._states(branch)
+
+    def _supply(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
+        number = [part.name for part in self._wiring.supplies].index(branch.name)
+        name = f"{branch.name}.{branch.component.supply}"
+        yield f"{name}_power", _column(self._start("supply_power") + number, "W")
+        yield f"{name}_energy", _column(self._start("supply_energy") + number, "J")
 
     def _states(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
         passive = branch.component.passive()
@@ -191,10 +199,13 @@ def channels(system: System, angles: bool = True, work: bool = True) -> Channels
     return Channels(wiring(system), angles=angles, work=work)
 
 
-def _left_out(angles: bool, work: bool) -> dict[str, str]:
+def _left_out(angles: bool, work: bool, wiring: Wiring) -> dict[str, str]:
     """Endings of the signals that a run did not integrate, with the option that turns them on."""
     endings = {} if angles else {".angle": "angles", ".position": "angles"}
-    return endings if work else endings | {".work": "work", ".heat": "work"}
+    if work:
+        return endings
+    drawn = {f".{branch.component.supply}_energy": "work" for branch in wiring.supplies}
+    return endings | {".work": "work", ".heat": "work"} | drawn
 
 
 def _gear_torques(wiring: Wiring, made: Array) -> Iterator[tuple[str, Channel]]:

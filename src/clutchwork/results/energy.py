@@ -124,12 +124,16 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
     """Balance between the first and the last output row."""
     ends = rows[[0, -1]]
     sources, heat, elastic = {}, {}, 0.0
+    drawn = {branch.name: energy for branch, energy in _works(wiring, ends, "supply_energy", wiring.supplies)}
     for number, (branch, work) in enumerate(_works(wiring, ends, "element_work", wiring.elements)):
         if branch.hidden:
             continue
         stored = _stored(wiring, ends, branch, number)
         elastic += stored
         lost = _lost(branch.component) * (0.0 - work - stored)
+        if branch.name in drawn:
+            sources[branch.name], heat[branch.name] = drawn[branch.name], drawn[branch.name] - work - stored
+            continue
         if Work.SOURCE in branch.component.work:
             sources[branch.name] = work + stored + lost
         if _lost(branch.component):
@@ -165,6 +169,8 @@ def _lost(component: Component) -> float:
 
 def _followed(component: Component) -> float:
     """Share of that heat that goes to a thermal node."""
+    if component.supply:
+        return _share(component)
     return _share(component) / (_lost(component) or 1.0)
 
 

@@ -27,6 +27,8 @@ def numbers(wiring: Wiring) -> list[Named]:
         "contact_capacity": [(f"{part.name}.capacity", TORQUE[part.domain]) for part in wiring.contacts],
         "flow": [(f"{flow}.heat_flow", "W") for flow in wiring.flows],
         "prescribed_work": [(f"{part.name}.work", "J") for part in wiring.motions],
+        "supply_power": [(f"{part.name}.{part.component.supply}_power", "W") for part in wiring.supplies],
+        "supply_energy": [(f"{part.name}.{part.component.supply}_energy", "J") for part in wiring.supplies],
     }
     known = {name for named in parts.values() for name, _ in named}
     # the torque of a load and the signal that sets its size would have the same name

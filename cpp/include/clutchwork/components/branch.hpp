@@ -177,13 +177,14 @@ CLUTCHWORK_INLINE Partial<T> branch_partial_inline(const Workspace<T>& ws, const
       S input[E::inputs > 0 ? E::inputs : 1];
       dual_inputs<N>(E::inputs, b.input, b.input_slope, input);
       S own[n > 0 ? n : 1], own_rates[n > 0 ? n : 1];
-      for (int i = 0; i < n; ++i) own[i] = S::variable(state[b.state + i], 1 + i);
+      const int used = Sized<E> ? b.states : n;
+      for (int i = 0; i < used; ++i) own[i] = S::variable(state[b.state + i], 1 + i);
       S x = S::variable(rate, 0);
       x.d[N - 1] = rate_slope;
       const At<S> at{x, own, input, b.piece, ws.sys.points};
       const S f = E::torque(p, at);
       if constexpr (n > 0) E::state_rates(p, at, own_rates);
-      return take_partials(b, f, own_rates, n, rates, out);
+      return take_partials(b, f, own_rates, used, rates, out);
     }
     return Partial<T>{};
   });
@@ -230,7 +231,7 @@ Dual<T, 1> branch_heat(const Workspace<T>& ws, const Branch<T>& b, T rate, const
     if constexpr (HeatingElement<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
       S own[E::states > 0 ? E::states : 1], input[E::inputs > 0 ? E::inputs : 1];
-      for (int i = 0; i < E::states; ++i) own[i] = S(state[b.state + i]);
+      for (int i = 0; i < b.states; ++i) own[i] = S(state[b.state + i]);
       for (int i = 0; i < E::inputs; ++i) input[i] = S(b.input[i]);
       return E::heat(p, At<S>{x, own, input, b.piece, ws.sys.points});
     }

@@ -193,6 +193,12 @@ concept SwitchingLaw =
     };
 inline constexpr int turned = -1;
 
+/// Switching torque element whose piece follows from where it is, and from the present one: after a jump too.
+template <class E>
+concept Settling = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::settle(p, at) } -> std::same_as<int>;
+};
+
 /// Switching law that may leave a piece on the way back: whether a state that has just crossed goes on.
 template <class L>
 concept RunningOn = requires {
@@ -211,13 +217,14 @@ concept FittedLaw = requires(const typename L::template Params<double>& p) {
   { L::fits(p) } -> std::same_as<bool>;
 };
 
-/// Law whose number of states depends on its parameters; `states` is the most.
-template <class L>
-concept SizedLaw = requires(const typename L::template Params<double>& p) {
-  { L::count(p) } -> std::same_as<int>;
+/// Law or torque element whose number of states depends on parameters that stay fixed; `states` is the most.
+template <class C>
+concept Sized = requires(const typename C::template Params<double>& p) {
+  { C::count(p) } -> std::same_as<int>;
 };
 
-/// A component whose function of the rate has kinks.
+/// A component whose function of the rate has kinks. Where it switches too, its pieces are numbered by the interval
+/// between kinks first: interval + (edges + 1) mode.
 template <class E, class T = double>
 concept Kinked = requires(const typename E::template Params<T>& p, const double* points) {
   { E::edges(p) } -> std::same_as<int>;

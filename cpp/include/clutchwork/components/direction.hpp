@@ -88,7 +88,7 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
     b.compliant = ws.contact.compliant[c] != 0;
     if (b.compliant) b.sign = forward;
   }
-  b.states = states_of(b.kind, b.law, b.law_params);
+  b.states = states_of(b.kind, b.law, b.law < 0 ? b.params : b.law_params);
   return b;
 }
 

@@ -4,15 +4,16 @@
 /// What the kinds of components say of themselves, and what a contact can hold.
 namespace clutchwork {
 
-/// Number of own states of a torque element (law < 0) or of a contact, which are those of its law.
+/// Number of own states of a torque element (law < 0) or of a contact, which are those of its law; `params` are those
+/// of the element or the law.
 template <class T>
-int states_of(int kind, int law, const T* law_params) {
-  if (law < 0) return visit_torque(kind, [](auto tag) { return decltype(tag)::type::states; });
-  return visit_law(law, [&](auto tag) {
-    using L = typename decltype(tag)::type;
-    if constexpr (SizedLaw<L>) return L::count(*reinterpret_cast<const typename L::template Params<T>*>(law_params));
-    return int(L::states);
-  });
+int states_of(int kind, int law, const T* params) {
+  auto count = [&](auto tag) {
+    using C = typename decltype(tag)::type;
+    if constexpr (Sized<C>) return C::count(*reinterpret_cast<const typename C::template Params<T>*>(params));
+    return int(C::states);
+  };
+  return law < 0 ? visit_torque(kind, count) : visit_law(law, count);
 }
 
 /// Most states of a law.

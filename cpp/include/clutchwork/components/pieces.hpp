@@ -45,6 +45,22 @@ int law_cross(const Workspace<T>& ws, const Branch<T>& b, T rate, int who, T* st
   });
 }
 
+/// The piece in which a switching element is where it is now.
+template <class T>
+int settled_piece(const Workspace<T>& ws, const Branch<T>& b, T rate) {
+  return visit_torque(b.kind, [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (Settling<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+      return E::settle(p, At<T>{rate, ws.state + b.state, b.input, b.piece, ws.sys.points});
+    }
+    return b.piece;
+  });
+}
+inline bool is_settling(int kind) {
+  return visit_torque(kind, [](auto tag) { return Settling<typename decltype(tag)::type>; });
+}
+
 /// Whether a change of sign of the slip matters to the law of a branch now.
 template <class T>
 bool law_turns(const Branch<T>& b) {

@@ -15,6 +15,7 @@
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/phase.hpp>
 #include <clutchwork/run/processes.hpp>
+#include <clutchwork/run/settle.hpp>
 #include <clutchwork/run/switch.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -57,6 +58,7 @@ void take_initial(Workspace<T>& ws) {
   for (int i = 0; i < sys.processes; ++i) ws.shared.piece[i] = 0;
   for (int d = 0; d < ws.n_directions; ++d) ws.heading[d] = forward, ws.branch_of[d] = -1;
   for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_work[p] = T(0);
+  for (int i = 0; i < sys.supplies; ++i) ws.supplied[i] = T(0);
 }
 
 /// Every contact before the first decision: it slips, or is open.
@@ -121,6 +123,7 @@ Status take_outside(Workspace<T>& ws) {
   load_inputs(ws, ws.time);
   input_slopes_at(ws, ws.time);
   find_process_pieces(ws);
+  find_pieces(ws);
   refresh_loads(ws);
   ws.happened.cause = Cause::input;
   ws.happened.contact = -1;

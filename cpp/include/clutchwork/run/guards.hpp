@@ -131,7 +131,9 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
     const int k = ws.guard.switching[i];
     const Branch<T>& b = ws.branch[k];
     int who = turned;
+    inputs_with(ws, step.t, step.y0() + nz);
     const auto start = law_margin(ws, b, ws.here.rate[k], ws.here.slope[k], step.y0() + nz, step.f0() + nz, who);
+    inputs_with(ws, step.t + step.h, step.y1() + nz);
     const auto end = law_margin(ws, b, ws.there.rate[k], ws.there.slope[k], step.y1() + nz, step.f1() + nz, who);
     const double change = abs(value(end.v - start.v));
     const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));

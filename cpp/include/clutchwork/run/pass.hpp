@@ -10,6 +10,7 @@
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/processes.hpp>
+#include <clutchwork/run/settle.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/watch.hpp>
@@ -36,6 +37,7 @@ bool pass_knot(Form& form, Step<Form>& step) {
   using T = typename Form::Scalar;
   keep_prescribed(ws);
   load_inputs(ws, ws.time);
+  settle_pieces(ws);
   bool decide = refresh_loads(ws);
   for (int p = 0; p < ws.sys.prescribed; ++p)
     decide = decide || value(ws.in.prescribed[p] - ws.in.prescribed_before[p]) != 0;

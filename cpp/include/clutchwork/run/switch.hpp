@@ -11,6 +11,7 @@
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/settle.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -80,6 +81,7 @@ template <class T>
 Status decide(Workspace<T>& ws, bool at_start) {
   const int located = ws.happened.contact;
   if (!settle_impulses(ws, at_start)) return Status::no_mode;
+  find_pieces(ws);
   for (int c = 0; at_start && c < ws.sys.contacts; ++c) {
     ws.contact.impulse[c] = ws.contact.mode[c] == locked && ws.happened.mode[c] != locked;
   }
@@ -92,14 +94,6 @@ Status decide(Workspace<T>& ws, bool at_start) {
   if (jammed < 0) return status;
   ws.detail.component = int(ws.sys.elements) + jammed;
   return Status::jammed;
-}
-
-/// The elements are on the pieces that hold their rates.
-template <class T>
-void find_pieces(Workspace<T>& ws) {
-  for (int d = 0; d < ws.sys.elements; ++d) {
-    if (edge_count(ws, d) > 0) ws.piece[d] = piece_of(ws, d, value(rate_of(ws, d)));
-  }
 }
 
 /// Report every contact that has changed its mode; at the start, those alone that an impulse has locked.

@@ -13,7 +13,7 @@ inline bool is_few(const System& s) { return s.speeds <= few_speeds; }
 
 /// Numbers of things in a system, by which arrays are sized; for few speeds the matrices are whole.
 struct Sizes {
-  std::int64_t speeds, prescribed, states, shared, nodes, elements, contacts, directions, references, signals,
+  std::int64_t speeds, prescribed, supplies, states, shared, nodes, elements, contacts, directions, references, signals,
       processes;
   bool few;
   std::int64_t spares;      ///< most locked contacts that can depend on others
@@ -29,6 +29,7 @@ struct Sizes {
   explicit Sizes(const System& s)
       : speeds(s.speeds),
         prescribed(s.prescribed),
+        supplies(s.supplies),
         states(s.states),
         shared(s.shared),
         nodes(s.nodes),

@@ -152,6 +152,17 @@ def _eddy(_: Any) -> list[Point]:
     return [(0.5 * k, -k / (1.0 + 0.25 * k * k)) for k in range(11)]
 
 
+def _retarder(element: Any) -> list[Point]:
+    with suppress(Exception):
+        k, most, power = (float(getattr(element, name)) for name in ("capacity", "max_torque", "max_power"))
+        last = 1.6 * max(
+            min((most / k) ** 0.5, (power / k) ** (1 / 3)), power / most if k * (power / most) ** 2 > most else 0.0
+        )
+        speeds = [last * step / 40 for step in range(1, 41)]
+        return [(0.0, 0.0), *((w, -min(k * w * w, most, power / w)) for w in speeds)]
+    return [(0.0, 0.0), (0.5, -1.0), (1.0, -1.0)]
+
+
 def unknown(pen: Pen, shown: Drawn) -> None:
     """An element that has no symbol of its own: a box, its ports one below the other."""
     tall = max(10.0, *(abs(y) + 6.0 for y in shown.pins.values())) if shown.pins else 10.0
@@ -175,5 +186,6 @@ TORQUES = {
     "linear_torque": Symbol(over_speed(_linear), 15.0, 11.0, 11.0),
     "quadratic_torque": Symbol(over_speed(_quadratic), 15.0, 11.0, 11.0),
     "eddy_current_brake": Symbol(over_speed(_eddy), 15.0, 11.0, 11.0),
+    "retarder": Symbol(over_speed(_retarder), 15.0, 11.0, 11.0),
     "resisting_torque": Symbol(over_speed(_resisting), 15.0, 11.0, 11.0),
 }
