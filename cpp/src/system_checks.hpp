@@ -159,6 +159,23 @@ inline bool offsets_in_range(const System& s) {
          within(s.input_refs, s.n_input_refs, 0, s.inputs + s.shared + 2 * (ne + nc) - 1);
 }
 
+/// Whether the ways of the elements follow each other, those of one with the same offsets.
+inline bool ways_fit(const System& s) {
+  const auto same = [&](std::int64_t i) {
+    return s.element_kind[i] == s.element_kind[i - 1] && s.element_param[i] == s.element_param[i - 1] &&
+           s.element_state[i] == s.element_state[i - 1] && s.element_input[i] == s.element_input[i - 1];
+  };
+  for (std::int64_t i = 0; i < s.elements;) {
+    const std::int64_t n = ways_of(s.element_kind[i]);
+    if (i + n > s.elements || (n > 1 && s.full[0] == 0)) return false;
+    for (std::int64_t w = 0; w < n; ++w) {
+      if (s.element_way[i + w] != w || (w > 0 && !same(i + w))) return false;
+    }
+    i += n;
+  }
+  return true;
+}
+
 /// Whether an element lies inside the pools; its states.
 inline bool element_fits(const System& s, std::int64_t i, std::int64_t& states) {
   bool good = true;
@@ -171,6 +188,11 @@ inline bool element_fits(const System& s, std::int64_t i, std::int64_t& states) 
       if (good) states = states_of(s.element_kind[i], -1, s.params + s.element_param[i]);
     }
     good = good && s.element_state[i] + states <= s.states - s.shared;
+    if (s.element_way[i] != 0) states = 0;
+    if constexpr (FittedLaw<E>) {
+      good =
+          good && E::fits(*reinterpret_cast<const typename E::template Params<double>*>(s.params + s.element_param[i]));
+    }
   });
   visit_torque_curves(s.element_kind[i], [&](int at) { good = good && curve_fits(s, s.element_param[i] + at); });
   return good;
@@ -222,7 +244,7 @@ inline bool matrices_fit(const System& s) {
 
 /// Offsets and numbers inside the system that the core follows without looking.
 inline bool in_range(const System& s) {
-  bool good = offsets_in_range(s) && shared_in_range(s) && matrices_fit(s);
+  bool good = offsets_in_range(s) && ways_fit(s) && shared_in_range(s) && matrices_fit(s);
   for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
   std::int64_t all = 0, own = 0;
   for (std::int64_t i = 0; good && i < s.elements; ++i, all += own) good = element_fits(s, i, own);

@@ -111,11 +111,19 @@ void over_pieces(const P& p, check::Random& g, F&& visit) {
   }
 }
 
+/// Rates that a component sees.
+template <class E>
+constexpr int rates_of = [] {
+  if constexpr (requires { E::ways; }) return int(E::ways);
+  return 1;
+}();
+
 /// Run `call(params, at, out)` over rates, states, pieces and parameter sets, one parameter at a time also zero.
 template <class E, class F>
 void over_arguments(F&& call, Fields fields, int inputs, int states, int outputs) {
   using P = typename E::template Params<double>;
-  const int np = fields.count, n = 1 + states + inputs + np;
+  // of several ways all rates come first
+  const int np = fields.count, ways = rates_of<E>, n = ways + states + inputs + np;
   check::Random g{17};
   double x[most] = {};
   auto compare = [&](int zero) {
@@ -128,7 +136,7 @@ void over_arguments(F&& call, Fields fields, int inputs, int states, int outputs
       auto f = [&](const auto* v, auto* out) {
         using S = std::remove_cvref_t<decltype(*v)>;
         const auto& p = *reinterpret_cast<const typename E::template Params<S>*>(v + n - np);
-        call(p, At<S>{v[0], v + 1, v + 1 + states, piece, points}, out);
+        call(p, At<S>{v[0], v + ways, v + ways + states, piece, points, v}, out);
       };
       differentiate(f, x, n, outputs, fixed, zero >= 0);
     });
@@ -137,8 +145,10 @@ void over_arguments(F&& call, Fields fields, int inputs, int states, int outputs
     for (double rate : {-60.0, -3.1, -0.4, 0.7, 2.9, 60.0}) {
       for (int size = 0; size < (states > 0 ? 4 : 1); ++size) {
         x[0] = rate;
-        for (int i = 1; i <= states; ++i) x[i] = (g.below(2) * 2 - 1) * g.between(sizes[size][0], sizes[size][1]);
-        for (int i = 1 + states; i < 1 + states + inputs; ++i) x[i] = g.between(-2, longest + 2);
+        for (int i = 1; i < ways; ++i) x[i] = (g.below(2) * 2 - 1) * g.between(1, 90);
+        for (int i = ways; i < ways + states; ++i)
+          x[i] = (g.below(2) * 2 - 1) * g.between(sizes[size][0], sizes[size][1]);
+        for (int i = ways + states; i < ways + states + inputs; ++i) x[i] = g.between(-2, longest + 2);
         compare(-1);
         for (int zero = 0; zero < np && size == 0; ++zero) {
           if (!fields.fixed[zero]) compare(zero);
@@ -154,11 +164,13 @@ void torque_kinds_all() {
       using E = typename decltype(tag)::type;
       const Fields fields = Fields::of(tag, [kind](auto&&... f) { visit_torque_fixed(kind, f...); });
       auto call = [](const auto& p, const auto& at, auto* out) {
-        out[0] = E::torque(p, at);
-        E::state_rates(p, at, out + 1);
-        if constexpr (HeatingElement<E>) out[1 + E::states] = E::heat(p, at);
+        using S = std::remove_cvref_t<decltype(*out)>;
+        if constexpr (TorqueElement<E>) out[0] = E::torque(p, at);
+        if constexpr (CoupledElement<E>) E::torques(p, at, OwnTorques<S>(out));
+        E::state_rates(p, at, out + E::ways);
+        if constexpr (HeatingElement<E>) out[E::ways + E::states] = E::heat(p, at);
       };
-      over_arguments<E>(call, fields, E::inputs, E::states, 1 + E::states + HeatingElement<E>);
+      over_arguments<E>(call, fields, E::inputs, E::states, E::ways + E::states + HeatingElement<E>);
     });
   }
 }
@@ -409,6 +421,7 @@ void branches() {
   check::Random g{23};
   int compliant = 0, with_states = 0;
   for (int kind = 0; kind < torque_kinds + contact_kinds * law_kinds; ++kind) {
+    if (kind < torque_kinds && ways_of(kind) > 1) continue;
     Probe probe(kind, g);
     const bool sticks = kind >= torque_kinds && !probe.b.compliant;
     compliant += probe.b.compliant, with_states += probe.b.states > 0;

@@ -25,6 +25,7 @@ def lines() -> Iterator[str]:
             yield from asserts(component)
         yield from (*visitor(role), *fixed(role))
     yield f"inline constexpr int most_own_states = {max(len(one.states) for one in components())};"
+    yield f"inline constexpr int most_ways = {max(len(one.ways) or 1 for one in components())};"
     yield "}"
 
 

@@ -42,6 +42,7 @@ struct Workspace {
   Jacobian<T> jacobian;
   Shared<T> shared;
   Stages<T> stages;
+  Full<T> full;
   Edge<T> here{}, there{};
   Guards guard;
   Seen<T> seen;
@@ -63,7 +64,7 @@ void lay_out(W& ws, A& a) {
   a.take(ws.branch, n.directions), a.take(ws.branch_of, n.directions);
   auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
   each(ws.in, ws.contact, ws.happened, ws.held, ws.set, ws.problem, ws.decision, ws.geometry, ws.reduced, ws.rows,
-       ws.jacobian, ws.shared, ws.stages, ws.here, ws.there, ws.guard, ws.seen, ws.out, ws.events);
+       ws.jacobian, ws.shared, ws.stages, ws.full, ws.here, ws.there, ws.guard, ws.seen, ws.out, ws.events);
 }
 
 /// Lay the arrays of a workspace into memory; returns the size needed.

@@ -27,7 +27,7 @@ from clutchwork.model.start import start
 from clutchwork.model.structure import Kinematics, Mechanism
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from fractions import Fraction
 
 
@@ -53,7 +53,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     arrays |= _rates(model, rates, columns, Role.TORQUE, "element")
     arrays |= _rates(model, rates, columns, Role.CONTACT, "contact")
     states = list[float]()
-    arrays |= _elements(model, pools, wires, states)
+    arrays |= _elements(model, pools, wires, states) | {"full": [any(_is_coupled(c) for c, _ in model.acting)]}
     arrays |= _contacts(model, pools, wires, states)
     arrays |= flow_arrays(model, pools, wires)
     arrays |= heat_arrays(model, where)
@@ -150,19 +150,36 @@ def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, 
 def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role, prefix: str) -> dict[str, Any]:
     own = [row for row, (component, _) in zip(found, model.acting, strict=True) if component.role is role]
     return columns.split(f"{prefix}_rate", own) | {
-        f"{prefix}_kind": [number(type(component)) for component in model.role(role)],
+        f"{prefix}_kind": [number(type(component)) for component, _ in model.acting if component.role is role],
     }
 
 
-def _elements(model: Mechanism, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
-    params, offsets, refs = list[int](), list[int](), list[int]()
+def _is_coupled(component: Any) -> bool:
+    """Whether it is an element of several ways."""
+    return len(type(component).ways) > 1
+
+
+def _first_ways(model: Mechanism, which: Callable[[Any], bool]) -> list[int]:
+    """Numbers of the first directions of some torque elements."""
+    found, number = list[int](), 0
     for element in model.role(Role.TORQUE):
-        params.append(pools.add(element, element.name))
-        offsets.append(len(states))
-        refs.append(wires.connect(element))
+        found += [number] if which(element) else []
+        number += max(1, len(type(element).ways))
+    return found
+
+
+def _elements(model: Mechanism, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
+    params, offsets, refs, ways = list[int](), list[int](), list[int](), list[int]()
+    for element in model.role(Role.TORQUE):
+        own = range(max(1, len(type(element).ways)))
+        ways += own
+        params += [pools.add(element, element.name)] * len(own)
+        offsets += [len(states)] * len(own)
+        refs += [wires.connect(element)] * len(own)
         states += element.initial_states() if element.states else ()
     return {
-        "supply_element": [k for k, element in enumerate(model.role(Role.TORQUE)) if element.supply],
+        "supply_element": _first_ways(model, lambda element: bool(element.supply)),
+        "element_way": ways,
         "element_param": params,
         "element_state": offsets,
         "element_input": refs,

@@ -57,9 +57,12 @@ def numbered(
     source: Model,
 ) -> Numbered:
     """The places of everything in a System."""
+    # an element of several ways has as many places, of which the first counts
+    first = np.flatnonzero(arrays["element_way"] == 0).tolist()
+    numbers = {kind: first if kind is Role.TORQUE else range(len(parts)) for kind, parts in groups.items()}
     return Numbered(
         arrays,
-        {part.name: (kind, number) for kind, parts in groups.items() for number, part in enumerate(parts)},
+        {part.name: (kind, n) for kind, parts in groups.items() for n, part in zip(numbers[kind], parts, strict=True)},
         {item.name: number for number, item in enumerate(given)},
         {node.name: number for number, node in enumerate(thermal)},
         {int(direction): number for number, direction in enumerate(arrays["heat_direction"])},
@@ -86,6 +89,8 @@ def patches(where: Numbered, old: Any, new: Any) -> list[Patch]:
     if isinstance(old, ThermalNode):
         return list(_thermal(where, old, new))
     if not isinstance(old, Component) or role(old) not in PLAIN or type(old).parts is not Component.parts:
+        raise Unpatched
+    if type(old).ways and old.directions() != new.directions():
         raise Unpatched
     if where.massless and type(old).passive is not Component.passive:
         raise Unpatched

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +13,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.kept import kept
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.node import Component, Domain, Node
-from clutchwork.declare.ports import ends, ports
+from clutchwork.declare.ports import Direction, directions, port_domains, ports
 from clutchwork.declare.schema import State
 from clutchwork.model.parts import Sensor
 from clutchwork.model.structure import Places
@@ -29,18 +29,21 @@ HOUSING = -1  # index that stands for the housing, which is no node of the syste
 
 @dataclass(frozen=True)
 class Branch:
-    """A torque element, a contact or a prescribed speed: name, component and direction over the nodes."""
+    """A way of a torque element, a contact or a prescribed speed: name, component and direction over the nodes."""
 
     name: str
     component: Any
     direction: Mapping[int, float]  # node index or HOUSING -> coefficient of its speed in the rate
     domain: Domain
-    states: tuple[tuple[str, str, int], ...] = ()  # (name, unit, index among all states)
+    states: tuple[tuple[str, str, int], ...] = ()  # (name, unit, index among all states), at its first way
+    grounded: Mapping[Domain, float] = field(default_factory=dict)  # coefficient of the housing by kind of motion
+    number: int = 0  # of the way
+    watched: bool = False  # a way without torque
 
     @property
     def hidden(self) -> bool:
         """Whether it only measures a speed."""
-        return isinstance(self.component, Sensor)
+        return self.watched or isinstance(self.component, Sensor)
 
 
 @dataclass(frozen=True)
@@ -100,13 +103,13 @@ def wiring(system: System) -> Wiring:
     """The connections of a System, found once."""
     places = Places(system.nodes)
     gears = [GearRow(row.gear.name, dict(row.ports), _domains(row.gear)) for row in system.gears]
-    branches = [_branch(component, places) for component in (*system.elements, *system.contacts)]
+    branches = [_branch(component, way, places) for component, way in _ways((*system.elements, *system.contacts))]
     branches = _with_states(branches)
     return Wiring(
         nodes=system.nodes,
-        elements=tuple(branches[: len(system.elements)]),
-        contacts=tuple(branches[len(system.elements) :]),
-        motions=tuple(_branch(component, places) for component in system.motions),
+        elements=tuple(branches[: system.counts["elements"]]),
+        contacts=tuple(branches[system.counts["elements"] :]),
+        motions=tuple(_branch(component, way, places) for component, way in _ways(system.motions)),
         gears=tuple(gears),
         inputs=tuple((item.name, item.unit) for item in system.inputs),
         columns=row_columns(system.counts),
@@ -140,14 +143,22 @@ def row_columns(sizes: Mapping[str, int]) -> dict[str, slice]:
     return columns
 
 
-def _branch(component: Component, places: Places) -> Branch:
-    """Direction follower - base or shaft - base, over the nodes and the housing."""
-    moving, base = ends(component)
+def _ways(components: Iterable[Component]) -> Iterator[tuple[Component, Direction]]:
+    return ((component, way) for component in components for way in directions(component))
+
+
+def _branch(component: Component, way: Direction, places: Places) -> Branch:
+    """A direction over the nodes and the housing."""
     direction: dict[int, float] = {}
-    for node, factor in ((moving, 1.0), (base, -1.0)):
-        index = places.of(node, HOUSING)
+    grounded: dict[Domain, float] = {}
+    joined, domains = ports(component), port_domains(component)
+    for port, coefficient in way.coefficients.items():
+        index, factor = places.of(joined[port], HOUSING), float(coefficient)
         direction[index] = direction.get(index, 0.0) + factor
-    return Branch(component.name, component, direction, base.domain if moving.fixed else moving.domain)
+        if index == HOUSING:
+            grounded[domains[port]] = grounded.get(domains[port], 0.0) + factor
+    watched = way.way is not None and way.way.watched
+    return Branch(way.name, component, direction, way.domain, grounded=grounded, number=way.number, watched=watched)
 
 
 def _with_states(branches: list[Branch]) -> list[Branch]:
@@ -155,7 +166,7 @@ def _with_states(branches: list[Branch]) -> list[Branch]:
     made, first = list[Branch](), 0
     for branch in branches:
         law = branch.component.friction
-        own = tuple((branch.component if law is None else law).own_states())
+        own = () if branch.number else tuple((branch.component if law is None else law).own_states())
         states = tuple((state.name, state.unit, first + k) for k, state in enumerate(own))
         made.append(replace(branch, states=states))
         first += len(own)

@@ -27,7 +27,7 @@ HOOKS = (
     Hook(("runs_on",), "RunningOn", ("law",), "pieces that may be left on the way back"),
     Hook(("heat",), "HeatingElement", ("torque",), "heat that is not -torque rate"),
     Hook(("outside",), "BoundedLaw", ("law",), "tables that can be left"),
-    Hook(("fits",), "FittedLaw", ("law",), "tables whose sizes belong together"),
+    Hook(("fits",), "FittedLaw", ("law", "torque"), "tables whose sizes belong together"),
     Hook(("count",), "Sized", ("torque", "law"), "fewer states in use by its parameters"),
     Hook(("chatters",), "ChatteringLaw", ("law",), "a jump with the sign of the slip, without rest"),
     Hook(("gain",), "ShapedContact", ("contact",), "a torque per load that is not the coefficient"),

@@ -12,8 +12,9 @@ from clutchwork.declare import given
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
+    from fractions import Fraction
 
-    from clutchwork.declare.schema import Role, State
+    from clutchwork.declare.schema import Role, State, Way
 
 # what is wrong, as (quantity, what is so, remedy)
 Found: TypeAlias = "list[tuple[str, str, str]]"
@@ -192,6 +193,7 @@ class Component(Element):
     kind: ClassVar[str]
     role: ClassVar[Role]
     states: ClassVar[tuple[State, ...]] = ()
+    ways: ClassVar[tuple[Way, ...]] = ()
 
     one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
     work: ClassVar[Work] = Work.SOURCE  # of a torque element; the work of a contact is always heat
@@ -219,6 +221,13 @@ class Component(Element):
         that its springs in here give it, unless it has one of its own.
         """
         return ()
+
+    def directions(self) -> Mapping[str, Mapping[str, float | Fraction]]:
+        """Of an element with `ways`: the rate of each over the speeds at its ports, way -> port -> coefficient.
+
+        What is no whole number or Fraction counts by its decimal digits.
+        """
+        return {}
 
     def part(self, name: str) -> Element | ThermalNode | Node:
         """A part by its name within this component; KeyError when there is none."""

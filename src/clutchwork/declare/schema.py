@@ -35,6 +35,20 @@ class State:
 
 
 @dataclass(frozen=True)
+class Way:
+    """A direction along which an element acts: name, meaning.
+
+    An element of several ways sees the rates of all and gives a torque along each; a `watched` one gets none. The
+    domain is that of its rate and torque, "rotation" or "translation"; empty: that of its ports. docs/theory/coupled.md
+    """
+
+    name: str
+    doc: str
+    watched: bool = False
+    domain: str = ""
+
+
+@dataclass(frozen=True)
 class Spec:
     """Metadata of one declared field."""
 
@@ -164,6 +178,7 @@ def numbers(
     unit: str,
     doc: str,
     *,
+    default: None = MISSING,  # type: ignore[assignment]
     units: tuple[str, ...] = (),
     rising: str = "",
     above: float | None = None,
@@ -172,10 +187,12 @@ def numbers(
 ) -> Any:
     """A list of numbers, or of rows of equally many: a `Curve` of the C++ `Params` whose points hold one number each.
 
-    Rows stand one after another. With `rising` "strictly" each number must be above the one before.
+    Rows stand one after another. With `rising` "strictly" each number must be above the one before. Left out, where it
+    may be, a single zero stands for it there.
     """
-    spec = Spec("numbers", unit, doc, above=above, at_least=at_least, units=units, rising=rising, example=example)
-    return _field(spec, MISSING)
+    bounds: dict[str, Any] = {"above": above, "at_least": at_least, "rising": rising}
+    spec = Spec("numbers", unit, doc, default is None, **bounds, units=units, example=example)
+    return _field(spec, default)
 
 
 def signal(
@@ -285,8 +302,13 @@ def _check_ports(cls: type) -> None:
     frozen_default=True,
     field_specifiers=(port, param, flag, choice, curve, numbers, signal, law, option, text, function),
 )
-def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, ...] = ()) -> Callable[[C], C]:
-    """Freeze a declaration, register it under its kind, the stem of its module; `hooks`: clutchwork.declare.hooks."""
+def component(
+    role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, ...] = (), ways: tuple[Way, ...] = ()
+) -> Callable[[C], C]:
+    """Freeze a declaration, register it under its kind, the stem of its module; `hooks`: clutchwork.declare.hooks.
+
+    Parameters: ways, where its `directions` are others than follower - base, or shaft - base.
+    """
 
     def register(cls: C) -> C:
         frozen: Any = dataclass(frozen=True, repr=False)(cls)
@@ -294,10 +316,10 @@ def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, .
         wrong = hook_problems(role.value, hooks)
         if wrong:
             raise ValueError(f"{cls.__module__.replace('.', '/')}.py: {'; '.join(wrong)}")
-        if role in RATES:
+        if role in RATES and not ways:
             _check_ports(cls)
         _check_work(cls)
-        frozen.kind, frozen.role, frozen.states, frozen.hooks = kind, role, states, hooks
+        frozen.kind, frozen.role, frozen.states, frozen.hooks, frozen.ways = kind, role, states, hooks, ways
         REGISTRY[role].add(kind, frozen)
         PLAIN.add(frozen)
         schema_hash.cache_clear()
@@ -354,7 +376,8 @@ def compiled_text(cls: Any) -> str:
     """What the compiled core must agree on of one declaration."""
     names = ",".join(_field_text(f.name, s) for f, s in specs(cls, "param", "curve", "numbers", "signal"))
     sort = "" if cls.role is not Role.LAW else " sticks" if cls.sticks else " compliant"
-    return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}"
+    ways = "".join(f" {way.name}" for way in cls.ways) if len(cls.ways) > 1 else ""
+    return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}{ways}"
 
 
 def _field_text(name: str, spec: Spec) -> str:

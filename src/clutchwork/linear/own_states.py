@@ -39,9 +39,11 @@ def own_states(wiring: Wiring) -> list[OwnState]:
     for branch in (*wiring.elements, *wiring.contacts):
         passive = branch.component.passive()
         for number, (name, unit, index) in enumerate(branch.states):
-            made[index] = OwnState(f"{branch.name}.{name}", unit)
+            made[index] = OwnState(f"{branch.component.name}.{name}", unit)
             if number == 0 and passive is not None and passive.stiffness:
-                made[index] = OwnState(f"{branch.name}.twist", ANGLE[branch.domain], 1.0 / float(passive.stiffness))
+                made[index] = OwnState(
+                    f"{branch.component.name}.twist", ANGLE[branch.domain], 1.0 / float(passive.stiffness)
+                )
     for node in wiring.thermal:
         index, capacity = node.states[0][2], node.component.capacity
         if capacity is None:

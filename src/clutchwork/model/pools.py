@@ -34,7 +34,7 @@ class Pools:
                 self.places[f"{path}.{item.name}"] = len(self.params)
                 self.params.append(float(spec.choices.index(value) if spec.choices else value))
             else:
-                points = _points(value) if spec.what == "curve" else _plain(value)
+                points = _points(value) if spec.what == "curve" else _plain((0.0,) if value is None else value)
                 self.params += [float(len(self.points)), float(len(points))]
                 self.points += points
         return offset

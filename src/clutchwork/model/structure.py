@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Component, Domain, Node
-from clutchwork.declare.ports import ends, ports
+from clutchwork.declare.ports import directions, ports
 from clutchwork.declare.rational import MINUS, ONE, Row, exact, plus
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
 from clutchwork.model.numbers import as_float
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from fractions import Fraction
 
 
@@ -53,8 +53,8 @@ class Mechanism:
 
     @cached_property
     def acting(self) -> list[tuple[Any, Row]]:
-        """Torque elements and contacts with their rate over the nodes."""
-        return [(c, self.direction(c)) for role in (Role.TORQUE, Role.CONTACT) for c in self.role(role)]
+        """Torque elements and contacts with their rate over the nodes, one entry for each of their ways."""
+        return [(c, row) for role in (Role.TORQUE, Role.CONTACT) for c in self.role(role) for row in self.directions(c)]
 
     @cached_property
     def places(self) -> Places:
@@ -72,9 +72,19 @@ class Mechanism:
         return [exact(node.speed or 0.0) if _sensible(node.speed) else None for node in self.nodes]
 
     def direction(self, component: Component) -> Row:
-        """Rate of an element over the nodes: follower - base, or shaft - base."""
-        moving, base = ends(component)
-        return plus(self._at(moving, ONE), ONE, self._at(base, MINUS))
+        """Rate of an element over the nodes, of its first way where it has several."""
+        return self.directions(component)[0]
+
+    def directions(self, component: Component) -> list[Row]:
+        """Rate of each way of an element over the nodes."""
+        joined = ports(component)
+        return [self._over(joined, way.coefficients) for way in directions(component)]
+
+    def _over(self, joined: Mapping[str, Node], coefficients: Mapping[str, Fraction]) -> Row:
+        row: Row = {}
+        for port, coefficient in coefficients.items():
+            row = plus(row, ONE, self._at(joined[port], coefficient))
+        return row
 
     def _at(self, node: Node, factor: Fraction) -> Row:
         return {} if node.fixed else {self.places.of(node): factor}

@@ -24,7 +24,7 @@ from clutchwork.declare.node import Domain
 from clutchwork.declare.speech import where_signals
 from clutchwork.results import heat_channels, reactions
 from clutchwork.results.forms import LOCKED as LOCKED
-from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Slip, Total
+from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Powers, Slip, Total
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -99,6 +99,8 @@ class Channels(Mapping[str, Channel]):
         for branch in self._wiring.elements:
             if not branch.hidden:
                 yield from self._element(branch)
+            if not branch.number and branch.name != branch.component.name:
+                yield from self._whole(branch)
         for index, branch in enumerate(self._wiring.contacts):
             yield from self._contact(branch, index)
         yield from self._rigid()
@@ -134,13 +136,26 @@ class Channels(Mapping[str, Channel]):
         yield f"{name}_power", _column(self._start("supply_power") + number, "W")
         yield f"{name}_energy", _column(self._start("supply_energy") + number, "J")
 
+    def _whole(self, first: Branch) -> Iterator[tuple[str, Channel]]:
+        """Power and work of an element that acts along several ways: the sums of all."""
+        name = first.component.name
+        ways = [branch for branch in self._wiring.elements if branch.component is first.component]
+        acting = [branch for branch in ways if not branch.hidden]
+        powers = tuple(Power(self._total("torque", branch), self._rate(branch)) for branch in acting)
+        work = Total(tuple(index for branch in acting for index in self._total("work", branch).indices))
+        yield f"{name}.power", Channel("W", Powers(powers))
+        yield f"{name}.work", Channel("J", work)
+
     def _states(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
         passive = branch.component.passive()
         for number, (name, unit, index) in enumerate(branch.states):
             column = self._start("state") + index
-            yield f"{branch.name}.{name}", _column(column, unit)
+            yield f"{branch.component.name}.{name}", _column(column, unit)
             if number == 0 and passive is not None and passive.stiffness:
-                yield f"{branch.name}.twist", Channel(ANGLE[branch.domain], Affine(column, 1.0 / passive.stiffness))
+                yield (
+                    f"{branch.component.name}.twist",
+                    Channel(ANGLE[branch.domain], Affine(column, 1.0 / passive.stiffness)),
+                )
 
     def _contact(self, branch: Branch, index: int) -> Iterator[tuple[str, Channel]]:
         mode = self._start("contact_mode") + index

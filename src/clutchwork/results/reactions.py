@@ -34,11 +34,11 @@ def on_housing(wiring: Wiring, rows_to_multipliers: Matrix, domain: Domain) -> M
     for part, branches in (("element_torque", wiring.elements), ("contact_torque", wiring.contacts)):
         start = wiring.columns[part].start
         for index, branch in enumerate(branches):
-            total[start + index] += branch.direction.get(HOUSING, 0.0) * (branch.domain is domain)
+            total[start + index] += branch.grounded.get(domain, 0.0)
     for index, row in enumerate(wiring.gears):
         total += _on_housing(row, domain) * rows_to_multipliers[index]
     for index, branch in enumerate(wiring.motions, start=len(wiring.gears)):
-        total += branch.direction.get(HOUSING, 0.0) * (branch.domain is domain) * rows_to_multipliers[index]
+        total += branch.grounded.get(domain, 0.0) * rows_to_multipliers[index]
     return total
 
 

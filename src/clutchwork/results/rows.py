@@ -40,7 +40,7 @@ def _states(wiring: Wiring) -> Iterator[Named]:
     """States of elements and contacts, then the shared ones: heat of thermal nodes, processes."""
     owners: list[Branch | Source] = [*wiring.elements, *wiring.contacts, *wiring.thermal]
     for branch in owners:
-        yield from ((f"{branch.name}.{name}", unit) for name, unit, _ in branch.states)
+        yield from ((f"{branch.component.name}.{name}", unit) for name, unit, _ in branch.states)
     for process in wiring.processes:
         for (name, unit, _), scale in zip(process.states, state_scales(process.component), strict=True):
             yield f"{process.name}.{name}", unit if scale == 1.0 else f"{scale:g} {unit}"

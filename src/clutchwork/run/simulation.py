@@ -236,12 +236,18 @@ def message_of(system: System, status: int, run: Any) -> str:
 
 def names_part(system: System, index: int) -> bool:
     """Whether a number is that of an element or a contact."""
-    return 0 <= index < len(system.elements) + len(system.contacts)
+    return 0 <= index < len(_acting(system))
+
+
+def _acting(system: System) -> list[Any]:
+    """The elements and contacts by the numbers that the core has for them: one of several ways has one for each."""
+    known = wiring(system)
+    return [branch.component for branch in (*known.elements, *known.contacts)]
 
 
 def told(system: System, status: int, index: int, at: float, value: float, column: int) -> str:
     """Why a run stopped at a time: an element or contact by its number, and its value, or a number of the row."""
-    parts = [*system.elements, *system.contacts]
+    parts = _acting(system)
     if NAMES[status] == "zeno" and index < 0:
         number = int(value)
         if number >= len(system.inputs):

@@ -46,6 +46,31 @@ struct OwnInputs {
   }
 };
 
+/// Rates of the ways of an element, by the names of the declaration: `at.rates[Way::...]`.
+template <class S>
+struct OwnRates {
+  const S* first = nullptr;
+  CLUTCHWORK_INLINE OwnRates() = default;
+  CLUTCHWORK_INLINE OwnRates(const S* rates) : first(rates) {}
+  template <class Name>
+  CLUTCHWORK_INLINE const S& operator[](Name name) const {
+    static_assert(std::is_enum_v<Name>, "a rate is read by the name of its way, as at.rates[Way::...]");
+    return first[int(name)];
+  }
+};
+
+/// Torques along the ways of an element, by the names of the declaration: `torque[Way::...]`.
+template <class S>
+struct OwnTorques {
+  S* first;
+  CLUTCHWORK_INLINE OwnTorques(S* torques) : first(torques) {}
+  template <class Name>
+  CLUTCHWORK_INLINE S& operator[](Name name) const {
+    static_assert(std::is_enum_v<Name>, "a torque is set by the name of its way, as torque[Way::...]");
+    return first[int(name)];
+  }
+};
+
 /// Where a component is evaluated.
 template <class S>
 struct At {
@@ -54,6 +79,7 @@ struct At {
   OwnInputs<S> input;     ///< own inputs
   int piece;              ///< number of the smooth piece of the rate
   const Real<S>* points;  ///< pool of curves: x, y, slope to the next point
+  OwnRates<S> rates{};    ///< of an element of several ways
 };
 
 /// Number of kinks inside a curve, where one linear piece follows another.
@@ -82,6 +108,14 @@ concept TorqueElement = requires(const typename E::template Params<double>& p, c
   { E::torque(p, at) } -> std::same_as<double>;
   { E::state_rates(p, at, rates) } -> std::same_as<void>;
   { E::inputs } -> std::convertible_to<int>;
+};
+
+/// The same for an element of several ways: a torque along each, zero along one that it only watches.
+template <class E>
+concept CoupledElement = requires(const typename E::template Params<double>& p, const At<double>& at, double* rates) {
+  { E::torques(p, at, OwnTorques<double>(rates)) } -> std::same_as<void>;
+  { E::state_rates(p, at, rates) } -> std::same_as<void>;
+  requires E::ways > 1;
 };
 
 /// Friction contact: the load that multiplies the coefficient of its law, and whether it is a freewheel.
@@ -211,7 +245,7 @@ concept BoundedLaw = requires(const typename L::template Params<double>& p, cons
   { L::outside(p, at, seen) } -> std::same_as<double>;
 };
 
-/// Law whose tables have sizes that must belong together.
+/// Law or element whose tables have sizes that must belong together.
 template <class L>
 concept FittedLaw = requires(const typename L::template Params<double>& p) {
   { L::fits(p) } -> std::same_as<bool>;

@@ -53,6 +53,15 @@ T rate_of(const Workspace<T>& ws, int d) {
   return r;
 }
 
+/// Rates of all ways of a branch at the present speeds.
+template <class T>
+struct PresentRates {
+  T at[most_ways];
+  PresentRates(const Workspace<T>& ws, const Branch<T>& b) {
+    for (int i = 0; i < b.ways; ++i) at[i] = rate_of(ws, b.direction + i);
+  }
+};
+
 /// The branch of an element, or of a contact that slips with the given sign.
 template <class T>
 Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
@@ -66,6 +75,7 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
     b.inputs = element_inputs(sys.element_kind[d]);
     b.kind = sys.element_kind[d];
     b.law = -1;
+    b.ways = sys.element_way[d] == 0 ? ways_of(b.kind) : 0;
     b.params = ws.params + sys.element_param[d];
     b.state = sys.element_state[d];
     b.input = ws.in.u + sys.element_input[d];
@@ -73,6 +83,7 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
   } else {
     const int c = d - int(sys.elements);
     b.kind = sys.contact_kind[c];
+    b.ways = 1;
     b.law = sys.contact_law[c];
     b.params = ws.params + sys.contact_param[c];
     b.law_params = ws.params + sys.contact_law_param[c];
@@ -88,7 +99,8 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
     b.compliant = ws.contact.compliant[c] != 0;
     if (b.compliant) b.sign = forward;
   }
-  b.states = states_of(b.kind, b.law, b.law < 0 ? b.params : b.law_params);
+  // the first way has the states of all
+  b.states = b.ways > 0 ? states_of(b.kind, b.law, b.law < 0 ? b.params : b.law_params) : 0;
   return b;
 }
 

@@ -16,6 +16,11 @@ int states_of(int kind, int law, const T* params) {
   return law < 0 ? visit_torque(kind, count) : visit_law(law, count);
 }
 
+/// Ways of a torque element.
+inline int ways_of(int kind) {
+  return visit_torque(kind, [](auto tag) { return int(decltype(tag)::type::ways); });
+}
+
 /// Most states of a law.
 inline int most_law_states(int law) {
   return visit_law(law, [](auto tag) { return int(decltype(tag)::type::states); });

@@ -32,6 +32,13 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
       if (sign != forward && sign != backward) continue;
     }
     const Branch<T> b = make_branch(ws, d, sign);
+    if (b.ways != 1) {
+      T torque[most_ways];
+      const PresentRates<T> rate(ws, b);
+      if (b.ways > 0) element_torques(ws, b, rate.at, ws.state + b.state, b.input, ws.seen.state_rates, torque);
+      for (int i = 0; i < b.ways; ++i) add(torque[i], d + i);
+      continue;
+    }
     add(branch_torque_once(ws, b, rate_of(ws, d), ws.state, ws.seen.state_rates), d);
   }
 }

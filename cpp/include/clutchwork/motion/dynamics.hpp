@@ -5,6 +5,7 @@
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/full.hpp>
 #include <clutchwork/motion/reduce.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/workspace.hpp>
@@ -16,6 +17,7 @@ namespace clutchwork {
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void evaluate_inline(Form& form, Real<T> t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
+  if constexpr (Form::full) return evaluate_whole(form, t, y, d, ws.full.plain.rate, ws.full.plain.torque);
   const int nz = form.nz(), n = form.n();
   inputs_with(ws, t, y + nz);
   for (int i = 0; i < n; ++i) d[i] = T(0);
@@ -45,6 +47,7 @@ template <class Form, class T = typename Form::Scalar>
 void observe(Form& form, double t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
   T *rate = ws.seen.rate, *torque = ws.seen.torque;
+  if constexpr (Form::full) return evaluate_whole(form, t, y, d, rate, torque);
   const int nz = form.nz(), n = form.n();
   inputs_with(ws, t, y + nz);
   for (int i = 0; i < n; ++i) d[i] = T(0);
@@ -59,6 +62,7 @@ void observe(Form& form, double t, const T* y, T* d) {
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void linearize(Form& form, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
+  if constexpr (Form::full) return linearize_whole(form, t, y, d, dt, edge);
   const int nz = form.nz(), n = form.n();
   inputs_with(ws, t, y + nz);
   input_slopes_at(ws, t);
@@ -134,20 +138,18 @@ T capacity_swing(const Workspace<T>& ws, int c, T capacity) {
       [] { return T(0); });
 }
 
-/// Multipliers of the locked contacts, their drift and their capacities at the point that was linearized last.
+/// Torques of the branches and their drift at the point that was linearized last, at y, where the speeds change with
+/// `velocity`.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
+CLUTCHWORK_INLINE void drift_torques(Form& form, const T* y, const T* velocity, const T* d, const Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
-  const int m = ws.held.n, nb = ws.n_branches;
-  if (m == 0) return;
   T *drift = ws.seen.drift, *torque = ws.seen.torque;
   const T* states = d + form.nz();
-  T size = T(0);
-  for (int k = 0; k < nb; ++k) {
+  if constexpr (Form::full) return drift_whole(form, y, velocity, states, torque, drift);
+  for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
     const Partial<T>& p = ws.jacobian.partial[k];
     torque[k] = p.torque;
-    size += abs(p.torque);
     drift[k] = p.by_rate * (edge.slope[k] - offset_slope(ws, k)) + p.by_time;
     for (int s = 0; s < b.states; ++s) drift[k] += ws.jacobian.f_state[b.state + s] * states[b.state + s];
     if constexpr (!Form::small) {
@@ -155,8 +157,19 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
       for (int j = 0; j < nx; ++j) drift[k] += ws.shared.torque_by[k * nx + j] * states[ws.sys.states - nx + j];
     }
   }
-  multipliers(ws, torque, true, edge.multiplier);
-  multipliers(ws, drift, false, edge.drift);
+}
+
+/// Multipliers of the locked contacts, their drift and their capacities there.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void sense(Form& form, const T* y, const T* velocity, const T* d, Edge<T>& edge) {
+  Workspace<T>& ws = form.ws;
+  const int m = ws.held.n;
+  if (m == 0) return;
+  drift_torques(form, y, velocity, d, edge);
+  T size = T(0);
+  for (int k = 0; k < ws.n_branches; ++k) size += abs(ws.seen.torque[k]);
+  multipliers(ws, ws.seen.torque, true, edge.multiplier);
+  multipliers(ws, ws.seen.drift, false, edge.drift);
   for (int a = 0; a < m; ++a) {
     edge.noise[a] = T(1e-12) * size;
     edge.capacity[a] = capacity_at(ws, ws.held.contact[a], edge.multiplier[a]);
@@ -200,6 +213,7 @@ void expand(Form& form, const T* z, T* v, bool offset = true) {
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void floor_states(Form& form, const T* y) {
   Workspace<T>& ws = form.ws;
+  if constexpr (Form::full) return floor_whole(form, y);
   const Real<T> rtol = ws.options.rtol, atol = ws.options.atol;
   for (int i = 0; i < form.ns(); ++i) ws.reduced.floor[i] = atol;
   for (int k = 0; k < ws.n_branches; ++k) {

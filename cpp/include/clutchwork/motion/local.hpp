@@ -53,10 +53,17 @@ class LocalDerivatives {
     for (int i = 0; i < sys_.states; ++i) d[i] = T(0);
     for (int k = 0; k < ws_.n_branches; ++k) {
       rate[k] = rate_of(ws_, ws_.branch[k].direction);
-      torque[k] = branch_torque_once(ws_, ws_.branch[k], rate[k], ws_.state, d);
+      const Branch<T>& b = ws_.branch[k];
+      if (b.ways == 1) torque[k] = branch_torque_once(ws_, b, rate[k], ws_.state, d);
+    }
+    for (int k = 0; k < ws_.n_branches; ++k) {
+      const Branch<T>& b = ws_.branch[k];
+      if (b.ways > 1) element_torques(ws_, b, rate + k, ws_.state + b.state, b.input, d + b.state, torque + k);
     }
     if (sys_.shared > 0) shared_rates(ws_, rate, torque, ws_.state, d);
-    for (int k = 0; k < ws_.n_branches; ++k) fill_branch(k);
+    for (int k = 0; k < ws_.n_branches; ++k) {
+      if (ws_.branch[k].ways > 0) fill_branch(k);
+    }
     for (int h = 0; h < sys_.heats; ++h) fill_heat(h);
     for (int f = 0; f < sys_.flows; ++f) fill_flow(f);
     for (int i = 0; i < sys_.processes; ++i) fill_process(i);
@@ -65,7 +72,7 @@ class LocalDerivatives {
 
  private:
   static constexpr int most_own = most_own_states > 0 ? most_own_states : 1;
-  static constexpr int first_input = 1 + most_own, N = first_input + 2 * most_inputs;
+  static constexpr int first_own = most_ways, first_input = first_own + most_own, N = first_input + 2 * most_inputs;
   using S = Dual<T, N>;
 
   Workspace<T>& ws_;
@@ -82,21 +89,21 @@ class LocalDerivatives {
   double* row_of_flow(int f) { return row_of_capacity(int(3 * n_.contacts) + f); }
   double& value_in(double* row) { return row[n_.columns - 1]; }
 
-  /// A branch at the present point, over its rate, its own states and its inputs.
+  /// A branch at the present point, over the rates of its ways, its own states and its inputs.
   struct Point {
-    S rate, own[most_own], own_rates[most_own], input[most_inputs], law_input[most_inputs];
+    S rate[most_ways], own[most_own], own_rates[most_own], input[most_inputs], law_input[most_inputs];
   };
-  void place(Point& at, const Branch<T>& b, T rate) const {
-    at.rate = S::variable(rate, 0);
-    for (int i = 0; i < b.states; ++i) at.own[i] = S::variable(ws_.state[b.state + i], 1 + i);
+  void place(Point& at, const Branch<T>& b, const T* rate) const {
+    for (int i = 0; i < b.ways; ++i) at.rate[i] = S::variable(rate[i], i);
+    for (int i = 0; i < b.states; ++i) at.own[i] = S::variable(ws_.state[b.state + i], first_own + i);
     for (int i = 0; i < b.inputs; ++i) at.input[i] = S::variable(b.input[i], first_input + i);
     for (int i = 0; i < b.law_inputs; ++i) at.law_input[i] = S::variable(b.law_input[i], first_input + most_inputs + i);
   }
 
   /// row += factor * derivatives of f, and its value.
   void add(double* row, T factor, const S& f, const Branch<T>& b) {
-    row[b.direction] += value(factor * f.d[0]);
-    for (int i = 0; i < b.states; ++i) row[n_.directions + b.state + i] += value(factor * f.d[1 + i]);
+    for (int i = 0; i < b.ways; ++i) row[b.direction + i] += value(factor * f.d[i]);
+    for (int i = 0; i < b.states; ++i) row[n_.directions + b.state + i] += value(factor * f.d[first_own + i]);
     for (int i = 0; i < b.inputs; ++i) add_reference(row, factor * f.d[first_input + i], int(b.input - ws_.in.u) + i);
     for (int i = 0; i < b.law_inputs; ++i)
       add_reference(row, factor * f.d[first_input + most_inputs + i], int(b.law_input - ws_.in.u) + i);
@@ -124,7 +131,7 @@ class LocalDerivatives {
   /// row += factor * derivatives of the heat of branch k [W], and its value where that is wanted.
   void add_heat(double* row, T factor, int k, bool valued) {
     const Branch<T>& b = ws_.branch[k];
-    const T rate = ws_.seen.rate[k], torque = ws_.seen.torque[k];
+    const T *rate = ws_.seen.rate + k, *torque = ws_.seen.torque + k;
     const double before = value_in(row);
     const bool own =
         b.law < 0 && visit_torque(
@@ -135,16 +142,17 @@ class LocalDerivatives {
                              Point at;
                              place(at, b, rate);
                              const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-                             add(row, factor, E::heat(p, At<S>{at.rate, at.own, at.input, b.piece, ws_.sys.points}), b);
+                             const At<S> here{at.rate[0], at.own, at.input, b.piece, ws_.sys.points, at.rate};
+                             add(row, factor, E::heat(p, here), b);
                              return true;
                            }
                            return false;
                          });
-    if (!own) {
-      const double* own_torque = row_of_torque(b.direction);
-      for (std::int64_t i = 0; i + 1 < n_.columns; ++i) row[i] -= value(factor * rate) * own_torque[i];
-      row[b.direction] -= value(factor * torque);
-      value_in(row) -= value(factor * rate * torque);
+    for (int w = 0; w < b.ways && !own; ++w) {
+      const double* own_torque = row_of_torque(b.direction + w);
+      for (std::int64_t i = 0; i + 1 < n_.columns; ++i) row[i] -= value(factor * rate[w]) * own_torque[i];
+      row[b.direction + w] -= value(factor * torque[w]);
+      value_in(row) -= value(factor * rate[w] * torque[w]);
     }
     if (!valued) value_in(row) = before;
   }
@@ -152,22 +160,16 @@ class LocalDerivatives {
   void fill_branch(int k) {
     const Branch<T>& b = ws_.branch[k];
     Point at;
-    place(at, b, ws_.seen.rate[k]);
-    S f{};
+    place(at, b, ws_.seen.rate + k);
+    S f[most_ways];
     if (b.law < 0) {
-      f = visit_torque(b.kind, [&](auto tag) {
-        using E = typename decltype(tag)::type;
-        const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-        const At<S> here{at.rate, at.own, at.input, b.piece, ws_.sys.points};
-        if constexpr (E::states > 0) E::state_rates(p, here, at.own_rates);
-        return E::torque(p, here);
-      });
+      element_torques(ws_, b, at.rate, at.own, at.input, at.own_rates, f);
     } else if (b.compliant) {
-      f = bending_torque<most_own_states, T, S>(ws_, b, at.rate, at.own, at.input, at.law_input, at.own_rates);
+      f[0] = bending_torque<most_own_states, T, S>(ws_, b, at.rate[0], at.own, at.input, at.law_input, at.own_rates);
     } else {
-      f = sliding_torque<T, S>(ws_, b, at.rate, at.input, at.law_input);
+      f[0] = sliding_torque<T, S>(ws_, b, at.rate[0], at.input, at.law_input);
     }
-    add(row_of_torque(b.direction), T(1), f, b);
+    for (int i = 0; i < b.ways; ++i) add(row_of_torque(b.direction + i), T(1), f[i], b);
     for (int i = 0; i < b.states; ++i) add(row_of_state(b.state + i), T(1), at.own_rates[i], b);
   }
 
@@ -236,7 +238,8 @@ class LocalDerivatives {
   void add_static(double* row, int c, int resisted, int sign) {
     const Branch<T> b = make_branch(ws_, int(sys_.elements) + c, 0);
     Point at;
-    place(at, b, T(0));
+    const T still = T(0);
+    place(at, b, &still);
     const S hold = visit_law(b.law, [&](auto tag) {
       using L = typename decltype(tag)::type;
       return L::hold(Lifted<L, S, T>(b.law_params).get(), At<S>{S(0), nullptr, at.law_input, 0, sys_.points});

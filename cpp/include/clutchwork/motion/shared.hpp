@@ -84,7 +84,12 @@ template <class T>
   T* x = d + sys.states - sys.shared;
   for (int j = 0; j < sys.shared; ++j) x[j] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
-    ws.shared.heat[k] = branch_heat(ws, ws.branch[k], rate[k], state, Dual<T, 1>(torque[k])).v;
+    const Branch<T>& b = ws.branch[k];
+    if (b.ways == 1) {
+      ws.shared.heat[k] = branch_heat(ws, b, rate[k], state, Dual<T, 1>(torque[k])).v;
+    } else {
+      ws.shared.heat[k] = b.ways == 0 ? T(0) : element_heat(ws, b, rate + k, state + b.state, b.input, torque + k);
+    }
   }
   direction_inputs(ws, rate);
   for (int h = 0; h < sys.heats; ++h) {

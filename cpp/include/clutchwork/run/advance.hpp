@@ -33,9 +33,10 @@ Status run_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink)
   return status;
 }
 
-/// Exact sizes for small systems, one sparse form for the rest.
+/// The full form for systems that need it; exact sizes for small systems, one sparse form for the rest.
 template <class T, int NZ = 1, int NS = 0>
 Status dispatch(Workspace<T>& ws, double t_end, Sink& sink) {
+  if (ws.sys.full[0] != 0) return run_phase<FullForm<T>>(ws, t_end, sink);
   if (ws.reduced.is_sparse) return run_phase<SparseForm<T>>(ws, t_end, sink);
   if constexpr (NZ > small_speeds) {
     return Status::no_mode;

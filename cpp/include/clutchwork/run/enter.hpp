@@ -60,8 +60,8 @@ Method choose_method(Workspace<T>& ws) {
   // speeds without inertia are algebraic: only a method for stiff motion carries them
   if (has_massless(ws)) return is_for_stiff(wanted) ? wanted : first_method(true);
   if (wanted != Method::auto_) return wanted;
-  // shared states may be stiff
-  return first_method(ws.sys.shared > 0 || !is_soft(ws));
+  // shared states may be stiff, and so may what several ways couple
+  return first_method(ws.sys.full[0] != 0 || ws.sys.shared > 0 || !is_soft(ws));
 }
 
 /// Contacts without load forget: the bristles of their laws are straight when they close again.
@@ -84,7 +84,7 @@ void turn_jumped(Workspace<T>& ws) {
     const T rate = rate_of(ws, b.direction);
     const int heading = value(rate) > 0 ? forward : backward;
     if (abs(value(rate)) <= slip_tolerance(ws) || heading == ws.heading[b.direction] || !law_turns(b)) continue;
-    ws.piece[b.direction] = b.piece = law_cross(ws, b, rate, turned, ws.state);
+    ws.piece[b.direction] = b.piece = law_cross(ws, b, PresentRates<T>(ws, b).at, turned, ws.state);
     ws.heading[b.direction] = heading;
   }
 }
@@ -127,7 +127,7 @@ bool enter_mode(Workspace<T>& ws) {
   turn_jumped(ws);
   if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);
-  ws.reduced.is_sparse = sys.states > most_small_states(ws.reduced.method) || sys.shared > 0 ||
+  ws.reduced.is_sparse = sys.full[0] != 0 || sys.states > most_small_states(ws.reduced.method) || sys.shared > 0 ||
                          !is_small_size(ws.reduced.nz, sys.states) || has_massless(ws);
   if (!factor_mobility(ws) || !reduce_motion(ws)) return false;
   list_lines(ws);

@@ -132,9 +132,9 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
     const Branch<T>& b = ws.branch[k];
     int who = turned;
     inputs_with(ws, step.t, step.y0() + nz);
-    const auto start = law_margin(ws, b, ws.here.rate[k], ws.here.slope[k], step.y0() + nz, step.f0() + nz, who);
+    const auto start = law_margin(ws, b, ws.here.rate + k, ws.here.slope + k, step.y0() + nz, step.f0() + nz, who);
     inputs_with(ws, step.t + step.h, step.y1() + nz);
-    const auto end = law_margin(ws, b, ws.there.rate[k], ws.there.slope[k], step.y1() + nz, step.f1() + nz, who);
+    const auto end = law_margin(ws, b, ws.there.rate + k, ws.there.slope + k, step.y1() + nz, step.f1() + nz, who);
     const double change = abs(value(end.v - start.v));
     const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
     if (smaller(value(start.v), value(end.v)) > larger(change, drift)) continue;
@@ -142,8 +142,10 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
     auto f = [&](double s) {
       interpolate(form, step, s, step.point());
       inputs_with(ws, step.t + s * step.h, step.point() + nz);
-      const T rate = form.rate(k, step.point()) + offset_rate(ws, k);
-      return noise + value(law_margin(ws, b, rate, T(0), step.point() + nz, step.f0() + nz, who).v);
+      T rate[most_ways];
+      const T still[most_ways] = {};
+      for (int w = 0; w < b.ways; ++w) rate[w] = form.rate(k + w, step.point()) + offset_rate(ws, k + w);
+      return noise + value(law_margin(ws, b, rate, still, step.point() + nz, step.f0() + nz, who).v);
     };
     const double s = first_crossing(f, noise + value(start.v), noise + value(end.v), hit.s);
     if (!is_first(hit, s)) continue;

@@ -62,7 +62,7 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   Branch<T>& b = ws.branch[k];
   T* state = step.y0() + form.nz();
   int& heading = ws.heading[b.direction];
-  b.piece = law_cross(ws, b, rate_of(ws, b.direction), who, state);
+  b.piece = law_cross(ws, b, PresentRates<T>(ws, b).at, who, state);
   // a state that starts to slide does so the way the contact slips, however small the slip
   if (who == turned) {
     heading = -heading;

@@ -271,7 +271,7 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (!law) pass_line(form_, *guard);
     look_here();
-    if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(ws_, hit.index));
+    if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(form_, hit.index));
     h_ = ws_.last_step;
     return true;
   }

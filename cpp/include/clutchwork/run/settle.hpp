@@ -10,10 +10,12 @@ namespace clutchwork {
 template <class T>
 void find_pieces(Workspace<T>& ws) {
   for (int d = 0; d < ws.sys.elements; ++d) {
-    const T rate = rate_of(ws, d);
+    if (ws.sys.element_way[d] != 0) continue;
     const int edges = edge_count(ws, d);
-    if (edges > 0) ws.piece[d] += piece_of(ws, d, value(rate)) - ws.piece[d] % (edges + 1);
-    if (is_settling(ws.sys.element_kind[d])) ws.piece[d] = settled_piece(ws, make_branch(ws, d, 0), rate);
+    if (edges > 0) ws.piece[d] += piece_of(ws, d, value(rate_of(ws, d))) - ws.piece[d] % (edges + 1);
+    if (!is_settling(ws.sys.element_kind[d])) continue;
+    const Branch<T> b = make_branch(ws, d, 0);
+    ws.piece[d] = settled_piece(ws, b, PresentRates<T>(ws, b).at);
   }
 }
 
@@ -22,7 +24,7 @@ template <class T>
 void settle_pieces(Workspace<T>& ws) {
   for (int i = 0; i < ws.guard.n_switching; ++i) {
     Branch<T>& b = ws.branch[ws.guard.switching[i]];
-    if (b.law < 0) ws.piece[b.direction] = b.piece = settled_piece(ws, b, rate_of(ws, b.direction));
+    if (b.law < 0) ws.piece[b.direction] = b.piece = settled_piece(ws, b, PresentRates<T>(ws, b).at);
   }
 }
 

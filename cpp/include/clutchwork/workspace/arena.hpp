@@ -16,6 +16,7 @@ struct Sizes {
   std::int64_t speeds, prescribed, supplies, states, shared, nodes, elements, contacts, directions, references, signals,
       processes;
   bool few;
+  bool full;                ///< it runs in the full form
   std::int64_t spares;      ///< most locked contacts that can depend on others
   std::int64_t set;         ///< most contacts of a set that depend on each other
   std::int64_t factor;      ///< of the mass matrix
@@ -39,7 +40,8 @@ struct Sizes {
         references(s.n_input_refs + s.prescribed),
         signals(s.inputs),
         processes(s.processes),
-        few(is_few(s)) {
+        few(is_few(s)),
+        full(s.full != nullptr && s.full[0] != 0) {
     const auto nv = speeds, nc = contacts;
     spares = few ? (nc > 1 ? nc : 0) : s.spares, set = few ? spares : s.set_size;
     factor = few ? nv * (nv + 1) / 2 : s.factor_room, white = few ? directions * nv : s.direction_room;

@@ -42,7 +42,7 @@ struct Signals {
   }
 };
 
-/// An active component: one direction, one torque.
+/// An active component: one direction, one torque; an element of several ways is as many of them, one after another.
 template <class T>
 struct Branch {
   const T* params;
@@ -55,6 +55,7 @@ struct Branch {
   int kind, law;      ///< law is -1 for a torque element
   int direction;      ///< number among elements, then contacts
   int state, states;  ///< own states: offset and number
+  int ways;           ///< number of ways of which this is the first, most often 1; 0: another way of the one before
   int piece;          ///< smooth piece of the element or of the law
   int sign;           ///< direction of slip of a contact
   bool pressed;       ///< a contact with a load; a freewheel without one still blocks
