@@ -76,12 +76,6 @@ def port_domains(component: Component) -> dict[str, Domain]:
     }
 
 
-def ends(component: Component) -> tuple[Node, Node]:
-    """What the rate of an element is counted of and from: follower and base, or shaft and base."""
-    joined = ports(component)
-    return joined["follower"] if "follower" in joined else joined["shaft"], joined.get("base", HOUSING)
-
-
 def thermal_ports(component: Component) -> dict[str, ThermalNode]:
     """Thermal nodes at the ports of an element, those that are given."""
     values = {item.name: getattr(component, item.name) for item, _ in specs(type(component), "thermal")}
