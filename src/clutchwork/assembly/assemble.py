@@ -69,6 +69,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
         "contacts": tuple(model.role(Role.CONTACT)),
         "motions": tuple(model.role(Role.MOTION)),
         "gears": tuple(_gears(model)),
+        "sensors": tuple(model.role(Role.SENSOR)),
         "thermal": parts.thermal,
         "flows": tuple(model.role(Role.FLOW)),
         "processes": shared.processes,

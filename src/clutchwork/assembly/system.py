@@ -62,6 +62,7 @@ class System:
     contacts: tuple[Component, ...] = ()
     motions: tuple[Component, ...] = ()
     gears: tuple[Gearing, ...] = ()
+    sensors: tuple[Component, ...] = ()
     thermal: tuple[ThermalNode, ...] = ()
     flows: tuple[Component, ...] = ()
     processes: tuple[Component, ...] = ()

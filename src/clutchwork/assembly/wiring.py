@@ -63,6 +63,11 @@ class GearRow:
     ports: Mapping[str, tuple[int, float]]  # port -> (node index or HOUSING, coefficient)
     domains: Mapping[str, Domain]  # port -> rotation or translation
 
+    @property
+    def is_line(self) -> bool:
+        """Whether it is a rigid line between two nodes, which has a torque and a power of its own."""
+        return set(self.ports) == {"base", "follower"}
+
 
 @dataclass(frozen=True)
 class Wiring:
@@ -80,6 +85,7 @@ class Wiring:
     supplies: tuple[Branch, ...] = ()  # elements that draw work and heat from a supply
     flows: tuple[str, ...] = ()
     links: tuple[Link, ...] = ()
+    sensors: tuple[Branch, ...] = ()
     sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     unused: frozenset[str] = frozenset()  # inputs of features that nobody asked for
 
@@ -118,6 +124,7 @@ def wiring(system: System) -> Wiring:
         supplies=tuple(branches[place] for place in system.supply_element),
         flows=tuple(flow.name for flow in system.flows),
         links=system.links,
+        sensors=tuple(_branch(component, places) for component in system.sensors),
         sums=system.sums,
         unused=frozenset(item.name for item in system.inputs if not item.given),
     )

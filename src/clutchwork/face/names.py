@@ -17,6 +17,8 @@ NAMES = {
     "Hints": "results.hints.hint",
     "Interrupted": "run.failure",
     "Law": "declare.node",
+    "Loss": "results.losses",
+    "Losses": "results.losses",
     "ModelError": "base.errors",
     "Moment": "learn.moment",
     "ModelWarning": "base.errors",

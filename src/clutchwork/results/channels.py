@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.wiring import HOUSING, Branch, Wiring, wiring
+from clutchwork.assembly.wiring import HOUSING, Branch, GearRow, Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.kept import kept
@@ -104,6 +104,8 @@ class Channels(Mapping[str, Channel]):
         for index, branch in enumerate(self._wiring.contacts):
             yield from self._contact(branch, index)
         yield from self._rigid()
+        for branch in self._wiring.sensors:
+            yield from self._sensor(branch)
         yield from self._thermal()
         start = self._start("input")
         for index, (name, unit) in enumerate(self._wiring.inputs):
@@ -199,12 +201,23 @@ class Channels(Mapping[str, Channel]):
             if domain is Domain.ROTATION or any(node.domain is domain for node in wiring.nodes):
                 yield REACTION[domain], Channel(TORQUE[domain], Linear.of(reactions.on_housing(wiring, made, domain)))
 
+    def _sensor(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
+        """Motion of the follower against the base."""
+        domain = branch.domain
+        yield f"{branch.name}.{PLACE[domain]}", Channel(ANGLE[domain], self._along(branch, "angle"))
+        yield f"{branch.name}.speed", Channel(SPEED[domain], self._along(branch, "speed"))
+        yield f"{branch.name}.acceleration", Channel(ACCELERATION[domain], self._along(branch, "acceleration"))
+
     def _rate(self, branch: Branch) -> Linear:
         """Rate of a branch."""
+        return self._along(branch, "speed")
+
+    def _along(self, branch: Branch, part: str) -> Linear:
+        """Speed, angle or acceleration along the direction of a branch."""
         vector = np.zeros(self._wiring.row_size)
         for node, coefficient in branch.direction.items():
             if node != HOUSING:
-                vector[self._start("speed") + node] += coefficient
+                vector[self._start(part) + node] += coefficient
         return Linear.of(vector)
 
 
@@ -227,12 +240,27 @@ def _gear_torques(wiring: Wiring, made: Array) -> Iterator[tuple[str, Channel]]:
     """Torque that a gear puts on the member at each port; several rows of one gear add up."""
     totals: dict[str, tuple[Array, Domain]] = {}
     for index, row in enumerate(wiring.gears):
+        if row.is_line:
+            yield from _line(wiring, row, made[index])
+            continue
         for port, (_, coefficient) in row.ports.items():
             name = f"{row.name}.torque_{port}"
             before = totals[name][0] if name in totals else np.zeros(wiring.row_size)
             totals[name] = (before + coefficient * made[index], row.domains[port])
     for name, (vector, domain) in totals.items():
         yield name, Channel(TORQUE[domain], Linear.of(vector))
+
+
+def _line(wiring: Wiring, row: GearRow, made: Array) -> Iterator[tuple[str, Channel]]:
+    """What goes through a rigid line from its base to its follower: torque on the follower, speed, power."""
+    node, factor = row.ports["follower"]
+    speed = np.zeros(wiring.row_size)
+    if node != HOUSING:
+        speed[wiring.columns["speed"].start + node] = 1.0
+    torque, rate, domain = Linear.of(factor * made), Linear.of(speed), row.domains["follower"]
+    yield f"{row.name}.torque", Channel(TORQUE[domain], torque)
+    yield f"{row.name}.speed", Channel(SPEED[domain], rate)
+    yield f"{row.name}.power", Channel("W", Power(torque, rate))
 
 
 def _column(column: int, unit: str) -> Channel:

@@ -43,6 +43,7 @@ class EnergyBalance:
     impulses: float  # part of the heat: lost where speeds jumped
     thermal: Mapping[str, float] = field(default_factory=dict)  # change of the heat of each thermal node and ambient
     shares: Mapping[str, float] = field(default_factory=dict)  # share of the heat of each that goes to a thermal node
+    stored: Mapping[str, float] = field(default_factory=dict)  # change of the elastic energy of each spring
 
     @property
     def input(self) -> float:
@@ -123,14 +124,15 @@ class EnergyBalance:
 def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> EnergyBalance:
     """Balance between the first and the last output row."""
     ends = rows[[0, -1]]
-    sources, heat, elastic = dict[str, float](), dict[str, float](), 0.0
+    sources, heat, springs = dict[str, float](), dict[str, float](), dict[str, float]()
     drawn = {branch.name: energy for branch, energy in _works(wiring, ends, "supply_energy", wiring.supplies)}
     for number, (branch, work) in enumerate(_works(wiring, ends, "element_work", wiring.elements)):
         if branch.hidden:
             continue
         name = branch.component.name
         stored = 0.0 if branch.number else _stored(wiring, ends, branch, number)
-        elastic += stored
+        if Work.STORE in branch.component.work and not branch.number:
+            springs[name] = stored
         lost = _lost(branch.component) * (0.0 - work - stored)
         if name in drawn:
             sources[name], heat[name] = drawn[name], drawn[name] - work - stored
@@ -155,7 +157,8 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
     shares = {branch.component.name: share for branch in wiring.elements if (share := _followed(branch.component))}
     shares |= {branch.name: share for branch in wiring.contacts if (share := _share(branch.component))}
     thermal = _thermal(wiring, ends, lost)
-    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, named, thermal, shares)
+    elastic = sum(springs.values())
+    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, named, thermal, shares, springs)
 
 
 def _share(component: Component) -> float:

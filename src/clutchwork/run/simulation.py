@@ -66,7 +66,13 @@ class Job:
         return self.options.t_start
 
     def again(self, times: Any) -> Trajectory:
-        """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
+        """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again.
+
+        None: the bare steps of the solver.
+        """
+        if times is None:
+            bare = self.options.changed({"times": None, "dt": None, "output": "steps"})
+            return trajectory(replace(self, options=bare), None)
         wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
         with warnings.catch_warnings():
             # whoever has the run was warned
