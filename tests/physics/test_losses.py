@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -49,7 +50,7 @@ def test_windows_add_up(seed: int) -> None:
     run = _run(seed)
     inner = [event.time for event in run.events if 0.0 < event.time < 1.0][:2] or [0.3]
     cuts = [0.0, *dict.fromkeys(inner), 1.0]
-    parts = [flows(run, a, b) for a, b in zip(cuts, cuts[1:], strict=False)]
+    parts = [flows(run, a, b) for a, b in pairwise(cuts)]
     whole = flows(run, 0.0, 1.0)
     turnover = run.energy.turnover
     for joint, energy in whole.joints.items():
@@ -63,7 +64,9 @@ def test_a_clutch_that_slips_at_a_constant_speed() -> None:
     a, b = d.shaft("a", inertia=0.1, speed=200.0), d.shaft("b", inertia=0.1, speed=150.0)
     d.add(cw.PrescribedSpeed("drive", shaft=a, speed=200.0))
     d.add(cw.PrescribedSpeed("load", shaft=b, speed=150.0))
-    d.add(cw.Clutch("c", base=a, follower=b, friction=cw.Coulomb(static=0.5, kinetic=0.4), gain=1.0, normal_force=250.0))
+    d.add(
+        cw.Clutch("c", base=a, follower=b, friction=cw.Coulomb(static=0.5, kinetic=0.4), gain=1.0, normal_force=250.0)
+    )
     run = d.simulate(2.0)
     table = run.losses(0.5, 1.5)
     assert table["c"].taken == pytest.approx(20e3)
@@ -106,7 +109,9 @@ def test_an_impulse_goes_through_gears() -> None:
     d = cw.Driveline("blow")
     near, far = d.shaft("near", inertia=0.5, speed=-4.0), d.shaft("far", inertia=0.1)
     d.add(cw.Gear("gear", input=far, output=near, ratio=3.0))
-    d.add(cw.OneWayClutch("stop", base=d.housing, follower=near, friction=cw.Coulomb(static=1.0, kinetic=1.0), gain=1.0))
+    d.add(
+        cw.OneWayClutch("stop", base=d.housing, follower=near, friction=cw.Coulomb(static=1.0, kinetic=1.0), gain=1.0)
+    )
     run = d.simulate(0.1)
     table = run.losses()
     assert table["stop"].heat == pytest.approx(0.5 * 0.5 * 16.0 + 0.5 * 0.1 * 144.0)

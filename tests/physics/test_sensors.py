@@ -1,4 +1,4 @@
-"""Sensors: motion between two shafts, torque and power through a rigid line, against closed forms; they change nothing."""
+"""Sensors: motion between two shafts, torque through a rigid line, against closed forms; they change nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Energy through every joint of a driveline: what each element gives to each shaft. docs/theory/energy.md
+"""Energy through every joint of a driveline: what each element gives to each shaft, docs/theory/energy.md.
 
 The core integrates the work of whole elements. What goes through their ends, and through gears, follows from the same
 torques and speeds at the same Gauss points, on a repetition of the run at these instants. Where speeds jump, impulses

@@ -1,4 +1,4 @@
-"""What each element of a driveline takes, gives on, stores and loses: `run.losses`. docs/theory/energy.md"""
+"""What each element of a driveline takes, gives on, stores and loses: `run.losses`, docs/theory/energy.md."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ class Losses:
             "end_s": self.end,
             "elements": lines,
             f"heat_{unit}": self.heat,
-            "efficiency": self.efficiency if self.efficiency == self.efficiency else None,  # noqa: PLR0124
+            "efficiency": self.efficiency if self.efficiency == self.efficiency else None,
             "residual_J": self.balance.residual,
         }
 
@@ -136,7 +136,7 @@ class Losses:
         names = ("element", "kind", "in", "out", "stored", "heat", "share", "efficiency")
         lines = [(x.element, x.kind, x.taken, x.given, x.stored, x.heat, x.share, x.efficiency) for x in self.lines]
         frame = pandas.DataFrame(lines, columns=names).set_index("element")
-        frame.attrs["units"] = {name: self.unit for name in names[2:6]} | {"share": "1", "efficiency": "1"}
+        frame.attrs["units"] = dict.fromkeys(names[2:6], self.unit) | {"share": "1", "efficiency": "1"}
         return frame
 
     def __str__(self) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.results.plot.figure import figure_of, written
@@ -104,7 +105,7 @@ def _ribbon(axes: Any, path: Path) -> None:
 def _curve(points: tuple[tuple[float, float], ...], offset: float) -> list[tuple[float, float]]:
     """Control points of a curve that is level at every point."""
     made = [(points[0][0], points[0][1] + offset)]
-    for (x0, y0), (x1, y1) in zip(points, points[1:], strict=False):
+    for (x0, y0), (x1, y1) in pairwise(points):
         middle = 0.5 * (x0 + x1)
         made += [(middle, y0 + offset), (middle, y1 + offset), (x1, y1 + offset)]
     return made

@@ -70,10 +70,8 @@ def _plain(box: Box, least: float) -> Box:
     return Box(box.name, box.is_shaft, outside, stored, heat)
 
 
-def _without_pass(
-    boxes: dict[str, Box], ribbons: list[Ribbon], least: float
-) -> tuple[dict[str, Box], list[Ribbon]]:
-    """Without shafts that hand everything on from one element to another."""
+def _without_pass(boxes: dict[str, Box], ribbons: list[Ribbon], least: float) -> tuple[dict[str, Box], list[Ribbon]]:
+    """Without shafts between two elements that store nothing."""
     boxes, ribbons = dict(boxes), list(ribbons)
     for box in list(boxes.values()):
         at = [ribbon for ribbon in ribbons if box.name in (ribbon.start, ribbon.end)]
@@ -111,9 +109,7 @@ def _columns(boxes: dict[str, Box], ribbons: list[Ribbon], first: str | None, la
     return {name: number - least for name, number in column.items()}
 
 
-def _by_distance(
-    boxes: dict[str, Box], beside: dict[str, set[str]], first: str | None, last: str | None
-) -> list[str]:
+def _by_distance(boxes: dict[str, Box], beside: dict[str, set[str]], first: str | None, last: str | None) -> list[str]:
     """Boxes by where they lie between drive and load."""
     start = first if first in boxes else max(boxes, key=lambda name: boxes[name].outside, default=None)
     end = last if last in boxes else min(boxes, key=lambda name: boxes[name].outside, default=None)
@@ -149,9 +145,7 @@ def _forward(
     loads = [ribbon.start for ribbon in ribbons if ribbon.end == last and boxes[ribbon.start].outside]
 
     def cost(places: dict[str, int]) -> float:
-        back = sum(
-            abs(r.energy) for r in ribbons if (places[r.start] < places[r.end]) != (ahead * r.energy > 0.0)
-        )
+        back = sum(abs(r.energy) for r in ribbons if (places[r.start] < places[r.end]) != (ahead * r.energy > 0.0))
         if first in places and last in places:
             back += largest * (places[first] > places[last])
             back += largest * sum(places[name] < places[last] for name in loads)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable
+from itertools import pairwise
 
 from clutchwork.base.classes import dataclass
 from clutchwork.results.plot.sankey_graph import Graph, Ribbon
@@ -151,7 +152,7 @@ def _middles(items: list[Item], chains: list[tuple[Ribbon, list[str]]], high: fl
     """Middle of every bar: near those that it is joined to, without overlap."""
     beside: dict[str, list[tuple[str, float]]] = defaultdict(list)
     for ribbon, chain in chains:
-        for one, other in zip(chain, chain[1:], strict=False):
+        for one, other in pairwise(chain):
             weight = abs(ribbon.energy)
             beside[one].append((other, weight))
             beside[other].append((one, weight))
@@ -192,7 +193,7 @@ def _spread(column: list[Item], middle: dict[str, float], high: float, keep: boo
     for (block, _), top in zip(blocks, tops, strict=True):
         for item in block:
             middle[item.name] = top - item.above - 0.5 * item.high
-            top -= item.high + item.above + item.below + GAP  # noqa: PLW2901
+            top -= item.high + item.above + item.below + GAP
 
 
 def _paths(

@@ -173,6 +173,25 @@ def _retarder(element: Any) -> list[Point]:
         speeds = [last * step / 40 for step in range(1, 41)]
         return [(0.0, 0.0), *((w, -min(k * w * w, most, power / w)) for w in speeds)]
     return [(0.0, 0.0), (0.5, -1.0), (1.0, -1.0)]
+def motion_sensor(pen: Pen, shown: Drawn) -> None:
+    """A dial with a needle, on thin lines, for it carries nothing."""
+    pen.circle(0.0, 0.0, 10.5, look=BLANK)
+    pen.arc(0.0, -3.0, 8.0, 0.15 * pi, 0.85 * pi, look=THIN)
+    pen.line((0.0, -3.0), (4.0, 3.4), look=INK._replace(width=1.2))
+    for side in (LEFT, RIGHT):
+        if side in shown.sides.values():
+            pen.line((side * shown.half, 0.0), (side * 10.5, 0.0), look=THIN)
+        else:
+            wall(pen, side, side * 10.5, shown)
+
+
+def torque_sensor(pen: Pen, shown: Drawn) -> None:
+    """A dial around a shaft that goes through."""
+    pen.circle(0.0, 0.0, 10.5, look=BLANK)
+    pen.arc(0.0, 1.0, 6.5, 0.15 * pi, 0.85 * pi, look=THIN)
+    pen.line((0.0, 2.0), (3.0, 6.6), look=INK._replace(width=1.2))
+    pen.line((-10.5, -3.0), (10.5, -3.0), look=shown.line)
+    ends(pen, shown, -10.5, 10.5)
 
 
 def unknown(pen: Pen, shown: Drawn) -> None:
@@ -200,5 +219,7 @@ TORQUES = {
     "quadratic_torque": Symbol(over_speed(_quadratic), 15.0, 11.0, 11.0),
     "eddy_current_brake": Symbol(over_speed(_eddy), 15.0, 11.0, 11.0),
     "retarder": Symbol(over_speed(_retarder), 15.0, 11.0, 11.0),
+    "motion_sensor": Symbol(motion_sensor, 15.0, 11.0, 11.0),
+    "torque_sensor": Symbol(torque_sensor, 15.0, 11.0, 11.0),
     "resisting_torque": Symbol(over_speed(_resisting), 15.0, 11.0, 11.0),
 }
