@@ -17,7 +17,7 @@ NAMES = {
     "Hints": "results.hints.hint",
     "Interrupted": "run.failure",
     "Law": "declare.node",
-    "Loss": "results.losses",
+    "Loss": "results.loss",
     "Losses": "results.losses",
     "ModelError": "base.errors",
     "Moment": "learn.moment",

@@ -13,6 +13,7 @@ from clutchwork.base.paths import fitting
 from clutchwork.base.text import columns
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.results.flows import Flows
+from clutchwork.results.loss import Loss as Loss
 from clutchwork.results.ratios import input_and_output
 
 if TYPE_CHECKING:
@@ -25,28 +26,6 @@ if TYPE_CHECKING:
 
 # below this part of the turnover a line of zeros is left out of a printed table
 NOTHING = 1e-9
-
-
-@dataclass(frozen=True)
-class Loss:
-    """Energies of one element or shaft over a window [J], or mean powers [W].
-
-    `taken = given + stored + heat`, but for what the integration missed.
-    """
-
-    element: str
-    kind: str  # such as "disk_clutch"; "shaft" and "mass" for those
-    taken: float  # what went in, from shafts and from outside
-    given: float  # what came out, to shafts and to outside
-    stored: float  # change of kinetic and elastic energy
-    heat: float
-    share: float  # of all heat
-    outside: float  # part of what went in that came from outside, negative: that went out there
-
-    @property
-    def efficiency(self) -> float:
-        """What came out over what went in; not a number where nothing went in."""
-        return self.given / self.taken if self.taken else float("nan")
 
 
 @explained_methods("run.losses")

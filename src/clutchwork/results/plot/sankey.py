@@ -14,7 +14,7 @@ from clutchwork.results.plot.style import COLOURS, MILLIMETRE
 if TYPE_CHECKING:
     from pathlib import Path as FilePath
 
-    from clutchwork.results.losses import Losses
+    from clutchwork.results.loss import LossTable
     from clutchwork.results.plot.canvas import Picture
 
 WORK, HEAT, STORED, INK = COLOURS[0], COLOURS[1], COLOURS[2], "#333333"
@@ -36,7 +36,7 @@ def amount(value: float, unit: str) -> str:
     return f"{number:.{min(digits, 3)}f} {prefix}{unit}"
 
 
-def parts(table: Losses) -> tuple[Picture | None, list[str]]:
+def parts(table: LossTable) -> tuple[Picture | None, list[str]]:
     """The picture and the table in a notebook; no picture without matplotlib."""
     try:
         return draw(table), [table._repr_html_()]
@@ -44,7 +44,7 @@ def parts(table: Losses) -> tuple[Picture | None, list[str]]:
         return None, [table._repr_html_()]
 
 
-def draw(table: Losses, path: FilePath | None = None) -> Picture:
+def draw(table: LossTable, path: FilePath | None = None) -> Picture:
     """The picture, written to a path where there is one."""
     first, last = table.shafts or (None, None)
     made = graph(table, first, last)
@@ -66,7 +66,7 @@ def draw(table: Losses, path: FilePath | None = None) -> Picture:
         return written(figure, path)
 
 
-def _legend(axes: Any, where: Places, table: Losses, made: Graph) -> None:
+def _legend(axes: Any, where: Places, table: LossTable, made: Graph) -> None:
     """What colours mean, what all heat is, what is not shown."""
     parts = [("mechanical", WORK), ("heat", HEAT), ("stored: kinetic, elastic", STORED)]
     left = 4.0

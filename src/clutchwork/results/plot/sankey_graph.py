@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict, deque
 
 from clutchwork.base.classes import dataclass
-from clutchwork.results.losses import Losses
+from clutchwork.results.loss import LossTable
 
 # ribbons below this part of the largest box are not drawn
 LEAST = 2e-3
@@ -43,7 +43,7 @@ class Graph:
     left_out: int  # elements and shafts that nothing worth a ribbon goes through
 
 
-def graph(table: Losses, first: str | None, last: str | None) -> Graph:
+def graph(table: LossTable, first: str | None, last: str | None) -> Graph:
     """The picture of a table.
 
     Parameters: first and last, the shafts of drive and load.
