@@ -173,6 +173,8 @@ def _retarder(element: Any) -> list[Point]:
         speeds = [last * step / 40 for step in range(1, 41)]
         return [(0.0, 0.0), *((w, -min(k * w * w, most, power / w)) for w in speeds)]
     return [(0.0, 0.0), (0.5, -1.0), (1.0, -1.0)]
+
+
 def motion_sensor(pen: Pen, shown: Drawn) -> None:
     """A dial with a needle, on thin lines, for it carries nothing."""
     pen.circle(0.0, 0.0, 10.5, look=BLANK)
