@@ -124,7 +124,7 @@ def wiring(system: System) -> Wiring:
         supplies=tuple(branches[place] for place in system.supply_element),
         flows=tuple(flow.name for flow in system.flows),
         links=system.links,
-        sensors=tuple(_branch(component, places) for component in system.sensors),
+        sensors=tuple(_branch(component, way, places) for component, way in _ways(system.sensors)),
         sums=system.sums,
         unused=frozenset(item.name for item in system.inputs if not item.given),
     )

@@ -107,7 +107,7 @@ def _joints(wiring: Wiring) -> tuple[list[Joint], Array]:
             own = np.zeros(wiring.row_size)
             own[wiring.columns[part].start + index] = 1.0
             for node, factor in branch.direction.items() if not branch.hidden else ():
-                add(branch.name, node, factor * own)
+                add(branch.component.name, node, factor * own)
     for index, row in enumerate(wiring.gears):
         for node, factor in row.ports.values():
             add(row.name, node, factor * made[index])

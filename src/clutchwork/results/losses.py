@@ -212,7 +212,8 @@ def _kinds(run: Recorded, owner: Callable[[str], str]) -> dict[str, str]:
     made: dict[str, str] = {}
     for branch in (*wiring.motions, *wiring.elements, *wiring.contacts):
         if not branch.hidden:
-            made.setdefault(owner(branch.name), own.get(owner(branch.name), branch.component.kind))
+            whole = owner(branch.component.name)
+            made.setdefault(whole, own.get(whole, branch.component.kind))
     for gear in run.system.gears:
         made.setdefault(owner(gear.gear.name), own.get(owner(gear.gear.name), gear.gear.kind))
     for node in wiring.nodes:
