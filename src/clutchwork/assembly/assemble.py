@@ -23,7 +23,7 @@ from clutchwork.model.findings import Findings, Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
 from clutchwork.model.model import Model
 from clutchwork.model.pools import Pools
-from clutchwork.model.start import start
+from clutchwork.model.start import initial_angles, start
 from clutchwork.model.structure import Kinematics, Mechanism
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, 
     return arrays | {
         "inertia": [float(inertia) for inertia in model.inertia],
         "massless": [node in made.massless for node in made.independent],
-        "initial_angle": [node.angle for node in model.nodes],
+        "initial_angle": initial_angles(model),
     }
 
 

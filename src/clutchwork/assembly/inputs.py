@@ -12,7 +12,7 @@ from clutchwork.assembly.records import Input, Link
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Segment, Signal, ThermalNode, is_reference
 from clutchwork.declare.ports import ports, thermal_ports
-from clutchwork.declare.schema import Role, inputs
+from clutchwork.declare.schema import Role, Spec, inputs
 from clutchwork.model.parts import role
 from clutchwork.signals.bases import waveform
 from clutchwork.signals.constant import Constant
@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 
     from clutchwork.assembly.places import Places
     from clutchwork.declare.node import Component
-    from clutchwork.declare.schema import Spec
 
+# what a prescribed motion is in the core
+SPEED = Spec("signal", "rad/s", "speed")
 # what an input may be, in the order of the numbers of its references
 SORTS = ("input", "shared", "rate", "heat")
 
@@ -85,7 +86,7 @@ class Wires:
 
     def prescribe(self, motions: Sequence[tuple[Component, Signal]]) -> list[int]:
         """Number the prescribed speeds, which no reference leads to."""
-        units = [_unit(motion, type(motion).__dataclass_fields__["speed"].metadata["spec"]) for motion, _ in motions]
+        units = [_unit(motion, SPEED) for motion, _ in motions]
         return [self._add(f"{m.name}.speed", unit, s) for (m, s), unit in zip(motions, units, strict=True)]
 
     def _add(self, name: str, unit: str, signal: Signal, given: bool = True) -> int:

@@ -245,10 +245,11 @@ def option(
     units: tuple[str, ...] = (),
     flag: bool = False,
     last: bool = False,
+    example: float | None = None,
 ) -> Any:
     """A setting that the assembly reads and the equations do not: no part of the C++ `Params`."""
     bounds = (above, at_least, None, at_most)
-    spec = Spec("option", unit, doc, default is None, *bounds, units=units, flag=flag, last=last)
+    spec = Spec("option", unit, doc, default is None, *bounds, units=units, flag=flag, last=last, example=example)
     return _field(spec, default)
 
 

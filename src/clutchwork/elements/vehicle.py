@@ -44,8 +44,9 @@ class Vehicle(Component):
         """Grade, drag and rolling resistance."""
         weight = float(self.mass.inertia * self.gravity)
         yield Grade(f"{self.name}.grade", shaft=self.mass, weight=weight, slope=self.slope)
-        drag = {"area": self.drag_area, "density": self.air_density, "wind": self.wind}
-        yield AirDrag(f"{self.name}.drag", shaft=self.mass, **drag)
+        yield AirDrag(
+            f"{self.name}.drag", shaft=self.mass, area=self.drag_area, density=self.air_density, wind=self.wind
+        )
         yield RollingResistance(
             f"{self.name}.rolling",
             shaft=self.mass,

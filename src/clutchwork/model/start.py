@@ -5,18 +5,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import Problem
-from clutchwork.declare.node import Domain, Signal
+from clutchwork.declare.node import Domain
 from clutchwork.declare.rational import ONE, ZERO, Echelon, Row, exact, plus, smallest
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
-from clutchwork.signals.bases.waveform import low_pass, value
+from clutchwork.elements.bases.motion import MotionError
+from clutchwork.signals.bases.waveform import value
 from clutchwork.signals.constant import Constant
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from clutchwork.declare.node import Component
+    from clutchwork.declare.node import Component, Node, Signal
     from clutchwork.model.structure import Kinematics, Mechanism
 
 # speeds that were rounded when they were written may differ by this share
@@ -30,16 +31,32 @@ def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], list[tupl
     motions: list[tuple[Component, Signal]] = []
     problems: list[Problem] = []
     for motion in model.role(Role.MOTION):
-        signal = motion.speed if isinstance(motion.speed, Signal) else Constant(float(motion.speed))
-        if motion.cutoff is not None:
-            try:
-                signal = low_pass(signal, motion.cutoff)
-            except ValueError as error:
-                remedy = "remove cutoff, or give the speed as a table"
-                problems.append(Problem(path_of(motion), "cutoff", str(error), f"{motion.cutoff:g} Hz", remedy))
-        motions.append((motion, signal))
+        try:
+            motions.append((motion, motion.speed_signal()))
+        except MotionError as bad:
+            problems.append(Problem(path_of(motion), bad.quantity, bad.message, bad.value, bad.remedy))
+            motions.append((motion, Constant(0.0)))
+    if problems:
+        return [ZERO] * len(made.independent), motions, problems
     speeds, wrong = initial_speeds(model, made, [value(signal, 0.0) for _, signal in motions])
     return speeds, motions, problems + wrong
+
+
+def initial_angles(model: Mechanism) -> list[float]:
+    """Angle [rad] or position [m] of each node at the start, prescribed ones from their bases on."""
+    angles = [float(node.angle) for node in model.nodes]
+    motions = [(motion, motion.start_angle()) for motion in model.role(Role.MOTION)]
+    # a base may be prescribed itself
+    for _ in motions:
+        for motion, angle in motions:
+            base = 0.0 if _fixed(motion.base) else angles[model.places.of(motion.base)]
+            if angle is not None and not _fixed(motion.shaft):
+                angles[model.places.of(motion.shaft)] = base + angle
+    return angles
+
+
+def _fixed(node: Node | None) -> bool:
+    return node is None or node.fixed
 
 
 def initial_speeds(

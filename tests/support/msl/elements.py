@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import clutchwork as cw
 
-from .pieces import UnsupportedError, bessel_speed, integral, product, scaled
+from .pieces import UnsupportedError, product, scaled
 from .signals import as_signal, levels
 
 if TYPE_CHECKING:
@@ -114,7 +114,8 @@ def _constant_speed(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list
 
 
 def _accelerate(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
-    return _motion(name, at, as_signal(integral(b.pieces(e["a_ref"]), b.start_speed(name)), b.t_end))
+    wanted = as_signal(b.pieces(e["a_ref"]), b.t_end)
+    return [cw.PrescribedAcceleration(name, shaft=at("flange"), base=at("support"), acceleration=wanted)]
 
 
 def position_signal(e: Mapping[str, Any]) -> Any:
@@ -123,13 +124,9 @@ def position_signal(e: Mapping[str, Any]) -> Any:
 
 
 def _position(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
-    wanted = b.pieces(position_signal(e))
-    if e.get("exact", False):
-        speed = tuple(piece.slope() for piece in wanted)
-    else:
-        place = b.start_place(f"{name}.flange") - b.start_place(f"{name}.support")
-        speed = bessel_speed(wanted, float(e["f_crit"]), place, b.start_speed(name))
-    return _motion(name, at, as_signal(speed, b.t_end))
+    wanted = as_signal(b.pieces(position_signal(e)), b.t_end)
+    cutoff = None if e.get("exact", False) else float(e["f_crit"])
+    return [cw.PrescribedPosition(name, shaft=at("flange"), base=at("support"), position=wanted, cutoff=cutoff)]
 
 
 def _eddy_current(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:

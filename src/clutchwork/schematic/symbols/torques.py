@@ -100,12 +100,16 @@ def torque(pen: Pen, shown: Drawn) -> None:
     _to_shaft(pen, shown, 10.5)
 
 
-def prescribed(pen: Pen, shown: Drawn) -> None:
-    """Two circles with the letter of the speed."""
-    pen.circle(0.0, 0.0, 10.5, look=BLANK)
-    pen.circle(0.0, 0.0, 8.6, look=Look(width=0.6))
-    pen.text(0.0, -2.8, "ω" if shown.line.colour == INK.colour else "v", 9.5)
-    _to_shaft(pen, shown, 10.5)
+def prescribed(turning: str, moving: str) -> Callable[[Pen, Drawn], None]:
+    """Two circles with the letter of the motion, of a shaft or of a mass."""
+
+    def draw(pen: Pen, shown: Drawn) -> None:
+        pen.circle(0.0, 0.0, 10.5, look=BLANK)
+        pen.circle(0.0, 0.0, 8.6, look=Look(width=0.6))
+        pen.text(0.0, -2.8, turning if shown.line.colour == INK.colour else moving, 9.5)
+        _to_shaft(pen, shown, 10.5)
+
+    return draw
 
 
 def over_speed(points: Callable[[Any], list[Point]]) -> Callable[[Pen, Drawn], None]:
@@ -215,7 +219,9 @@ TORQUES = {
     "wet_drag": Symbol(wet_drag),
     "fluid_coupling": Symbol(fluid_coupling),
     "torque": Symbol(torque, 15.0, 11.0, 11.0),
-    "prescribed_speed": Symbol(prescribed, 15.0, 11.0, 11.0),
+    "prescribed_speed": Symbol(prescribed("ω", "v"), 15.0, 11.0, 11.0),
+    "prescribed_position": Symbol(prescribed("φ", "x"), 15.0, 11.0, 11.0),
+    "prescribed_acceleration": Symbol(prescribed("α", "a"), 15.0, 11.0, 11.0),
     "speed_torque": Symbol(over_speed(_table), 15.0, 11.0, 11.0),
     "linear_torque": Symbol(over_speed(_linear), 15.0, 11.0, 11.0),
     "quadratic_torque": Symbol(over_speed(_quadratic), 15.0, 11.0, 11.0),
