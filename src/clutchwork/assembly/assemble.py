@@ -157,7 +157,7 @@ def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role,
 
 
 def _is_coupled(component: Any) -> bool:
-    """Whether it is an element of several ways, or has own states that its heat or what other components give acts on."""
+    """Whether it has several ways, or own states that what other components give acts on, or that make its heat."""
     if len(type(component).ways) > 1 or (component.supply and component.heat_path()):
         return True
     given = (getattr(component, name) for names, _ in inputs(type(component)) for name in names)
