@@ -16,10 +16,9 @@ from clutchwork.assembly.sparse import sparse
 from clutchwork.base.errors import ModelError
 from clutchwork.declare.core import number
 from clutchwork.declare.layout import FIELDS
-from clutchwork.declare.node import is_reference
 from clutchwork.declare.ports import ports
 from clutchwork.declare.rational import Row, plus
-from clutchwork.declare.schema import Role, inputs
+from clutchwork.declare.schema import Role
 from clutchwork.model.findings import Findings, Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
 from clutchwork.model.model import Model
@@ -157,11 +156,8 @@ def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role,
 
 
 def _is_coupled(component: Any) -> bool:
-    """Whether it has several ways, or own states that what other components give acts on, or that make its heat."""
-    if len(type(component).ways) > 1 or (component.supply and component.heat_path()):
-        return True
-    given = (getattr(component, name) for names, _ in inputs(type(component)) for name in names)
-    return component.role is Role.TORQUE and bool(component.own_states()) and any(map(is_reference, given))
+    """Whether it is an element of several ways."""
+    return len(type(component).ways) > 1
 
 
 def _first_ways(model: Mechanism, which: Callable[[Any], bool]) -> list[int]:

@@ -59,6 +59,36 @@ def flexible_shaft(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -17.6, 17.6)
 
 
+def nonlinear_spring(pen: Pen, shown: Drawn) -> None:
+    """A spring with a bent line across it."""
+    zigzag(pen, -14.0, 14.0, 0.0, 6.0)
+    pen.line((-11.0, -9.0), (-4.0, -2.5), (4.0, 2.5), (11.0, 9.0), look=THIN)
+    ends(pen, shown, -14.0, 14.0)
+
+
+def jenkins_element(pen: Pen, shown: Drawn) -> None:
+    """A spring in series with two plates that rub."""
+    zigzag(pen, -14.0, 3.0, 0.0)
+    pen.line((3.0, 0.0), (9.0, 0.0), look=INK._replace(width=2.0))
+    for y in (-3.0, 3.0):
+        pen.line((4.0, y), (13.0, y), look=INK._replace(width=1.6))
+    pen.line((13.0, -3.0), (13.0, 3.0))
+    ends(pen, shown, -14.0, 13.0)
+
+
+def torsional_damper(pen: Pen, shown: Drawn) -> None:
+    """A spring with a bent line across it, and a spring in series with plates that rub, in parallel."""
+    for x in (-14.0, 14.0):
+        pen.line((x, -7.0), (x, 7.0), look=INK._replace(width=1.2))
+    zigzag(pen, -14.0, 14.0, 7.0)
+    pen.line((-10.0, 1.5), (-3.0, 5.5), (3.0, 8.5), (10.0, 12.5), look=THIN)
+    zigzag(pen, -14.0, 3.0, -7.0, 3.0)
+    pen.line((3.0, -7.0), (9.0, -7.0), look=INK._replace(width=2.0))
+    for y in (-9.5, -4.5):
+        pen.line((4.0, y), (14.0, y), look=INK._replace(width=1.4))
+    ends(pen, shown, -14.0, 14.0)
+
+
 def wet_drag(pen: Pen, shown: Drawn) -> None:
     """Two plates with oil between them."""
     for x in (-7.0, 7.0):
@@ -110,13 +140,6 @@ def prescribed(turning: str, moving: str) -> Callable[[Pen, Drawn], None]:
         _to_shaft(pen, shown, 10.5)
 
     return draw
-
-
-def motor(pen: Pen, shown: Drawn) -> None:
-    """A circle with the letter of a machine."""
-    pen.circle(0.0, 0.0, 10.5, look=BLANK)
-    pen.text(0.0, -3.2, "M", 10.0)
-    _to_shaft(pen, shown, 10.5)
 
 
 def over_speed(points: Callable[[Any], list[Point]]) -> Callable[[Pen, Drawn], None]:
@@ -222,6 +245,9 @@ TORQUES = {
     "spring": Symbol(spring, 18.0, 8.0, 8.0),
     "damper": Symbol(damper, 16.0, 8.0, 8.0),
     "spring_damper": Symbol(spring_damper, 18.0),
+    "nonlinear_spring": Symbol(nonlinear_spring, 18.0, 10.0, 10.0),
+    "jenkins_element": Symbol(jenkins_element, 18.0, 8.0, 8.0),
+    "torsional_damper": Symbol(torsional_damper, 18.0),
     "flexible_shaft": Symbol(flexible_shaft, 22.0, 8.0, 8.0),
     "wet_drag": Symbol(wet_drag),
     "fluid_coupling": Symbol(fluid_coupling),
@@ -229,8 +255,6 @@ TORQUES = {
     "prescribed_speed": Symbol(prescribed("ω", "v"), 15.0, 11.0, 11.0),
     "prescribed_position": Symbol(prescribed("φ", "x"), 15.0, 11.0, 11.0),
     "prescribed_acceleration": Symbol(prescribed("α", "a"), 15.0, 11.0, 11.0),
-    "electric_motor": Symbol(motor, 15.0, 11.0, 11.0),
-    "motor_torque": Symbol(motor, 15.0, 11.0, 11.0),
     "speed_torque": Symbol(over_speed(_table), 15.0, 11.0, 11.0),
     "linear_torque": Symbol(over_speed(_linear), 15.0, 11.0, 11.0),
     "quadratic_torque": Symbol(over_speed(_quadratic), 15.0, 11.0, 11.0),
