@@ -144,6 +144,16 @@ inline bool within(const std::int32_t* x, std::int64_t n, std::int64_t low, std:
   return true;
 }
 
+/// Whether the metered lines read nodes and directions that are there.
+inline bool meters_in_range(const System& s) {
+  bool good = within(s.meter_node, s.meters, 0, s.nodes - 1) &&
+              within(s.meter_column, s.meter_entries, 0, s.nodes + s.elements + s.contacts - 1);
+  for (std::int64_t m = 0; good && m < s.meters; ++m) {
+    good = s.meter_end[m] >= (m > 0 ? s.meter_end[m - 1] : 0) && s.meter_end[m] <= s.meter_entries;
+  }
+  return good;
+}
+
 /// Kinds are known, and offsets point into their pools.
 inline bool offsets_in_range(const System& s) {
   const std::int64_t ne = s.elements, nc = s.contacts;
@@ -244,7 +254,7 @@ inline bool matrices_fit(const System& s) {
 
 /// Offsets and numbers inside the system that the core follows without looking.
 inline bool in_range(const System& s) {
-  bool good = offsets_in_range(s) && ways_fit(s) && shared_in_range(s) && matrices_fit(s);
+  bool good = offsets_in_range(s) && ways_fit(s) && shared_in_range(s) && meters_in_range(s) && matrices_fit(s);
   for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
   std::int64_t all = 0, own = 0;
   for (std::int64_t i = 0; good && i < s.elements; ++i, all += own) good = element_fits(s, i, own);

@@ -127,7 +127,7 @@ def mismatch(standing: Standing, step: float = 1e-5) -> float:
     sizes = push_sizes(standing, 1.0)
     columns = standing.instant.wiring.columns
     compared = np.ones(len(rows), dtype=bool)
-    for part in ("angle", "element_work", "contact_work", "prescribed_work", "contact_mode"):
+    for part in ("angle", "element_work", "contact_work", "prescribed_work", "meter_energy", "contact_mode"):
         compared[columns[part]] = False
     mine = np.vstack([np.hstack([linear.A, linear.B]), linear.row[compared, : n + len(standing.given)]])
     other = np.vstack([rates, rows[compared]])

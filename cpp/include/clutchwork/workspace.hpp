@@ -22,6 +22,7 @@ struct Workspace {
   bool stiffened = false;  ///< the phase goes on with another method
   T *v = nullptr, *state = nullptr, *angle = nullptr, *work = nullptr, *prescribed_work = nullptr;
   T* supplied = nullptr;                     ///< [J] that each supply has given
+  T* metered = nullptr;                      ///< [J] that has gone through each rigid line that is metered
   int *piece = nullptr, *heading = nullptr;  ///< of each direction: smooth piece; sign of its rate
 
   // active components, then open contacts, whose rates alone are followed
@@ -59,7 +60,7 @@ void lay_out(W& ws, A& a) {
   const Sizes n(ws.sys);
   a.take(ws.params, ws.sys.n_params);
   a.take(ws.v, n.speeds), a.take(ws.state, n.states), a.take(ws.angle, n.nodes), a.take(ws.work, n.directions);
-  a.take(ws.prescribed_work, n.prescribed), a.take(ws.supplied, n.supplies);
+  a.take(ws.prescribed_work, n.prescribed), a.take(ws.supplied, n.supplies), a.take(ws.metered, n.meters);
   a.keep(ws.piece, n.directions, -(1ll << 31), (1ll << 31) - 1), a.keep(ws.heading, n.directions, backward, forward);
   a.take(ws.branch, n.directions), a.take(ws.branch_of, n.directions);
   auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.inputs import Wires
+from clutchwork.assembly.meters import meter_arrays
 from clutchwork.assembly.places import places
 from clutchwork.assembly.records import TYPES, Gearing, frozen
 from clutchwork.assembly.shared_states import Shared, flow_arrays, heat_arrays
@@ -55,6 +56,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     states = list[float]()
     arrays |= _elements(model, pools, wires, states) | {"full": [any(_is_coupled(c) for c, _ in model.acting)]}
     arrays |= _contacts(model, pools, wires, states)
+    arrays |= meter_arrays(model)
     arrays |= flow_arrays(model, pools, wires)
     arrays |= heat_arrays(model, where)
     arrays |= shared.arrays(pools, wires, states)

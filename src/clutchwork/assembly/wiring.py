@@ -94,6 +94,11 @@ class Wiring:
         """Numbers in one output row."""
         return max((part.stop for part in self.columns.values()), default=0)
 
+    @property
+    def lines(self) -> tuple[GearRow, ...]:
+        """Rigid lines, whose energy is integrated, in the order of their column."""
+        return tuple(row for row in self.gears if row.is_line)
+
     def spread(self, branches: tuple[Branch, ...]) -> NDArray[np.float64]:
         """Torque on every node per torque of every branch, shape (nodes, branches)."""
         matrix = np.zeros((len(self.nodes), len(branches)))

@@ -24,6 +24,8 @@ COUNTS = (
     ("processes", "components that only have shared states"),
     ("heats", "paths of the heat of a direction to a shared state"),
     ("supplies", "elements that draw work and heat from a supply"),
+    ("meters", "rigid lines whose energy is integrated"),
+    ("meter_entries", "shares of accelerations and torques in the torques of rigid lines"),
     ("inputs", "signals"),
     ("segments", "segments of all signals"),
     ("params", "numbers in the parameter pool"),
@@ -92,6 +94,10 @@ FIELDS = (
     ("heat_to", "i4", ("heats",), "shared state that takes it"),
     ("heat_share", "f8", ("heats",), "share of it"),
     ("supply_element", "i4", ("supplies",), "element that draws its work and its heat"),
+    ("meter_node", "i4", ("meters",), "node at which energy is counted"),
+    ("meter_end", "i4", ("meters",), "end of each row of the next two"),
+    ("meter_column", "i4", ("meter_entries",), "node of an acceleration; from `nodes` on a direction"),
+    ("meter_value", "f8", ("meter_entries",), "share of it in the torque on that node"),
     ("shared_scale", "f8", ("shared",), "a shared state as an input is offset + scale * state"),
     ("shared_offset", "f8", ("shared",), "offset of that"),
     ("prescribed_input", "i4", ("prescribed",), "signal that gives the prescribed speed"),
@@ -139,6 +145,7 @@ ROW = (
     ("prescribed_work", "prescribed"),
     ("supply_power", "supplies"),
     ("supply_energy", "supplies"),
+    ("meter_energy", "meters"),
     ("input", "inputs"),
 )
 

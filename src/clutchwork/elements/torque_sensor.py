@@ -9,12 +9,13 @@ from clutchwork.declare import Component, Node, Role, component, port
 
 @component(Role.GEAR)
 class TorqueSensor(Component):
-    """Rigid connection of two shafts that gives torque, speed and power through it as signals of the run.
+    """Rigid connection of two shafts that gives torque, speed, power and energy through it as signals of the run.
 
     Use it where a rigid line is to be cut open: between gearbox and propeller shaft, in one branch of a gear set.
-    Torque is that on the follower, power that which flows from base to follower. Both shafts turn as one, and what
-    their inertias take is seen: the torque is the reaction of the rigid line. The torque of springs, clutches and
-    gears is a signal of their own already.
+    Torque is that on the follower, power that which flows from base to follower, energy its integral since the start,
+    summed up with the work of all elements, impulses included. Both shafts turn as one, and what their inertias take is
+    seen: the torque is the reaction of the rigid line. The torque of springs, clutches and gears is a signal of their
+    own already.
     """
 
     base: Node = port("side that power comes from where it counts positive")

@@ -108,7 +108,7 @@ def _unusable(name: str, form: Any, integrals: Collection[int], drawn: Collectio
 def _integrals(system: System) -> set[int]:
     """Columns of the row that are integrals over the run."""
     columns = wiring(system).columns
-    parts = ("element_work", "contact_work", "prescribed_work", "supply_energy")
+    parts = ("element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy")
     return {column for part in parts for column in range(columns[part].start, columns[part].stop)}
 
 

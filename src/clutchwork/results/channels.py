@@ -233,7 +233,8 @@ def _left_out(angles: bool, work: bool, wiring: Wiring) -> dict[str, str]:
     if work:
         return endings
     drawn = {f".{branch.component.supply}_energy": "work" for branch in wiring.supplies}
-    return endings | {".work": "work", ".heat": "work"} | drawn
+    metered = {f"{line.name}.energy": "work" for line in wiring.lines}
+    return endings | {".work": "work", ".heat": "work"} | drawn | metered
 
 
 def _gear_torques(wiring: Wiring, made: Array) -> Iterator[tuple[str, Channel]]:
@@ -242,6 +243,8 @@ def _gear_torques(wiring: Wiring, made: Array) -> Iterator[tuple[str, Channel]]:
     for index, row in enumerate(wiring.gears):
         if row.is_line:
             yield from _line(wiring, row, made[index])
+            place = wiring.columns["meter_energy"].start + wiring.lines.index(row)
+            yield f"{row.name}.energy", _column(place, "J")
             continue
         for port, (_, coefficient) in row.ports.items():
             name = f"{row.name}.torque_{port}"

@@ -28,6 +28,7 @@ def numbers(wiring: Wiring) -> list[Named]:
         "flow": [(f"{flow}.heat_flow", "W") for flow in wiring.flows],
         "prescribed_work": [(f"{part.name}.work", "J") for part in wiring.motions],
         "supply_power": [(f"{part.name}.{part.component.supply}_power", "W") for part in wiring.supplies],
+        "meter_energy": [(f"{line.name}.energy", "J") for line in wiring.lines],
         "supply_energy": [(f"{part.name}.{part.component.supply}_energy", "J") for part in wiring.supplies],
     }
     known = {name for named in parts.values() for name, _ in named}

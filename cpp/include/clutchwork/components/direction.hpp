@@ -28,6 +28,25 @@ inline MatrixRow matrix_row(const std::int32_t* end, const std::int32_t* column,
 inline MatrixRow basis_row(const System& s, int node) {
   return matrix_row(s.basis_end, s.basis_column, s.basis_value, node);
 }
+
+/// Speed or acceleration of a node from those of the independent and the prescribed speeds.
+template <class T>
+T node_value(const System& s, int node, const T* speeds, const T* prescribed) {
+  T sum = basis_row(s, node).times(speeds);
+  for (int p = 0; p < s.prescribed; ++p) sum += T(s.basis_prescribed[node * s.prescribed + p]) * prescribed[p];
+  return sum;
+}
+
+/// Torque of a metered line on its node, of accelerations and torques; or its impulse, of jumps of speed and impulses.
+template <class T, class Acceleration, class Torque>
+T meter_sum(const System& s, int m, Acceleration&& acceleration, Torque&& torque) {
+  T sum = T(0);
+  for (int e = m > 0 ? s.meter_end[m - 1] : 0; e < s.meter_end[m]; ++e) {
+    const int k = s.meter_column[e];
+    sum += T(s.meter_value[e]) * (k < s.nodes ? acceleration(k) : torque(k - int(s.nodes)));
+  }
+  return sum;
+}
 inline MatrixRow mass_row(const System& s, int i) { return matrix_row(s.mass_end, s.mass_column, s.mass_value, i); }
 
 /// Shares of the speeds in the rate of a direction.

@@ -20,6 +20,23 @@ void take_heat(Workspace<T>& ws, int direction, T heat) {
   }
 }
 
+/// Energy of an impulse through metered lines, for jumps x of the independent speeds, before they are made.
+template <class T, class Jump, class Torque>
+void meter_impulse(Workspace<T>& ws, const T* x, Jump&& prescribed_jump, Torque&& impulse) {
+  const System& sys = ws.sys;
+  auto jump = [&](int n) {
+    T sum = basis_row(sys, n).times(x);
+    for (int p = 0; p < sys.prescribed; ++p)
+      sum += T(sys.basis_prescribed[n * sys.prescribed + p]) * prescribed_jump(p);
+    return sum;
+  };
+  for (int m = 0; m < sys.meters; ++m) {
+    const int n = sys.meter_node[m];
+    const T after = node_value(sys, n, ws.v, ws.in.prescribed) + basis_row(sys, n).times(x);
+    ws.metered[m] += meter_sum<T>(sys, m, jump, impulse) * (after - T(0.5) * jump(n));
+  }
+}
+
 /// Apply the impulses of a solved problem over speeds: new speeds, and the work of each contact.
 template <class T>
 void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list) {
@@ -34,6 +51,14 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
     take_heat(ws, ne + list[a], -work);
   }
   backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
+  meter_impulse(
+      ws, x, [](int) { return T(0); },
+      [&](int d) {
+        for (int a = 0; a < p.n; ++a) {
+          if (ne + list[a] == d) return p.x[a];
+        }
+        return T(0);
+      });
   for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
   // the sources behind prescribed speeds take their share
   for (int k = 0; k < ws.sys.prescribed; ++k) {
@@ -131,6 +156,8 @@ void prescribed_jump(Workspace<T>& ws) {
   }
   if (!any) return;
   backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
+  meter_impulse(
+      ws, x, [&](int p) { return ws.in.prescribed[p] - ws.in.prescribed_before[p]; }, [](int) { return T(0); });
   // impulse of each source: its column of inertia times the jumps of all node speeds
   for (int n = 0; n < sys.nodes; ++n) {
     T jump = basis_row(sys, n).times(x);

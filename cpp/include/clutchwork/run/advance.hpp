@@ -60,6 +60,7 @@ void take_initial(Workspace<T>& ws) {
   for (int d = 0; d < ws.n_directions; ++d) ws.heading[d] = forward, ws.branch_of[d] = -1;
   for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_work[p] = T(0);
   for (int i = 0; i < sys.supplies; ++i) ws.supplied[i] = T(0);
+  for (int m = 0; m < sys.meters; ++m) ws.metered[m] = T(0);
 }
 
 /// Every contact before the first decision: it slips, or is open.

@@ -141,6 +141,8 @@ void fill_work(const Workspace<T>& ws, double x, double h, double* row) {
   for (int i = 0; i < ws.sys.supplies; ++i) {
     row[ws.row.supply_energy + i] = value(ws.supplied[i] + since(nd + int(ws.sys.prescribed) + i));
   }
+  const int first = nd + int(ws.sys.prescribed + ws.sys.supplies);
+  for (int m = 0; m < ws.sys.meters; ++m) row[ws.row.meter_energy + m] = value(ws.metered[m] + since(first + m));
 }
 
 /// One row of output at s; work is fitted over the part of the step up to s_end. False: a number is not finite.
@@ -240,6 +242,8 @@ void accumulate(Form& form, Step<Form>& step, double s) {
   for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_work[p] += fitted_work(ws, nd + p, 1.0, s * step.h);
   const int first = nd + int(ws.sys.prescribed);
   for (int i = 0; i < ws.sys.supplies; ++i) ws.supplied[i] += fitted_work(ws, first + i, 1.0, s * step.h);
+  const int last = first + int(ws.sys.supplies);
+  for (int m = 0; m < ws.sys.meters; ++m) ws.metered[m] += fitted_work(ws, last + m, 1.0, s * step.h);
 }
 
 }  // namespace clutchwork

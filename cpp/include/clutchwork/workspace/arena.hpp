@@ -13,7 +13,7 @@ inline bool is_few(const System& s) { return s.speeds <= few_speeds; }
 
 /// Numbers of things in a system, by which arrays are sized; for few speeds the matrices are whole.
 struct Sizes {
-  std::int64_t speeds, prescribed, supplies, states, shared, nodes, elements, contacts, directions, references, signals,
+  std::int64_t speeds, prescribed, supplies, meters, states, shared, nodes, elements, contacts, directions, references, signals,
       processes;
   bool few;
   bool full;                ///< it runs in the full form
@@ -31,6 +31,7 @@ struct Sizes {
       : speeds(s.speeds),
         prescribed(s.prescribed),
         supplies(s.supplies),
+        meters(s.meters),
         states(s.states),
         shared(s.shared),
         nodes(s.nodes),
