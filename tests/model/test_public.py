@@ -43,6 +43,7 @@ PUBLIC = [
     *("Moment", "environment"),
     *("Linear", "linearise", "linearize"),
     *("load_run", "read_columns"),
+    "drive_cycle",
 ]
 
 

@@ -48,6 +48,7 @@ NAMES = {
     "break_away": "sweeps.outputs",
     "compare": "results.plot.compare",
     "draw": "face.draw",
+    "drive_cycle": "signals.bases.cycles",
     "integral": "sweeps.outputs",
     "Linear": "linear.result",
     "linearise": "linear.linearise",

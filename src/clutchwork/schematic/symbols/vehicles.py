@@ -61,7 +61,56 @@ def road(pen: Pen, _: Drawn) -> None:
     pen.line((-9.0, -4.0), (-4.0, -4.0), (1.0, 3.5), (5.0, 1.0), (9.0, 5.0), look=SIGNAL_BODY._replace(width=1.4))
 
 
+def contact(pen: Pen, shown: Drawn) -> None:
+    """A wheel on the road that may slide."""
+    pen.circle(0.0, 0.0, 11.0, look=WHEEL)
+    pen.circle(0.0, 0.0, 2.0, look=BLANK)
+    pen.floor(-14.0, 14.0, -14.4)
+    for x in (-4.0, 0.0, 4.0):
+        pen.line((x - 1.4, -13.8), (x + 1.4, -11.6), look=THIN)
+    for port in ("shaft", "mass"):
+        if port in shown.sides:
+            pen.line((0.0, 0.0), (shown.sides[port] * shown.half, 0.0), look=shown.line)
+    if "support" in shown.sides:
+        side = shown.sides["support"]
+        pen.line((0.0, 0.0), (0.0, 16.0), (side * shown.half, 16.0), look=shown.line)
+
+
+def driver(pen: Pen, _: Drawn) -> None:
+    """A steering wheel."""
+    pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
+    pen.circle(0.0, 0.0, 6.0, look=SIGNAL_BODY._replace(width=1.6))
+    pen.circle(0.0, 0.0, 1.6, look=SIGNAL_BODY)
+    pen.line((-6.0, 0.0), (-1.6, 0.0), look=SIGNAL_BODY)
+    pen.line((1.6, 0.0), (6.0, 0.0), look=SIGNAL_BODY)
+    pen.line((0.0, -1.6), (0.0, -6.0), look=SIGNAL_BODY)
+
+
+def valve(pen: Pen, _: Drawn) -> None:
+    """A coil that moves a spool."""
+    pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
+    pen.box(-9.0, -4.0, -3.0, 4.0, look=SIGNAL_BODY)
+    pen.line((-9.0, -4.0), (-3.0, 4.0), look=SIGNAL_BODY)
+    pen.box(-1.0, -5.0, 9.0, 5.0, look=SIGNAL_BODY)
+    pen.arrow((4.0, 4.0), (0.0, 1.0), 3.4, look=SIGNAL_BODY)
+    pen.line((4.0, -5.0), (4.0, 2.0), look=SIGNAL_BODY)
+
+
+def actuator(pen: Pen, _: Drawn) -> None:
+    """A piston with its spring and an orifice before it."""
+    pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
+    pen.line((-9.0, 2.0), (-7.0, 0.0), (-9.0, -2.0), look=SIGNAL_BODY)
+    pen.line((-5.0, 2.0), (-7.0, 0.0), (-5.0, -2.0), look=SIGNAL_BODY)
+    pen.box(-3.0, -5.0, 9.0, 5.0, look=SIGNAL_BODY)
+    pen.box(-1.0, -5.0, 1.0, 5.0, look=SIGNAL_BODY)
+    pen.line((1.0, 2.0), (2.5, 4.0), (4.0, 0.0), (5.5, 4.0), (7.0, 0.0), (9.0, 2.0), look=SIGNAL_BODY)
+
+
 VEHICLES = {
+    "rolling_contact": Symbol(contact, 18.0, 17.0, 17.0, {"support": 16.0}),
+    "driver": Symbol(driver, 12.0, 9.0, 9.0),
+    "pressure_valve": Symbol(valve, 12.0, 9.0, 9.0),
+    "clutch_actuator": Symbol(actuator, 12.0, 9.0, 9.0),
     "vehicle": Symbol(vehicle, 18.0, 10.0, 10.0),
     "grade": Symbol(grade, 15.0, 9.0, 9.0),
     "air_drag": Symbol(drag, 15.0, 10.0, 10.0),
