@@ -79,7 +79,7 @@ def moving(cls: Any) -> cw.Driveline:
     return d if turning.check() else turning
 
 
-# the slope of a road follows from its position, so it cannot be pushed; friction at its limit can be pushed one way alone
+# the slope of a road follows from its position and cannot be pushed; friction at its limit can be pushed one way alone
 NOT_SMOOTH = (cw.Road, cw.JenkinsElement)
 SMOOTH = [cls for cls in samples.declared(*samples.ELEMENT_ROLES) if cls not in NOT_SMOOTH]
 

@@ -21,7 +21,8 @@ class TorsionalDamper(Heating):
 
     The torque on the follower is -(torque(twist) + friction + damping rate): a table over the twist, extended linearly
     beyond its ends, whose knots are stages and gaps, and any number of friction elements in parallel. Each is a spring
-    of `friction_stiffness` in series with dry friction up to `friction_limit + friction_load abs(torque(twist))`, so that
+    of `friction_stiffness` in series with dry friction up to
+    `friction_limit + friction_load abs(torque(twist))`, so that
     loops close and smaller ones inside are remembered, whatever the rate; that is how arc springs act.
     `dry_friction` is one without give, which sticks exactly. With equal amplitudes A about zero and a constant limit f
     each makes the heat 4 f (A - f/stiffness) per cycle.
