@@ -86,10 +86,12 @@ inline bool tables_fit(const System& s, std::int64_t contact) {
   });
 }
 
-/// Whether n references from `first` on are to signals and shared states: torques know no rates of others.
+/// Whether n references from `first` on are to signals and shared states: torques know the rates of others, and those
+/// of elements alone, in the full form.
 inline bool plain_inputs(const System& s, std::int64_t first, int n) {
+  const std::int64_t most = s.inputs + s.shared + (s.full[0] != 0 ? s.elements : 0);
   for (int i = 0; i < n && first + n <= s.n_input_refs; ++i) {
-    if (s.input_refs[first + i] >= s.inputs + s.shared) return false;
+    if (s.input_refs[first + i] >= most) return false;
   }
   return true;
 }

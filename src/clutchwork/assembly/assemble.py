@@ -54,9 +54,11 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     arrays |= _rates(model, rates, columns, Role.TORQUE, "element")
     arrays |= _rates(model, rates, columns, Role.CONTACT, "contact")
     states = list[float]()
-    arrays |= _elements(model, pools, wires, states) | {"full": [any(_is_coupled(c) for c, _ in model.acting)]}
+    arrays |= _elements(model, pools, wires, states)
     arrays |= _contacts(model, pools, wires, states)
     arrays |= meter_arrays(model)
+    # torques that know the rates of others
+    arrays |= {"full": [wires.rates or any(_is_coupled(component) for component, _ in model.acting)]}
     arrays |= flow_arrays(model, pools, wires)
     arrays |= heat_arrays(model, where)
     arrays |= shared.arrays(pools, wires, states)

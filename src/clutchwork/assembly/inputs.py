@@ -10,7 +10,7 @@ import numpy as np
 
 from clutchwork.assembly.records import Input, Link
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import Segment, Signal, ThermalNode, is_reference
+from clutchwork.declare.node import Node, Segment, Signal, ThermalNode, is_reference
 from clutchwork.declare.ports import ports, thermal_ports
 from clutchwork.declare.schema import Role, Spec, inputs
 from clutchwork.model.parts import role
@@ -38,6 +38,7 @@ class Wires:
     links: list[Link] = field(default_factory=list)
     refs: list[tuple[str, int]] = field(default_factory=list)
     ambients: dict[str, int] = field(default_factory=dict)
+    rates: bool = False  # a torque element or a contact reads the speed of a shaft
 
     def surround(self, thermal: Sequence[ThermalNode]) -> None:
         """Number the temperatures of ambients."""
@@ -69,6 +70,7 @@ class Wires:
             unit = _unit(component, type(thing).__dataclass_fields__[name].metadata["spec"])
             if is_reference(value):
                 self.refs.append(self._reference(value))
+                self.rates = self.rates or (isinstance(value, Node) and role(component) in (Role.TORQUE, Role.CONTACT))
                 self._link(f"{path}.{name}", unit, *self.refs[-1])
             else:
                 plain = spec.otherwise if value is None else value

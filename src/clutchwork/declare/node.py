@@ -196,6 +196,8 @@ class Component(Element):
     ways: ClassVar[tuple[Way, ...]] = ()
 
     one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
+    # of a contact: why it has lost its load where a run finds so, and the remedy
+    lifts: ClassVar[tuple[str, str] | None] = None
     work: ClassVar[Work] = Work.SOURCE  # of a torque element; the work of a contact is always heat
     supply: ClassVar[str] = ""  # of a source with the hook `heat`: what it draws work and heat from, such as "electric"
     elastic: ClassVar[bool] = False  # joins its ends as a shaft does: counts as rigid in ratios of speeds

@@ -213,7 +213,7 @@ def signal(
 ) -> Any:
     """An input: a number, a Signal, a thermal node (its temperature), a process (its first state), or (process, state).
 
-    The inputs of flows and processes may also be `Rate` and `HeatFlow` of an element, and a shaft (its speed).
+    It may be a shaft (its speed), and that of flows and processes `Rate` and `HeatFlow` of an element.
     The C++ functions get them by name, as `at.input[Input::pressure]`.
 
     Bounds hold for what the model knows in advance: a number, and every value that a Signal takes at or after 0 s. What

@@ -64,10 +64,11 @@ def _pieces(component: Component) -> Iterator[Part]:
 
 
 def _asked(element: Component) -> Iterator[Node]:
-    """Shafts whose speed is an input of a flow or a process."""
-    if role(element) in (Role.FLOW, Role.PROCESS):
-        for names, _ in inputs(type(element)):
-            for value in (getattr(element, name) for name in names):
+    """Shafts whose speed is an input of a flow, a process, a torque element or a contact."""
+    things = (element, element.friction) if role(element) not in (Role.GEAR, Role.MOTION) else ()
+    for thing in things:
+        for names, _ in inputs(type(thing)) if thing is not None else ():
+            for value in (getattr(thing, name) for name in names):
                 node = value.of if isinstance(value, Rate) else value
                 if isinstance(node, Node):
                     yield node

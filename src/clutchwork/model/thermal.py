@@ -135,8 +135,7 @@ def _temperature(component: Component, at: At) -> Iterator[Problem]:
 
 
 def _reference(value: Any, spec: Spec, at: At, component: Component, known: Known) -> Iterator[Problem]:
-    direct = isinstance(value, Rate | HeatFlow | Node)
-    if role(component) is Role.MOTION or (direct and role(component) not in (Role.FLOW, Role.PROCESS, Role.COMPOSITE)):
+    if not _may_refer(value, role(component)):
         yield at.problem(f"must be a number{within(at.unit)} or a signal", _words(value), "give one of them")
         return
     missing = _missing(value, known)
@@ -146,6 +145,13 @@ def _reference(value: Any, spec: Spec, at: At, component: Component, known: Know
     given = _unit(value, known)
     if all(units.parse(given).powers != units.parse(unit).powers for unit in (spec.unit, *spec.units)):
         yield at.problem(f"must be in [{at.unit}], but {_words(value)} gives [{given}]", remedy=spec.doc)
+
+
+def _may_refer(value: Any, to: Role) -> bool:
+    """Whether a component may have such an input: torques know speeds of shafts, but no rates of other torques."""
+    if isinstance(value, Rate | HeatFlow):
+        return to in (Role.FLOW, Role.PROCESS, Role.COMPOSITE)
+    return to is not Role.MOTION
 
 
 def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:

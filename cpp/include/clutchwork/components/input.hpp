@@ -231,7 +231,7 @@ void load_inputs(Workspace<T>& ws, double t) {
     seek(ws, i, t);
     if (ws.in.signal[i].knot < ws.in.next_knot) ws.in.next_knot = ws.in.signal[i].knot;
   }
-  ws.in.n_shared_refs = ws.in.n_direction_refs = 0;
+  ws.in.n_shared_refs = ws.in.n_direction_refs = ws.in.n_rate_refs = 0;
   for (int ref = 0; ref < ws.in.n_refs; ++ref) {
     const int i = ws.in.ref_signal[ref];
     if (i >= ws.sys.inputs) {
@@ -239,6 +239,8 @@ void load_inputs(Workspace<T>& ws, double t) {
         ws.in.shared_ref[ws.in.n_shared_refs++] = ref;
       } else {
         ws.in.direction_ref[ws.in.n_direction_refs++] = ref;
+        const bool rate = i < ws.sys.inputs + ws.sys.shared + ws.sys.elements;
+        if (rate && ws.sys.full[0] != 0) ws.in.rate_ref[ws.in.n_rate_refs++] = ref;
       }
       continue;
     }

@@ -93,6 +93,13 @@ CLUTCHWORK_INLINE void slopes(Form& form, const T* velocity, Edge<T>& edge) {
   for (int k = 0; k < ws.n_rates; ++k) edge.slope[k] = form.rate(k, velocity) + offset_slope(ws, k);
 }
 
+/// All inputs at (t, y), the rates among them.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void inputs_of(Form& form, Real<T> t, const T* y) {
+  if constexpr (Form::full) return full_inputs(form, t, y);
+  inputs_with(form.ws, t, y + form.nz());
+}
+
 /// Torques of many locked contacts for given branch torques: free acceleration, then one solve with the factor of their
 /// mobility.
 template <class T>
@@ -164,6 +171,7 @@ template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void sense(Form& form, const T* y, const T* velocity, const T* d, Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
   const int m = ws.held.n;
+  if constexpr (Form::full) full_drifts(form, d, edge);
   if (m == 0) return;
   drift_torques(form, y, velocity, d, edge);
   T size = T(0);

@@ -76,6 +76,41 @@ void whole_rates(const FullForm<T>& form, const Whole<S>& e) {
   }
 }
 
+/// The inputs that are rates of elements.
+template <class T, class S>
+void whole_rate_inputs(const FullForm<T>& form, const Whole<S>& e) {
+  const Workspace<T>& ws = form.ws;
+  for (int i = 0; i < ws.in.n_rate_refs; ++i) {
+    const int ref = ws.in.rate_ref[i];
+    e.input[ref] = e.rate[ws.branch_of[element_behind(ws, ref)]];
+  }
+}
+
+/// All inputs at (t, y), those included that are rates.
+template <class T>
+void full_inputs(FullForm<T>& form, Real<T> t, const T* y) {
+  Workspace<T>& ws = form.ws;
+  inputs_with(ws, t, y + form.nz());
+  for (int i = 0; i < ws.in.n_rate_refs; ++i) {
+    const int ref = ws.in.rate_ref[i], k = ws.branch_of[element_behind(ws, ref)];
+    ws.in.u[ref] = form.rate(k, y) + offset_rate(ws, k);
+  }
+}
+
+/// Time derivatives of the inputs that are no signals: of rates from their slopes, of shared states from their rates.
+template <class T>
+void full_drifts(FullForm<T>& form, const T* d, const Edge<T>& edge) {
+  Workspace<T>& ws = form.ws;
+  for (int i = 0; i < ws.in.n_rate_refs; ++i) {
+    const int ref = ws.in.rate_ref[i];
+    ws.in.du[ref] = edge.slope[ws.branch_of[element_behind(ws, ref)]];
+  }
+  for (int i = 0; i < ws.in.n_shared_refs; ++i) {
+    const int ref = ws.in.shared_ref[i], j = ws.sys.input_refs[ref] - int(ws.sys.inputs);
+    ws.in.shared_slope[ref] = T(ws.sys.shared_scale[j]) * d[form.n() - ws.sys.shared + j];
+  }
+}
+
 /// Torque of branch k with all its ways, and the rates of its states.
 template <class T, class S>
 void whole_torque(const FullForm<T>& form, const Whole<S>& e, int k) {
@@ -158,6 +193,7 @@ template <class T, class S>
   for (int i = 0; i < form.n(); ++i) e.d[i] = S(T(0));
   if (ws.in.n_shared_refs > 0) whole_inputs(form, e);
   whole_rates(form, e);
+  if (ws.in.n_rate_refs > 0) whole_rate_inputs(form, e);
   for (int k = 0; k < ws.n_branches; ++k) {
     if (ws.branch[k].ways > 0) whole_torque(form, e, k);
   }
@@ -183,7 +219,8 @@ template <class T, int N>
 void lift_inputs(const Workspace<T>& ws, int time, const Whole<Dual<T, N>>& e) {
   for (int i = 0; i < ws.in.n_refs; ++i) {
     e.input[i] = Dual<T, N>(ws.in.u[i]);
-    if (time < N && ws.in.signal[ws.in.ref_signal[i]].varying) e.input[i].d[time] = ws.in.du[i];
+    const int signal = ws.in.ref_signal[i];
+    if (time < N && signal < ws.sys.inputs && ws.in.signal[signal].varying) e.input[i].d[time] = ws.in.du[i];
   }
 }
 
@@ -193,7 +230,7 @@ void linearize_whole(FullForm<T>& form, Real<T> t, const T* y, T* d, T* dt, Edge
   constexpr int N = Full<T>::chunk;
   Workspace<T>& ws = form.ws;
   const int n = form.n();
-  inputs_with(ws, t, y + form.nz());
+  full_inputs(form, t, y);
   input_slopes_at(ws, t);
   const Whole<Dual<T, N>>& e = ws.full.some;
   for (int first = 0; first <= n; first += N) {

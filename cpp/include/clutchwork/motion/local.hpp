@@ -49,6 +49,7 @@ class LocalDerivatives {
   void fill() {
     for (std::int64_t i = 0; i < n_.rows * n_.columns; ++i) out_[i] = 0;
     inputs_with(ws_, ws_.time, ws_.state);
+    present_rates(ws_);
     T *rate = ws_.seen.rate, *torque = ws_.seen.torque, *d = ws_.seen.state_rates;
     for (int i = 0; i < sys_.states; ++i) d[i] = T(0);
     for (int k = 0; k < ws_.n_branches; ++k) {

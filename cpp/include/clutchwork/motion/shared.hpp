@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -58,6 +59,21 @@ void direction_inputs(Workspace<T>& ws, const T* rate) {
     bool heat;
     const int k = branch_behind(ws, ref, heat);
     ws.in.u[ref] = k < 0 ? T(0) : heat ? ws.shared.heat[k] : rate[k];
+  }
+}
+
+/// The element behind a reference to a rate.
+template <class T>
+CLUTCHWORK_INLINE int element_behind(const Workspace<T>& ws, int ref) {
+  return ws.sys.input_refs[ref] - int(ws.sys.inputs + ws.sys.shared);
+}
+
+/// References to rates at the present speeds.
+template <class T>
+void present_rates(Workspace<T>& ws) {
+  for (int i = 0; i < ws.in.n_rate_refs; ++i) {
+    const int ref = ws.in.rate_ref[i];
+    ws.in.u[ref] = rate_of(ws, element_behind(ws, ref));
   }
 }
 

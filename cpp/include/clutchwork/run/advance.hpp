@@ -89,6 +89,7 @@ bool start(Workspace<T>& ws) {
   take_initial(ws);
   load_inputs(ws, ws.time);
   shared_inputs(ws, ws.state);
+  present_rates(ws);
   keep_prescribed(ws);
   input_slopes_at(ws, ws.time);
   start_contacts(ws);

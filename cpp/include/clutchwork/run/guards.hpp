@@ -62,21 +62,27 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   return s <= limit ? s : -1;
 }
 
+/// Whether some inputs follow the state, so that they are known inside a step from its interpolant alone.
+template <class T>
+bool inputs_follow(const Workspace<T>& ws) {
+  return ws.in.n_shared_refs > 0 || ws.in.n_rate_refs > 0;
+}
+
 /// All inputs at the share s of a step.
 template <class Form>
 void inputs_in(Form& form, Step<Form>& step, double s) {
   auto& ws = form.ws;
   const double t = step.t + s * step.h;
-  if (ws.in.n_shared_refs == 0) return inputs_at(ws, t);
+  if (!inputs_follow(ws)) return inputs_at(ws, t);
   interpolate(form, step, s, step.point());
-  inputs_with(ws, t, step.point() + form.nz());
+  inputs_of(form, t, step.point());
 }
 
 /// Where a contact fails.
 template <class Form, class Integrator>
 void find_fault(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
-  if (ws.in.n_shared_refs > 0 && !step.dense) Integrator::prepare_dense(form, step);
+  if (inputs_follow(ws) && !step.dense) Integrator::prepare_dense(form, step);
   for (int i = 0; i < ws.guard.n_faulty; ++i) {
     const int c = ws.guard.faulty[i];
     if (ws.contact.fault[c] != sound) continue;
@@ -100,7 +106,7 @@ void find_exit(Form& form, Step<Form>& step, Hit& hit) {
     const int c = ws.guard.bounded[i], k = ws.branch_of[ws.sys.elements + c];
     T seen = T(0);
     auto room = [&](double s, const T* y) {
-      inputs_with(ws, step.t + s * step.h, y + form.nz());
+      inputs_of(form, step.t + s * step.h, y);
       const T slip = k < 0 ? T(0) : form.rate(k, y) + offset_rate(ws, k);
       return value(table_room(ws, c, slip, seen));
     };
@@ -131,9 +137,9 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
     const int k = ws.guard.switching[i];
     const Branch<T>& b = ws.branch[k];
     int who = turned;
-    inputs_with(ws, step.t, step.y0() + nz);
+    inputs_of(form, step.t, step.y0());
     const auto start = law_margin(ws, b, ws.here.rate + k, ws.here.slope + k, step.y0() + nz, step.f0() + nz, who);
-    inputs_with(ws, step.t + step.h, step.y1() + nz);
+    inputs_of(form, step.t + step.h, step.y1());
     const auto end = law_margin(ws, b, ws.there.rate + k, ws.there.slope + k, step.y1() + nz, step.f1() + nz, who);
     const double change = abs(value(end.v - start.v));
     const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
@@ -141,7 +147,7 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
     if (!step.dense) Integrator::prepare_dense(form, step);
     auto f = [&](double s) {
       interpolate(form, step, s, step.point());
-      inputs_with(ws, step.t + s * step.h, step.point() + nz);
+      inputs_of(form, step.t + s * step.h, step.point());
       T rate[most_ways];
       const T still[most_ways] = {};
       for (int w = 0; w < b.ways; ++w) rate[w] = form.rate(k + w, step.point()) + offset_rate(ws, k + w);
@@ -249,7 +255,7 @@ void find_load(Form& form, Step<Form>& step, Hit& hit) {
       inputs_in(form, step, s);
       return sign * value(load_of(ws, c)) + noise;
     };
-    if (ws.in.n_shared_refs > 0 && !step.dense) Integrator::prepare_dense(form, step);
+    if (inputs_follow(ws) && !step.dense) Integrator::prepare_dense(form, step);
     const double l0 = f(0), l1 = f(1);
     const double s = first_crossing(f, l0, abs(l1) <= 1e-12 * abs(l0) ? 0.0 : l1, hit.s);
     if (!is_first(hit, s)) continue;

@@ -28,6 +28,7 @@ void export_state(Form& form, const T* y) {
   for (int i = 0; i < form.ns(); ++i) ws.state[i] = y[form.nz() + i];
   inputs_with(ws, ws.time, ws.state);
   expand(form, y, ws.v);
+  present_rates(ws);
 }
 
 /// After a knot: right limits of the signals; true when the modes must be decided again. docs/theory/events.md, rule 1

@@ -75,12 +75,21 @@ int backward_freewheel(const Workspace<T>& ws) {
   return -1;
 }
 
+/// After a jump of the speeds: what contacts read of them, and which of them can transmit.
+template <class T>
+void see_speeds(Workspace<T>& ws) {
+  if (ws.in.n_rate_refs == 0) return;
+  present_rates(ws);
+  refresh_loads(ws);
+}
+
 /// Impulses, then modes; the impulse of a stop within a tolerance may bring others to rest, or break them loose.
 /// `running`: all is decided. docs/theory/contacts.md, rule 9
 template <class T>
 Status decide(Workspace<T>& ws, bool at_start) {
   const int located = ws.happened.contact;
   if (!settle_impulses(ws, at_start)) return Status::no_mode;
+  see_speeds(ws);
   find_pieces(ws);
   for (int c = 0; at_start && c < ws.sys.contacts; ++c) {
     ws.contact.impulse[c] = ws.contact.mode[c] == locked && ws.happened.mode[c] != locked;
@@ -88,6 +97,7 @@ Status decide(Workspace<T>& ws, bool at_start) {
   Status status = settle(ws, located);
   if (status == Status::running && stops_short(ws, located)) {
     if (!stop_within_tolerance(ws, located)) return Status::no_mode;
+    see_speeds(ws);
     status = settle(ws, -1);
   }
   const int jammed = status == Status::running ? backward_freewheel(ws) : -1;
@@ -126,7 +136,7 @@ Status switch_modes(Workspace<T>& ws) {
 
   forget_forced(ws);
   if (ws.happened.cause == Cause::slip_zero && located >= 0) ws.contact.forced[located] = 0;
-  if (!at_start) prescribed_jump(ws);
+  if (!at_start) prescribed_jump(ws), see_speeds(ws);
   const double energy_before = kinetic_energy(ws);
   const Status decided = decide(ws, at_start);
   if (decided != Status::running) return decided;

@@ -8,7 +8,7 @@ from typing import Any
 
 from clutchwork.schematic.look import BODY, GREY, INK, LOCKED, OPEN, PLATE, SHAFT, STATE, THIN, TINY, Look
 from clutchwork.schematic.pen import Pen
-from clutchwork.schematic.symbols.contacts import halo, ink, lining
+from clutchwork.schematic.symbols.contacts import CONTACTS, halo, ink, lining
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT, Drawn, Symbol, wall
 
 # rows of a planetary set
@@ -97,6 +97,18 @@ def chain(pen: Pen, shown: Drawn) -> None:
         if port in shown.fixed:
             wall(pen, RIGHT, 0.0, shown, y, 6.0)
     out(pen, shown, "support", 0.0)
+
+
+def belt(pen: Pen, shown: Drawn) -> None:
+    """Two pulleys with a belt around them."""
+    halo(pen, shown)
+    for y in (PITCH / 2, -PITCH / 2):
+        pen.circle(0.0, y, 6.0, look=Look(width=1.2, fill="#DDE3EA"))
+    crossed = -1.0 if getattr(shown.element, "crossed", False) else 1.0
+    for x in (-6.0, 6.0):
+        pen.line((x, PITCH / 2), (x * crossed, -PITCH / 2), look=ink(shown, 1.6))
+    for port in ("base", "follower"):
+        out(pen, shown, port, 0.0)
 
 
 def _members(pen: Pen, shown: Drawn, axle: float) -> None:
@@ -199,6 +211,8 @@ GEARS = {
     "planetary": Symbol(planetary, 20.0, 22.0, 22.0, SETS),
     "double_planetary": Symbol(double_planetary, 22.0, 22.0, 22.0, SETS),
     "bevel_gear": Symbol(pair, 16.0, 33.0, 33.0, PAIR),
+    "belt_contact": CONTACTS["clutch"],
+    "belt_drive": Symbol(belt, 16.0, 20.0, 20.0, {"base": PITCH / 2, "follower": -PITCH / 2}),
     "chain": Symbol(chain, 16.0, 20.0, 20.0, PAIR),
     "compound_planetary": Symbol(compound_planetary, 20.0, 22.0, 22.0, SETS),
     "ravigneaux": Symbol(
