@@ -1,7 +1,7 @@
 #pragma once
 #include <clutchwork/components/scalar.hpp>
 
-/// Elastic contact of two bodies that push and, where their damping is limited, never pull: docs/theory/clutches.md.
+/// Elastic contact of two bodies, which push and never pull: docs/theory/play.md.
 namespace clutchwork {
 
 /// How two bodies touch: damped in full; the damping at its limit, as large as the force of the spring; that which
@@ -15,7 +15,7 @@ struct ElasticContact {
   S damping;        ///< force of the damper, above zero where it closes
   S closing;        ///< rate at which it closes
   double strength;  ///< damping over closing
-  bool limited;     ///< the damping is never above the spring, in either direction
+  bool limited;     ///< the damping is never above the spring
 
   /// Force that pushes the bodies apart.
   CLUTCHWORK_INLINE S push(Touch touch) const {
@@ -24,16 +24,17 @@ struct ElasticContact {
   }
   /// How it touches, by its forces alone.
   Touch touch() const {
-    if (!limited || value(abs(damping)) <= value(spring)) return Touch::firm;
-    return value(damping) > 0 ? Touch::hard : Touch::slack;
+    if (value(spring + damping) <= 0) return strength > 0 ? Touch::slack : Touch::firm;
+    return limited && value(damping) > value(spring) ? Touch::hard : Touch::firm;
   }
   /// Rates by which it is off the limits of the damping, to f(guard, next touch).
   template <class F>
   void each_limit(Touch touch, F&& f) const {
-    if (!limited || strength == 0) return;
+    if (strength == 0) return;
     const S reach = spring / S(strength);
     if (touch == Touch::firm) {
-      f(reach - closing, Touch::hard), f(reach + closing, Touch::slack);
+      if (limited) f(reach - closing, Touch::hard);
+      f(reach + closing, Touch::slack);
     } else {
       f(touch == Touch::hard ? closing - reach : -closing - reach, Touch::firm);
     }
