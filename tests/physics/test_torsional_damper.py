@@ -74,6 +74,60 @@ def test_random_ways_as_another_implementation_has_them(seed):
     assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
 
 
+@pytest.mark.parametrize("slow", [False, True])
+def test_a_limit_that_follows_the_speed_of_the_base(slow):
+    """The limit changes while the element slides and while it sticks; beside fine steps that clip its torque."""
+    k, f, fc, ft = 800.0, 2.0, 0.004, 0.1
+    d = cw.Driveline("spinning")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    # the twist swings slowly against the speed, or fast
+    base = cw.Sine(amplitude=40.0, frequency=9.0 if slow else 1.3, offset=60.0)
+    d.add(cw.PrescribedSpeed("p", shaft=a, speed=base))
+    turn = cw.PrescribedSpeed("q", shaft=b, base=a, speed=cw.Sine(amplitude=0.4, frequency=2.0))
+    d.add(turn)
+    d.add(
+        cw.TorsionalDamper(
+            "damper", base=a, follower=b, torque=E, friction_stiffness=[k], friction_limit=[f], friction_load=[ft],
+            friction_speed=[fc],
+        )
+    )  # fmt: skip
+    run = d.simulate(1.5, dt=0.01, rtol=1e-9)
+    fine = np.linspace(0.0, 1.5, 300001)
+    twist = 0.4 / (4 * pi) * (1 - np.cos(4 * pi * fine))
+    speed = 60.0 + 40.0 * np.sin(2 * pi * (9.0 if slow else 1.3) * fine)
+    xs, ys = np.array(E).T
+    limits = f + fc * speed**2 + ft * np.abs(np.interp(twist, xs, ys))
+    h, wanted = 0.0, [0.0]
+    for move, most in zip(k * np.diff(twist), limits[1:], strict=True):
+        h = min(max(h + move, -most), most)
+        wanted.append(h)
+    wanted = np.array(wanted)[::2000]
+    found = -run["damper.friction_1.torque"]
+    # the fine steps have the error of a step at each turn
+    assert found == pytest.approx(wanted, abs=2e-4 * np.max(np.abs(wanted)))
+    # the state is shown with a lag of 0.1 ms while it slides
+    assert run["damper.friction_1.friction_torque"] == pytest.approx(found, abs=0.02 * np.max(np.abs(found)))
+    # work between prescribed speeds is a quadrature of its own, with the tolerance at each step
+    assert abs(run.energy.residual) <= 1e-6 * run.energy.turnover
+
+
+@pytest.mark.parametrize("method", ["rodas5p", "dopri5"])
+def test_energy_of_a_spinning_damper(method):
+    d = cw.Driveline("spinning")
+    a, b = d.shaft("a", inertia=0.12, speed=80.0), d.shaft("b", inertia=0.06, speed=80.0)
+    elements = {"friction_stiffness": [1000.0, 500.0], "friction_limit": [2.0, 3.0], "friction_load": [0.03, 0.0]}
+    damper = cw.TorsionalDamper("damper", base=a, follower=b, torque=E, friction_speed=[4e-4, 1e-4], **elements)
+    d.add(damper)
+    d.add(cw.Torque("engine", shaft=a, torque=cw.Sine(amplitude=120.0, frequency=11.0, offset=30.0)))
+    d.add(cw.Damper("road", base=d.housing, follower=b, damping=0.3))
+    run = d.simulate(0.5, rtol=1e-9, method=method)
+    assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
+    limit = 3.0 + 1e-4 * run["a.speed"] ** 2
+    sliding = np.abs(run["damper.friction_2.torque"])
+    assert np.all(sliding <= limit * (1 + 1e-9))
+    assert np.sum(sliding >= limit * (1 - 1e-9)) > 10
+
+
 def test_loops_make_the_heat_of_their_area_at_any_rate():
     k, f, amplitude = 2000.0, 15.0, 0.08
     heats = []
@@ -240,7 +294,7 @@ def test_limits_over_the_twist(torque, limit):
         ),
         (
             {"friction_limit": [0.0], "friction_stiffness": [1.0]},
-            "friction_limit is zero for an element without friction_load",
+            "friction_limit is zero for an element without friction_load and friction_speed",
         ),
         ({"friction_limit": [-1.0], "friction_stiffness": [1.0]}, "friction_limit, number 1 = -1.0 N m: must be >= 0"),
     ],

@@ -5,7 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar
 
-from clutchwork.declare import Found, Node, Points, Role, State, Work, component, curve, option, param, port
+from clutchwork.declare import (
+    Found,
+    Node,
+    Points,
+    Role,
+    SignalLike,
+    State,
+    Work,
+    component,
+    curve,
+    option,
+    param,
+    port,
+    signal,
+)
 from clutchwork.elements.bases.heating import Heating
 
 
@@ -22,8 +36,9 @@ class JenkinsElement(Heating):
 
     Use several beside a spring for hysteresis with memory, as of arc springs and friction rings, whose loops close
     whatever the rate. Where it sticks its torque changes with `stiffness` times the rate; at the limit it follows that,
-    exactly, until the rate turns. The limit is a number, or a table over the twist which is extended linearly; what
-    such an element has stored comes back.
+    exactly, until the rate turns. The limit is a number, or a table over the twist which is extended linearly, and
+    may grow with the square of a speed, as centrifugal force presses springs onto their guide. What such an element
+    has stored comes back.
 
     Equations: docs/theory/compliance.md. Source: W. D. Iwan, A distributed-element model for hysteresis and its
     steady-state dynamic response, J. Appl. Mech. 33, 1966, doi:10.1115/1.3625199.
@@ -43,6 +58,12 @@ class JenkinsElement(Heating):
         at_least=0.0,
         constant=True,
         example=((-0.1, 8.0), (-0.05, 5.0), (0.05, 5.0), (0.1, 8.0)),
+    )
+    speed_friction: float = param(
+        "N m s2/rad2", "what the square of the speed adds to the limit", default=0.0, at_least=0.0, units=("N s2/m2",)
+    )
+    speed: SignalLike | None = signal(
+        "rad/s", "speed that presses it, such as that of a shaft", default=None, otherwise=0.0, units=("m/s",)
     )
     initial_twist: float = option("rad", "twist at the start, where the limit is over it", default=0.0, units=("m",))
 

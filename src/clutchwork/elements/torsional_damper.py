@@ -12,7 +12,7 @@ from clutchwork.elements.jenkins_element import JenkinsElement
 from clutchwork.elements.nonlinear_spring import NonlinearSpring
 from clutchwork.elements.torque_limiter import TorqueLimiter
 
-LISTS = ("friction_limit", "friction_stiffness", "friction_load")
+LISTS = ("friction_limit", "friction_stiffness", "friction_load", "friction_speed")
 
 
 @component(Role.COMPOSITE)
@@ -21,8 +21,8 @@ class TorsionalDamper(Heating):
 
     The torque on the follower is -(torque(twist) + friction + damping rate): a table over the twist, extended linearly
     beyond its ends, whose knots are stages and gaps, and any number of friction elements in parallel. Each is a spring
-    of `friction_stiffness` in series with dry friction up to
-    `friction_limit + friction_load abs(torque(twist))`, so that
+    of `friction_stiffness` in series with dry friction up to `friction_limit + friction_load abs(torque(twist)) +
+    friction_speed w_base^2`, so that
     loops close and smaller ones inside are remembered, whatever the rate; that is how arc springs act.
     `dry_friction` is one without give, which sticks exactly. With equal amplitudes A about zero and a constant limit f
     each makes the heat 4 f (A - f/stiffness) per cycle.
@@ -52,6 +52,9 @@ class TorsionalDamper(Heating):
     friction_load: Sequence[float] | None = numbers(
         "1", "share of the torque of the springs that adds to the limit of each", default=None, at_least=0.0
     )
+    friction_speed: Sequence[float] | None = numbers(
+        "N m s2/rad2", "what the square of the speed of the base adds to the limit of each", default=None, at_least=0.0
+    )
     dry_friction: float = param("N m", "friction that has no give", default=0.0, at_least=0.0, units=("N",))
     initial_twist: float = option("rad", "twist at the start", default=0.0, units=("m",))
 
@@ -65,17 +68,24 @@ class TorsionalDamper(Heating):
         if wrong:
             count = f"{given[wrong[0]]} numbers for {given['friction_stiffness']} of friction_stiffness"
             return [(wrong[0], f"has {count}", "give each list one number for each friction element")]
-        if any(not limit and not load for _, limit, load in self._elements()):
-            return [("friction_limit", "is zero for an element without friction_load", "give it a limit, or remove it")]
+        if any(not limit and not load and not speed for _, limit, load, speed in self._elements()):
+            return [
+                (
+                    "friction_limit",
+                    "is zero for an element without friction_load and friction_speed",
+                    "give it a limit, or remove it",
+                )
+            ]
         return []
 
     def parts(self) -> Iterator[Component]:
         """The springs, which have the name of the whole, and the friction beside them."""
         start: dict[str, Any] = {"initial_twist": self.initial_twist}
         yield self._part(NonlinearSpring, self.name, torque=self.torque, damping=self.damping, **start)
-        for number, (stiffness, limit, load) in enumerate(self._elements(), 1):
+        for number, (stiffness, limit, load, speed) in enumerate(self._elements(), 1):
             name, limits = f"{self.name}.friction_{number}", over_torque(self.torque, limit, load) if load else limit
-            yield self._part(JenkinsElement, name, stiffness=stiffness, limit=limits, **start)
+            pressed = {"speed_friction": speed, "speed": self.base} if speed and not self.base.fixed else {}
+            yield self._part(JenkinsElement, name, stiffness=stiffness, limit=limits, **pressed, **start)
         if self.dry_friction:
             yield self._part(TorqueLimiter, f"{self.name}.dry", torque=self.dry_friction, locked=False)
 
@@ -89,12 +99,13 @@ class TorsionalDamper(Heating):
         count = len(self.friction_stiffness or ())
         return (*(f"friction_{number}" for number in range(1, count + 1)), "dry")
 
-    def _elements(self) -> Iterator[tuple[float, float, float]]:
-        """Stiffness, limit and share of the load of each friction element."""
+    def _elements(self) -> Iterator[tuple[float, float, float, float]]:
+        """Stiffness, limit, share of the load and share of the square of the speed of each friction element."""
         stiffness = self.friction_stiffness or ()
         none = (0.0,) * len(stiffness)
-        for each in zip(stiffness, self.friction_limit or none, self.friction_load or none, strict=True):
-            yield float(each[0]), float(each[1]), float(each[2])
+        others = (self.friction_limit or none, self.friction_load or none, self.friction_speed or none)
+        for k, limit, load, speed in zip(stiffness, *others, strict=True):
+            yield float(k), float(limit), float(load), float(speed)
 
 
 def over_torque(torque: Points, limit: float, load: float) -> Points:

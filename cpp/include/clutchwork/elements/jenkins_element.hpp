@@ -5,12 +5,14 @@
 
 namespace clutchwork::elements {
 
-/// Spring in series with dry friction whose limit is a table over the twist. docs/theory/compliance.md (6)
+/// Spring in series with dry friction whose limit is a table over the twist, and grows with the square of a speed.
+/// docs/theory/compliance.md (6)
 struct JenkinsElement : declared::JenkinsElement {
   template <class T>
   struct Params {
-    T stiffness;     ///< [N m/rad]
-    Curve<T> limit;  ///< rad -> N m
+    T stiffness;       ///< [N m/rad]
+    Curve<T> limit;    ///< rad -> N m
+    T speed_friction;  ///< [N m s2/rad2]
   };
   // on each piece of the limit it sticks, or slides one way or the other
   enum Mode : int { sticks, ahead, behind };
@@ -19,6 +21,10 @@ struct JenkinsElement : declared::JenkinsElement {
   static int segment(int piece) { return piece / 3; }
   static int side(int piece) { return mode(piece) == behind ? -1 : 1; }
   static int piece_of(int segment, int mode) { return 3 * segment + mode; }
+  template <class T>
+  static bool follows_speed(const Params<T>& p) {
+    return value(p.speed_friction) > 0;
+  }
 
   /// A limit that is one number needs no twist.
   template <class T>
@@ -27,15 +33,16 @@ struct JenkinsElement : declared::JenkinsElement {
   }
   template <class T, class S>
   static S limit(const Params<T>& p, const At<S>& at) {
-    if (count(p) == 1) return S(at.points[3 * int(value(p.limit.first)) + 1]);
-    return curve_value(p.limit, at.points, at.state[twist], segment(at.piece));
+    const S v = at.input[Input::speed], more = p.speed_friction * v * v;
+    if (count(p) == 1) return S(at.points[3 * int(value(p.limit.first)) + 1]) + more;
+    return curve_value(p.limit, at.points, at.state[twist], segment(at.piece)) + more;
   }
   /// Torque of the spring: its state where it sticks.
   template <class T, class S>
   static S spring(const Params<T>& p, const At<S>& at) {
     return mode(at.piece) == sticks ? at.state[friction_torque] : T(side(at.piece)) * limit(p, at);
   }
-  /// Rate of the spring over the rate of the twist.
+  /// Rate of the spring over the rate of the twist, at a constant speed.
   template <class T, class S>
   static T growth(const Params<T>& p, const At<S>& at) {
     if (mode(at.piece) == sticks) return p.stiffness;
@@ -52,6 +59,9 @@ struct JenkinsElement : declared::JenkinsElement {
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     rates[friction_torque] = growth(p, at) * at.rate;
+    // what the speed does to the limit: while it slides the state is shown and nothing else, so it may come after
+    if (mode(at.piece) != sticks && follows_speed(p))
+      rates[friction_torque] += (spring(p, at) - at.state[friction_torque]) / T(after);
     if (count(p) > 1) rates[twist] = at.rate;
   }
 
@@ -67,11 +77,13 @@ struct JenkinsElement : declared::JenkinsElement {
       const S size = S(largest(p, at.points));
       guards.watch((limit(p, at) - at.state[friction_torque]) / size, piece_of(k, ahead));
       guards.watch((limit(p, at) + at.state[friction_torque]) / size, piece_of(k, behind));
+    } else if (follows_speed(p)) {
+      guards.watch(lead(p, at), piece_of(k, sticks));
     }
     who = guards.who;
     return S(guards.least) + guards.change;
   }
-  /// Sliding ends where the slip turns, or where the limit behind a knot grows faster than the spring.
+  /// Sliding ends where the limit grows faster than the spring: where the slip turns, behind a knot, with the speed.
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
     const int next = who == turned ? piece_of(segment(at.piece), sticks) : who;
@@ -80,8 +92,8 @@ struct JenkinsElement : declared::JenkinsElement {
     return mode(at.piece) == sticks ? next : kept(p, at, next);
   }
   template <class T>
-  static bool turns(const Params<T>&, int piece) {
-    return mode(piece) != sticks;
+  static bool turns(const Params<T>& p, int piece) {
+    return mode(piece) != sticks && !follows_speed(p);
   }
   template <class T>
   static int settle(const Params<T>& p, const At<T>& at) {
@@ -90,12 +102,25 @@ struct JenkinsElement : declared::JenkinsElement {
   }
 
  private:
-  /// A piece, and where it slides whether it goes on: the spring would grow faster than the limit.
+  static constexpr double after = 1e-4;  // [s]
+
+  /// A piece, and where it slides whether it goes on: the spring would grow faster than the limit. Where the limit
+  /// follows a speed, its guard tells.
   template <class T>
   static int kept(const Params<T>& p, const At<T>& at, int piece) {
-    if (mode(piece) == sticks) return piece;
+    if (mode(piece) == sticks || follows_speed(p)) return piece;
     const double faster = side(piece) * value(p.stiffness) - piece_slope(p.limit, at.points, segment(piece));
     return faster * value(at.rate) >= 0 ? piece : piece_of(segment(piece), sticks);
+  }
+  /// How much faster the spring would grow than the limit, over its stiffness; the drift of the input is that of the
+  /// speed.
+  template <class T, class S>
+  static S lead(const Params<T>& p, const At<S>& at) {
+    const S v = at.input[Input::speed];
+    const double faster = side(at.piece) * value(p.stiffness) - piece_slope(p.limit, at.points, segment(at.piece));
+    S found = T(faster) * at.rate / p.stiffness;
+    if constexpr (requires { v.d[0]; }) found -= T(2) * p.speed_friction * v.v * v.d[0] / p.stiffness;
+    return found;
   }
   /// The largest limit of the table: what counts as far from it.
   template <class T>

@@ -97,14 +97,20 @@ void full_inputs(FullForm<T>& form, Real<T> t, const T* y) {
   }
 }
 
+/// Time derivatives of the inputs that are rates, from slope(k) of branch k.
+template <class T, class F>
+void rate_slopes(Workspace<T>& ws, F&& slope) {
+  for (int i = 0; i < ws.in.n_rate_refs; ++i) {
+    const int ref = ws.in.rate_ref[i];
+    ws.in.du[ref] = slope(ws.branch_of[element_behind(ws, ref)]);
+  }
+}
+
 /// Time derivatives of the inputs that are no signals: of rates from their slopes, of shared states from their rates.
 template <class T>
 void full_drifts(FullForm<T>& form, const T* d, const Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
-  for (int i = 0; i < ws.in.n_rate_refs; ++i) {
-    const int ref = ws.in.rate_ref[i];
-    ws.in.du[ref] = edge.slope[ws.branch_of[element_behind(ws, ref)]];
-  }
+  rate_slopes(ws, [&](int k) { return edge.slope[k]; });
   for (int i = 0; i < ws.in.n_shared_refs; ++i) {
     const int ref = ws.in.shared_ref[i], j = ws.sys.input_refs[ref] - int(ws.sys.inputs);
     ws.in.shared_slope[ref] = T(ws.sys.shared_scale[j]) * d[form.n() - ws.sys.shared + j];

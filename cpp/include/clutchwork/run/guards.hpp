@@ -78,6 +78,15 @@ void inputs_in(Form& form, Step<Form>& step, double s) {
   inputs_of(form, t, step.point());
 }
 
+/// Time derivatives of the inputs that are rates, at the share s of a step.
+template <class Form>
+void slopes_in(Form& form, Step<Form>& step, double s) {
+  auto& ws = form.ws;
+  interpolate_slope(form, step, s, step.slope());
+  input_slopes_at(ws, step.t + s * step.h);
+  rate_slopes(ws, [&](int k) { return form.rate(k, step.slope()) + offset_slope(ws, k); });
+}
+
 /// Where a contact fails.
 template <class Form, class Integrator>
 void find_fault(Form& form, Step<Form>& step, Hit& hit) {
@@ -138,8 +147,10 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
     const Branch<T>& b = ws.branch[k];
     int who = turned;
     inputs_of(form, step.t, step.y0());
+    rate_slopes(ws, [&](int j) { return ws.here.slope[j]; });
     const auto start = law_margin(ws, b, ws.here.rate + k, ws.here.slope + k, step.y0() + nz, step.f0() + nz, who);
     inputs_of(form, step.t + step.h, step.y1());
+    rate_slopes(ws, [&](int j) { return ws.there.slope[j]; });
     const auto end = law_margin(ws, b, ws.there.rate + k, ws.there.slope + k, step.y1() + nz, step.f1() + nz, who);
     const double change = abs(value(end.v - start.v));
     const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
@@ -148,6 +159,7 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
     auto f = [&](double s) {
       interpolate(form, step, s, step.point());
       inputs_of(form, step.t + s * step.h, step.point());
+      if (ws.in.n_rate_refs > 0) slopes_in(form, step, s);
       T rate[most_ways];
       const T still[most_ways] = {};
       for (int w = 0; w < b.ways; ++w) rate[w] = form.rate(k + w, step.point()) + offset_rate(ws, k + w);
