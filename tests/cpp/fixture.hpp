@@ -2,6 +2,7 @@
 #include <clutchwork/c_api.h>
 #include <clutchwork/components/input.hpp>
 
+#include <array>
 #include <clutchwork/registry.gen.hpp>
 #include <initializer_list>
 #include <vector>
@@ -250,6 +251,7 @@ class Model {
                                   count(flow_kind_),
                                   count(process_kind_),
                                   count(heats_),
+                                  0,
                                   count(input_first_),
                                   count(segment_time_),
                                   count(params_),

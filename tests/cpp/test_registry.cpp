@@ -167,6 +167,8 @@ void torque_kinds_all() {
         using S = std::remove_cvref_t<decltype(*out)>;
         if constexpr (TorqueElement<E>) out[0] = E::torque(p, at);
         if constexpr (CoupledElement<E>) E::torques(p, at, OwnTorques<S>(out));
+        // a state that is not in use has no rate
+        for (int i = 0; i < E::states; ++i) out[E::ways + i] = S(0);
         E::state_rates(p, at, out + E::ways);
         if constexpr (HeatingElement<E>) out[E::ways + E::states] = E::heat(p, at);
       };
@@ -308,7 +310,7 @@ void switching_laws() {
     visit_law(kind, [kind](auto tag) {
       using L = typename decltype(tag)::type;
       Branch<double> b{};
-      b.law = kind;
+      b.law = kind, b.ways = 1;
       CHECK(is_switching(b) == SwitchingLaw<L>);
       CHECK(is_compliant_law(kind) == CompliantLaw<L>);
       if constexpr (SwitchingLaw<L>) crosses<L>(Fields::of(tag, [kind](auto&&... f) { visit_law_fixed(kind, f...); }));

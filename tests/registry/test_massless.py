@@ -37,12 +37,11 @@ def _at_massless_shaft(cls, **changes):
     """An element between a heavy shaft and one without inertia, with a load there."""
     element = _sample(cls)
     d = cw.Driveline(cls.__name__)
-    body = samples.bodies(d, cls)
-    light, heavy = body("light"), body("heavy", inertia=1e9)
-    moving = [name for name in ports(element) if name in ("follower", "shaft")]
-    fixed = [name for name in ports(element) if name not in moving]
-    joined = {**dict.fromkeys(moving, light), **dict.fromkeys(fixed, heavy)}
-    d.add(replace(element, **joined, **changes))
+    names = list(ports(element))
+    moving = next((name for name in ("follower", "shaft") if name in names), names[0])
+    light = samples.bodies(d, cls, moving)("light")
+    joined = {name: samples.bodies(d, cls, name)(f"heavy_{name}", inertia=1e9) for name in names if name != moving}
+    d.add(replace(element, **{moving: light}, **joined, **changes))
     d.add(cw.Torque("load", shaft=light, torque=LOAD))
     return d
 
@@ -89,8 +88,8 @@ def test_what_is_declared_to_damp_gives_a_shaft_without_inertia_its_speed(cls):
     run = d.simulate(20.0)
     assert run.status == "done"
     stiffness, damping = d.elements[0].passive()
-    rate = run["light.speed"] - run["heavy.speed"]
-    twist = run["light.angle"] - run["heavy.angle"] + getattr(d.elements[0], "initial_twist", 0.0)
+    rate = run["light.speed"] - run["heavy_base.speed"]
+    twist = run["light.angle"] - run["heavy_base.angle"] + getattr(d.elements[0], "initial_twist", 0.0)
     assert np.allclose(stiffness * twist + damping * rate, LOAD, rtol=1e-4)
 
 

@@ -148,9 +148,10 @@ def driveline(cls: type) -> cw.Driveline:
     return d
 
 
-def bodies(d: cw.Driveline, cls: type) -> Any:
-    """What makes the bodies that a class joins: shafts, or masses where its ports say so."""
-    moves = any(spec.domain == "translation" for _, spec in specs(cls, "port"))
+def bodies(d: cw.Driveline, cls: type, at: str = "") -> Any:
+    """What makes the bodies that a class joins, or one at a port: shafts, or masses where its ports say so."""
+    known = [(item.name, spec) for item, spec in specs(cls, "port")]
+    moves = any(spec.domain == "translation" for name, spec in known if at in ("", name))
     return (lambda name, inertia=0.0, **more: d.mass(name, mass=inertia, **more)) if moves else d.shaft
 
 

@@ -227,7 +227,7 @@ class Component(Element):
     def directions(self) -> Mapping[str, Mapping[str, float | Fraction]]:
         """Of an element with `ways`: the rate of each over the speeds at its ports, way -> port -> coefficient.
 
-        What is no whole number or Fraction counts by its decimal digits.
+        A float counts by its decimal digits.
         """
         return {}
 

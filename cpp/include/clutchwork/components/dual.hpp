@@ -98,6 +98,10 @@ CLUTCHWORK_INLINE Dual<T, N> cos(const Dual<T, N>& x) {
   return Dual<T, N>::chain(x, cos(x.v), -sin(x.v));
 }
 template <class T, int N>
+CLUTCHWORK_INLINE Dual<T, N> atan(const Dual<T, N>& x) {
+  return Dual<T, N>::chain(x, atan(x.v), T(1) / (T(1) + x.v * x.v));
+}
+template <class T, int N>
 CLUTCHWORK_INLINE Dual<T, N> tanh(const Dual<T, N>& x) {
   const T t = tanh(x.v);
   return Dual<T, N>::chain(x, t, T(1) - t * t);

@@ -223,10 +223,10 @@ void evaluate_whole(FullForm<T>& form, Real<T> t, const T* y, T* d, T* rate, T* 
 /// Signals as dual numbers, column `time` of which is time; beyond the last one: none is.
 template <class T, int N>
 void lift_inputs(const Workspace<T>& ws, int time, const Whole<Dual<T, N>>& e) {
-  for (int i = 0; i < ws.in.n_refs; ++i) {
-    e.input[i] = Dual<T, N>(ws.in.u[i]);
-    const int signal = ws.in.ref_signal[i];
-    if (time < N && signal < ws.sys.inputs && ws.in.signal[signal].varying) e.input[i].d[time] = ws.in.du[i];
+  for (int i = 0; i < ws.in.n_refs; ++i) e.input[i] = Dual<T, N>(ws.in.u[i]);
+  for (int k = 0; k < ws.in.n_varying && time < N; ++k) {
+    const int ref = ws.in.varying[k];
+    e.input[ref].d[time] = ws.in.du[ref];
   }
 }
 

@@ -98,18 +98,6 @@ def wet_drag(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -7.0, 7.0)
 
 
-def fluid_coupling(pen: Pen, shown: Drawn) -> None:
-    """Two half shells that face each other."""
-    for side in (LEFT, RIGHT):
-        pen.line((side * 1.6, 11.0), (side * 1.6, 2.5), look=INK._replace(width=1.2))
-        pen.line((side * 1.6, -11.0), (side * 1.6, -2.5), look=INK._replace(width=1.2))
-        for sign in (1.0, -1.0):
-            pen.line((side * 1.6, sign * 11.0), (side * 6.5, sign * 10.0), (side * 8.0, sign * 6.7), look=INK)
-            pen.line((side * 8.0, sign * 6.7), (side * 6.5, sign * 3.5), (side * 1.6, sign * 2.5), look=INK)
-        pen.line((side * 8.0, 6.7), (side * 8.0, -6.7), look=INK._replace(width=1.2))
-    ends(pen, shown, -8.0, 8.0)
-
-
 def _to_shaft(pen: Pen, shown: Drawn, radius: float) -> None:
     for side in (LEFT, RIGHT):
         if side in shown.sides.values():
@@ -250,7 +238,6 @@ TORQUES = {
     "torsional_damper": Symbol(torsional_damper, 18.0),
     "flexible_shaft": Symbol(flexible_shaft, 22.0, 8.0, 8.0),
     "wet_drag": Symbol(wet_drag),
-    "fluid_coupling": Symbol(fluid_coupling),
     "torque": Symbol(torque, 15.0, 11.0, 11.0),
     "prescribed_speed": Symbol(prescribed("ω", "v"), 15.0, 11.0, 11.0),
     "prescribed_position": Symbol(prescribed("φ", "x"), 15.0, 11.0, 11.0),
