@@ -252,6 +252,8 @@ class Model {
                                   count(process_kind_),
                                   count(heats_),
                                   0,
+                                  0,
+                                  0,
                                   count(input_first_),
                                   count(segment_time_),
                                   count(params_),
