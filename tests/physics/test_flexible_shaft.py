@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import clutchwork as cw
+from clutchwork.command.main import main
 
 K, J = 5000.0, 0.08  # N m/rad, kg m2
 
@@ -41,6 +42,17 @@ def test_frequencies_and_damping_are_the_closed_forms(n, fixed):
     # eigenvalues of a matrix with entries up to the square of the highest one
     assert 2 * pi * np.array(found) == pytest.approx(wanted, rel=1e-8)
     assert ratios == pytest.approx([beta * w / 2 for w in wanted], rel=1e-6)
+
+
+def test_check_tells_the_frequencies(capsys, tmp_path):
+    d, flex = _shaft(8, end=0.1)
+    (note,) = d.assemble().notes
+    free, held = ([w / (2 * pi) for w in flex.frequencies(fixed=fixed)[:3]] for fixed in (False, True))
+    for hertz in (*free, *held):
+        assert f"{hertz:.4g}" in note
+    d.save(tmp_path / "shaft.toml")
+    assert main(["check", str(tmp_path / "shaft.toml")]) == 0
+    assert "natural frequencies" in capsys.readouterr().out
 
 
 def test_frequencies_tend_to_those_of_the_bar():

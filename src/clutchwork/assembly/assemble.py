@@ -20,6 +20,7 @@ from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.ports import ports
 from clutchwork.declare.rational import Row, plus
 from clutchwork.declare.schema import Role
+from clutchwork.declare.speech import path_of
 from clutchwork.model.findings import Findings, Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
 from clutchwork.model.model import Model
@@ -82,7 +83,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
         "sums": parts.sums,
         "independent": tuple(model.nodes[n].name for n in made.independent),
         "parameters": pools.places,
-        "notes": tuple(made.notes),
+        "notes": (*made.notes, *(f"{path_of(one)}: {note}" for one in whole.elements for note in one.notes())),
         "warnings": tuple(map(str, found.advice)),
     }
 

@@ -231,6 +231,10 @@ class Component(Element):
         """
         return {}
 
+    def notes(self) -> Sequence[str]:
+        """What is worth knowing of it and follows from its numbers, such as natural frequencies; `check` shows it."""
+        return ()
+
     def part(self, name: str) -> Element | ThermalNode | Node:
         """A part by its name within this component; KeyError when there is none."""
         named = {part.name: part for part in self.parts()}

@@ -85,6 +85,14 @@ class FlexibleShaft(Heating):
         scale = 2.0 * self.segments * sqrt(self.whole_stiffness / self.whole_inertia)
         return tuple(scale * sin((j - step) * pi / (2.0 * self.segments)) for j in range(1, int(self.segments) + 1))
 
+    def notes(self) -> list[str]:
+        """Its lowest natural frequencies."""
+        words = [
+            f"{', '.join(f'{w / (2.0 * pi):.4g}' for w in self.frequencies(fixed=fixed)[:3])} Hz with {ends}"
+            for fixed, ends in ((False, "free ends"), (True, "one end held"))
+        ]
+        return [f"natural frequencies {' and '.join(words)}"]
+
     def parts(self) -> Iterator[Part]:
         """Shafts from end to end, the springs between them, and what ties the ends to theirs."""
         count, nodes = int(self.segments), list[Node]()
