@@ -41,7 +41,7 @@ class ClutchActuator(Component):
     discharge: float = param("1", "discharge coefficient of the orifice", default=0.7, above=0.0)
     density: float = param("kg/m3", "density of the oil", default=850.0, above=0.0)
     laminar_pressure: float = param(
-        "Pa", "pressure difference below which the flow is laminar, 0: never", default=1e3, at_least=0.0
+        "Pa", "pressure difference below which the flow is laminar, 0: never", default=1e3, at_least=0.0, example=2e4
     )
     volume: float = param("m3", "oil that is compressed", default=0.0, at_least=0.0)
     bulk_modulus: float = param("Pa", "bulk modulus of the oil", default=1.4e9, above=0.0)

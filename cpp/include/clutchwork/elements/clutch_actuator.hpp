@@ -91,9 +91,10 @@ struct ClutchActuator : declared::ClutchActuator {
     const S way = stroke(p, at) / p.kiss_stroke, supply = at.input[Input::supply_pressure];
     const bool rubs = value(p.seal_friction) > 0;
     const T unit = T(1e5);
+    // at the start it may be anywhere
+    if (now == stopped && value(way) > 1e-9) return watch(S(1e-9) - way, leaves), S(least) + change;
     if (now == stopped || now == stuck) watch((lifting(p, at) - resting_pressure(p, at)) / unit, lifts);
     if (now == stuck) watch((resting_pressure(p, at) - falling(p, at)) / unit, falls);
-    if (now == stopped) watch(S(1e-9) - way, leaves);
     if (now == out && rubs) watch((supply - lifting(p, at)) / unit, sticks);
     if (now == back) watch((falling(p, at) - supply) / unit, sticks);
     if (now == back || (now == out && !rubs)) watch(way, stops);

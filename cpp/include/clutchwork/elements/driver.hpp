@@ -3,7 +3,7 @@
 
 namespace clutchwork::elements {
 
-/// Proportional and integral control of two pedals. docs/theory/vehicle.md (6)
+/// Proportional and integral control of two pedals. docs/theory/vehicle.md (7)
 struct Driver : declared::Driver {
   template <class T>
   struct Params {

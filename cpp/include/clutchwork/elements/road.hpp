@@ -3,7 +3,7 @@
 
 namespace clutchwork::elements {
 
-/// Slope and position on a road; piece i ends at point i of its elevation. docs/theory/vehicle.md (4)
+/// Slope and position on a road; piece i ends at point i of its elevation. docs/theory/vehicle.md (5)
 struct Road : declared::Road {
   template <class T>
   struct Params {
