@@ -73,6 +73,62 @@ def test_dimensions_of_a_tube():
     assert tube.frequencies()[0] == pytest.approx(pi / 1.5 * sqrt(8e10 / 7850), rel=1e-2)
 
 
+@pytest.mark.parametrize("modes", [1, 2, 3, 6])
+def test_frequencies_by_modes_are_those_of_the_bar(modes):
+    # ends with next to no inertia
+    values = {"stiffness": K, "inertia": J, "modes": modes, "damping_time": 1e-6}
+    for fixed in (False, True):
+        d = cw.Driveline("modal")
+        b = d.shaft("b", inertia=1e-10)
+        flex = d.add(
+            cw.FlexibleShaft("flex", base=d.housing if fixed else d.shaft("a", inertia=1e-10), follower=b, **values)
+        )
+        assert d.check() == []
+        found, ratios = _found(d)
+        wanted = flex.frequencies(fixed=fixed)
+        assert 2 * pi * np.array(found[:modes]) == pytest.approx(wanted, rel=1e-6)
+        assert ratios[:modes] == pytest.approx([1e-6 * w / 2 for w in wanted], rel=1e-5)
+        bar = [(j - 0.5 * fixed) * pi * sqrt(K / J) for j in range(1, modes + 1)]
+        # the lowest ones nearly exact with one end held too, the last one by the compliance of all above it
+        assert wanted[0] == pytest.approx(bar[0], rel=0.005 if fixed else 1e-12)
+        assert wanted[-1] == pytest.approx(bar[-1], rel=0.03 if fixed else 1e-12)
+
+
+@pytest.mark.parametrize("modes", [1, 4])
+def test_a_shaft_by_its_modes_moves_as_one_of_many_segments(modes):
+    runs = []
+    for more in ({"modes": modes}, {"segments": 60}):
+        d = cw.Driveline("shaft")
+        a, b = d.shaft("a", inertia=0.2, speed=50.0), d.shaft("b", inertia=0.1, speed=50.0)
+        d.add(cw.FlexibleShaft("flex", base=a, follower=b, stiffness=K, inertia=J, **more))
+        d.add(cw.Torque("t", shaft=a, torque=cw.Ramp(height=30.0, duration=0.05)))
+        d.add(cw.Torque("u", shaft=b, torque=cw.Ramp(height=-30.0, duration=0.05)))
+        runs.append(d.simulate(0.2, dt=0.002, rtol=1e-10))
+        assert abs(runs[-1].energy.residual) <= 1e-8 * runs[-1].energy.turnover
+    modal, fine = runs
+    # it starts without swings, and twists at rest as the bar does
+    assert modal["flex.rigid.speed"][0] == pytest.approx(50.0)
+    assert modal["flex.mode_1.speed"][0] == pytest.approx(0.0, abs=1e-12)
+    twist = fine["b.angle"] - fine["a.angle"]
+    error = modal["b.angle"] - modal["a.angle"] - twist
+    assert np.max(np.abs(error)) <= (0.02 if modes == 1 else 2e-3) * np.max(np.abs(twist))
+    assert np.mean(twist[-50:]) == pytest.approx(-30.0 / K, rel=0.1)
+    # amplitudes of modes react on nobody
+    assert modal["housing.torque"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_housing_takes_the_torque_of_a_held_end():
+    d = cw.Driveline("held")
+    b = d.shaft("b", inertia=0.1)
+    d.add(cw.FlexibleShaft("flex", base=d.housing, follower=b, stiffness=K, inertia=J, modes=3, damping_time=1e-3))
+    d.add(cw.Torque("t", shaft=b, torque=cw.Ramp(height=20.0, duration=0.1)))
+    run = d.simulate(3.0)
+    assert run["b.angle"][-1] == pytest.approx(20.0 / K, rel=1e-6)
+    # the source takes as much from the housing as the shaft puts on it
+    assert run["flex.base_end.torque_total"][-1] == pytest.approx(20.0, rel=1e-6)
+    assert run["housing.torque"][-1] == pytest.approx(0.0, abs=1e-6)
+
+
 def test_a_mode_swings_alone():
     # node speeds started in the shape of a mode stay in it
     n, j = 6, 2

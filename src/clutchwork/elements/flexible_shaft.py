@@ -9,6 +9,7 @@ from math import inf, pi, sin, sqrt
 from clutchwork.declare import Found, Node, Role, component, param, port
 from clutchwork.declare.node import Part
 from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.modal import Modal, frequencies
 from clutchwork.elements.gear import Gear
 from clutchwork.elements.spring_damper import SpringDamper
 
@@ -25,6 +26,9 @@ class FlexibleShaft(Heating):
     inertia/segments and those at the ends half of that, which the shafts at its ends carry too. The lowest frequency is
     low by 10 % with two segments and by 0.6 % with eight; free waves of frequency w are damped with the ratio
     damping_time w/2.
+
+    With `modes` it has the lowest modes of the bar with free ends, whose frequencies are exact, and springs for all
+    that is left of its compliance; the shafts at its ends then need inertia of their own.
 
     Its parts are shafts "node_1" at the base to the last one at the follower, which others may be attached to, and
     "segment_1" and so on.
@@ -47,6 +51,9 @@ class FlexibleShaft(Heating):
     shear_modulus: float = param("Pa", "shear modulus", default=8e10, above=0.0)
     density: float = param("kg/m3", "density", default=7850.0, above=0.0)
     segments: int = param("1", "springs in a row", default=8, at_least=1, at_most=200, whole=True)
+    modes: int | None = param(
+        "1", "modes of the bar that it has, in place of segments", default=None, at_least=1, at_most=50, whole=True
+    )
     damping_time: float = param("s", "damping over stiffness", default=0.0, at_least=0.0)
 
     def problems(self) -> Found:
@@ -81,6 +88,8 @@ class FlexibleShaft(Heating):
 
     def frequencies(self, *, fixed: bool = False) -> tuple[float, ...]:
         """Natural frequencies [rad/s] with free ends, or one `fixed`, lowest first: docs/theory/compliance.md (3)."""
+        if self.modes is not None:
+            return frequencies(self.whole_stiffness, self.whole_inertia, int(self.modes), fixed=fixed)
         step = 0.5 if fixed else 0.0
         scale = 2.0 * self.segments * sqrt(self.whole_stiffness / self.whole_inertia)
         return tuple(scale * sin((j - step) * pi / (2.0 * self.segments)) for j in range(1, int(self.segments) + 1))
@@ -94,7 +103,14 @@ class FlexibleShaft(Heating):
         return [f"natural frequencies {' and '.join(words)}"]
 
     def parts(self) -> Iterator[Part]:
-        """Shafts from end to end, the springs between them, and what ties the ends to theirs."""
+        """Shafts from end to end, the springs between them, and what ties the ends to theirs; or its modes."""
+        if not all(0.0 < value < inf for value in (self.whole_stiffness, self.whole_inertia)):
+            raise OverflowError
+        if self.modes is not None:
+            domain = self.base.domain if self.follower.fixed else self.follower.domain
+            made = Modal(self.name, domain, self.whole_stiffness, self.whole_inertia, self.damping_time)
+            yield from made.parts((self.base, self.follower), int(self.modes), self.heat, self.heat_share)
+            return
         count, nodes = int(self.segments), list[Node]()
         for number in range(count + 1):
             end = {0: self.base, count: self.follower}.get(number)
@@ -105,8 +121,6 @@ class FlexibleShaft(Heating):
             if end is not None and nodes[-1] is not end:
                 yield Gear(f"{self.name}.end_{number + 1}", input=end, output=nodes[-1], ratio=1.0)
         stiffness = count * self.whole_stiffness
-        if not all(0.0 < value < inf for value in (stiffness, self.whole_inertia)):
-            raise OverflowError
         for number, (before, after) in enumerate(pairwise(nodes), 1):
             yield SpringDamper(
                 f"{self.name}.segment_{number}",

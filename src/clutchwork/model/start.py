@@ -82,7 +82,7 @@ def initial_speeds(
         row = _row(made.speeds[node], inputs, given.get(node, ZERO))
         left = echelon.rest(row)
         if left.keys() - {KNOWN}:
-            balance = _row(made.over(_balance(model, node)), inputs, ZERO) if node >= own and node not in given else {}
+            balance = _row(_balance(model, made, node), inputs, ZERO) if node >= own and node not in given else {}
             row = balance if echelon.rest(balance).keys() - {KNOWN} else row
             echelon.add(row)
             used[node] = row
@@ -91,14 +91,15 @@ def initial_speeds(
     return [echelon.solved[node].get(KNOWN, ZERO) for node in made.independent], problems
 
 
-def _balance(model: Mechanism, node: int) -> Row:
-    """Sum of stiffness times rate over the springs at a node inside of a composite: their torques stay in balance."""
+def _balance(model: Mechanism, made: Kinematics, node: int) -> Row:
+    """Sum of stiffness times rate over the springs that a node inside of a composite moves: they stay in balance."""
     row: Row = {}
     whole = model.nodes[node].name.rpartition(".")[0]
     for component, direction in model.acting:
         passive = component.passive() if component.name.startswith(f"{whole}.") else None
-        if node in direction and passive is not None and passive.stiffness:
-            row = plus(row, exact(passive.stiffness) * direction[node], direction)
+        if passive is not None and passive.stiffness:
+            rate = made.over(direction)
+            row = plus(row, exact(passive.stiffness) * rate[node], rate) if node in rate else row
     return row
 
 
