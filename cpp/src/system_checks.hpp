@@ -188,6 +188,19 @@ inline bool ways_fit(const System& s) {
   return true;
 }
 
+/// Whether transmissions are elements of two ways with a ratio, and what follows from them are speeds.
+inline bool transmissions_fit(const System& s) {
+  if (s.transmissions > 0 && s.full[0] == 0) return false;
+  for (std::int64_t a = 0; a < s.transmissions; ++a) {
+    const std::int64_t d = s.transmission_element[a], i = s.transmission_speed[a];
+    if (d < 0 || d >= s.elements || s.element_way[d] != 0 || i < -1 || i >= s.speeds) return false;
+    const bool ties =
+        visit_torque(s.element_kind[d], [](auto tag) { return TransmissionElement<typename decltype(tag)::type>; });
+    if (!ties) return false;
+  }
+  return true;
+}
+
 /// Whether an element lies inside the pools; its states.
 inline bool element_fits(const System& s, std::int64_t i, std::int64_t& states) {
   bool good = true;
@@ -256,7 +269,8 @@ inline bool matrices_fit(const System& s) {
 
 /// Offsets and numbers inside the system that the core follows without looking.
 inline bool in_range(const System& s) {
-  bool good = offsets_in_range(s) && ways_fit(s) && shared_in_range(s) && meters_in_range(s) && matrices_fit(s);
+  bool good = offsets_in_range(s) && ways_fit(s) && transmissions_fit(s) && shared_in_range(s) && meters_in_range(s) &&
+              matrices_fit(s);
   for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
   std::int64_t all = 0, own = 0;
   for (std::int64_t i = 0; good && i < s.elements; ++i, all += own) good = element_fits(s, i, own);

@@ -246,6 +246,7 @@ class Model {
                                   np,
                                   count(elements_),
                                   count(contacts_),
+                                  0,
                                   count(states),
                                   nx,
                                   count(flow_kind_),

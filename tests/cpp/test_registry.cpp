@@ -167,6 +167,7 @@ void torque_kinds_all() {
         using S = std::remove_cvref_t<decltype(*out)>;
         if constexpr (TorqueElement<E>) out[0] = E::torque(p, at);
         if constexpr (CoupledElement<E>) E::torques(p, at, OwnTorques<S>(out));
+        if constexpr (TransmissionElement<E>) out[0] = out[1] = E::ratio(p, at);
         // a state that is not in use has no rate
         for (int i = 0; i < E::states; ++i) out[E::ways + i] = S(0);
         E::state_rates(p, at, out + E::ways);

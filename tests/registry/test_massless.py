@@ -14,7 +14,7 @@ from clutchwork.model.massless import _damps, _is_spring
 from clutchwork.model.parts import take_apart
 from support import samples
 
-ACTING = samples.declared(Role.TORQUE, Role.CONTACT)
+ACTING = samples.acting(Role.TORQUE, Role.CONTACT)
 LOAD = 3.0
 
 

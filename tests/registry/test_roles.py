@@ -14,7 +14,7 @@ from clutchwork.elements.bases.heating import Heating
 from support import samples
 from support.declarations import Cam, Coil, EddyBrake, OiledCoil
 
-TORQUES = samples.declared(Role.TORQUE)
+TORQUES = samples.acting(Role.TORQUE)
 NEW = [EddyBrake, Coil, OiledCoil, Cam]
 # so that they do what they are for within a moment
 VALUES = {
@@ -124,7 +124,10 @@ def test_declared_roles_fit_each_other(cls):
         assert cls.states
 
 
-@pytest.mark.parametrize("cls", samples.declared(Role.CONTACT, Role.TORQUE, Role.MOTION), ids=_name)
+ONE_WAY = [cls for cls in samples.declared(Role.CONTACT, Role.TORQUE, Role.MOTION) if not cls.ways]
+
+
+@pytest.mark.parametrize("cls", ONE_WAY, ids=_name)
 def test_ports_are_base_and_follower_or_shaft(cls):
     names = [item.name for item, _ in specs(cls, "port")]
     assert cls.ways or names in (["base", "follower"], ["shaft"], ["shaft", "base"])

@@ -19,6 +19,11 @@ def declared(*roles: Role) -> list[Any]:
     return [cls for role in roles for cls in REGISTRY[role].values()]
 
 
+def acting(*roles: Role) -> list[Any]:
+    """Those of them that are no transmissions, whose torque follows from the motion of all else."""
+    return [cls for cls in declared(*roles) if "ratio" not in cls.hooks]
+
+
 def pressed_contacts() -> list[str]:
     """Kinds of contacts that any friction law fits and whose load is a torque, or in proportion to a gain."""
     known = {kind: {item.name for item, _ in specs(cls)} for kind, cls in REGISTRY[Role.CONTACT].items()}

@@ -110,6 +110,8 @@ class Component:
     @property
     def concept(self) -> str:
         """The concept that its header fulfils."""
+        if "ratio" in self.cls.hooks:
+            return "TransmissionElement"
         return "CoupledElement" if self.ways else CONCEPT[self.role.value]
 
     @property

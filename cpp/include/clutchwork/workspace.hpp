@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/workspace/contacts.hpp>
 #include <clutchwork/workspace/motion.hpp>
+#include <clutchwork/workspace/ratios.hpp>
 #include <clutchwork/workspace/run.hpp>
 
 /// Everything that changes during a run, carved once from memory of the caller.
@@ -44,6 +45,7 @@ struct Workspace {
   Shared<T> shared;
   Stages<T> stages;
   Full<T> full;
+  Ratios<T> ratios;
   Edge<T> here{}, there{};
   Guards guard;
   Seen<T> seen;
@@ -65,7 +67,7 @@ void lay_out(W& ws, A& a) {
   a.take(ws.branch, n.directions), a.take(ws.branch_of, n.directions);
   auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
   each(ws.in, ws.contact, ws.happened, ws.held, ws.set, ws.problem, ws.decision, ws.geometry, ws.reduced, ws.rows,
-       ws.jacobian, ws.shared, ws.stages, ws.full, ws.here, ws.there, ws.guard, ws.seen, ws.out, ws.events);
+       ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.here, ws.there, ws.guard, ws.seen, ws.out, ws.events);
 }
 
 /// Lay the arrays of a workspace into memory; returns the size needed.
@@ -73,6 +75,7 @@ template <class T>
 std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   ws.in.n_refs = int(ws.sys.n_input_refs + ws.sys.prescribed);
   ws.n_directions = int(ws.sys.elements + ws.sys.contacts);
+  ws.ratios.n = int(ws.sys.transmissions);
   Arena a(memory);
   lay_out(ws, a);
   ws.in.prescribed = ws.in.u + ws.sys.n_input_refs;

@@ -18,7 +18,7 @@ from clutchwork.base.errors import ModelError
 from clutchwork.declare.core import number
 from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.ports import ports
-from clutchwork.declare.rational import Row, plus
+from clutchwork.declare.rational import ONE, Row, plus
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
 from clutchwork.model.findings import Findings, Structure, findings
@@ -27,6 +27,7 @@ from clutchwork.model.model import Model
 from clutchwork.model.pools import Pools
 from clutchwork.model.start import initial_angles, start
 from clutchwork.model.structure import Kinematics, Mechanism
+from clutchwork.model.transmissions import ordered
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -60,6 +61,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     arrays |= meter_arrays(model)
     # torques that know the rates of others
     arrays |= {"full": [wires.rates or any(_is_coupled(component) for component, _ in model.acting)]}
+    arrays |= _transmissions(model, made, columns)
     arrays |= flow_arrays(model, pools, wires)
     arrays |= heat_arrays(model, where)
     arrays |= shared.arrays(pools, wires, states)
@@ -145,6 +147,9 @@ def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, 
     for inertia, speed in zip(model.inertia, made.speeds, strict=True):
         for node in speed.keys() & rows.keys() if inertia else ():
             rows[node] = plus(rows[node], inertia * speed[node], speed)
+    for node in made.followers.values():
+        # what follows from a transmission has no inertia; a unit keeps the matrix regular
+        rows[node] = {node: ONE}
     arrays = columns.split("basis", made.speeds) | columns.split("mass", list(rows.values()))
     return arrays | {
         "inertia": [float(inertia) for inertia in model.inertia],
@@ -189,6 +194,15 @@ def _elements(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
         "element_param": params,
         "element_state": offsets,
         "element_input": refs,
+    }
+
+
+def _transmissions(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, Any]:
+    ties = list(ordered(model, made))
+    ways = [component for component, _ in model.acting]
+    return {
+        "transmission_element": [next(n for n, way in enumerate(ways) if way is tie.component) for tie, _ in ties],
+        "transmission_speed": [-1 if node is None else columns.speeds[node] for _, node in ties],
     }
 
 

@@ -169,6 +169,9 @@ def _branch(component: Component, way: Direction, places: Places) -> Branch:
         direction[index] = direction.get(index, 0.0) + factor
         if index == HOUSING:
             grounded[domains[port]] = grounded.get(domains[port], 0.0) + factor
+    if not type(component).ways and "base" not in joined:
+        # what brakes a shaft alone rests on the housing
+        grounded[way.domain] = grounded.get(way.domain, 0.0) - 1.0
     watched = way.way is not None and way.way.watched
     return Branch(way.name, component, direction, way.domain, grounded=grounded, number=way.number, watched=watched)
 

@@ -25,6 +25,7 @@ HOOKS = (
     Hook(("margin", "cross"), "SwitchingProcess", ("process",), "smooth pieces that its states and inputs switch"),
     Hook(("settle",), "Settling", ("torque",), "pieces that follow from where it is, after a jump too"),
     Hook(("runs_on",), "RunningOn", ("law",), "pieces that may be left on the way back"),
+    Hook(("ratio",), "TransmissionElement", ("torque",), "a varying ratio that ties its two ways, in place of torques"),
     Hook(("heat",), "HeatingElement", ("torque",), "heat that is not -torque rate"),
     Hook(("outside",), "BoundedLaw", ("law",), "tables that can be left"),
     Hook(("fits",), "FittedLaw", ("law", "torque"), "tables whose sizes belong together"),

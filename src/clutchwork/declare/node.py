@@ -194,6 +194,7 @@ class Component(Element):
     role: ClassVar[Role]
     states: ClassVar[tuple[State, ...]] = ()
     ways: ClassVar[tuple[Way, ...]] = ()
+    hooks: ClassVar[tuple[str, ...]] = ()
 
     one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
     # of a contact: why it has lost its load where a run finds so, and the remedy
@@ -239,6 +240,10 @@ class Component(Element):
         """A part by its name within this component; KeyError when there is none."""
         named = {part.name: part for part in self.parts()}
         return named[f"{self.name}.{name}"]
+
+    def initial_ratio(self) -> float:
+        """Of a transmission: its ratio at the start."""
+        return 1.0
 
     def sums(self) -> tuple[str, ...]:
         """Names of parts, within it, whose torque, power, work and heat count as those of its own name."""

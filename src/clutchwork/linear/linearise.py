@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from clutchwork.linear.notes import notes
 from clutchwork.linear.own_states import own_states
 from clutchwork.linear.quantity import Quantity
 from clutchwork.linear.result import Linear
+from clutchwork.model.transmissions import is_transmission
 from clutchwork.results.channels import channels
 
 if TYPE_CHECKING:
@@ -58,13 +59,21 @@ def linearise(
     """
     instant = instant_of(model, at)
     motion, system = Motion(instant), instant.system
-    problems, left_out = list[str](), list[str]()
+    problems, left_out = list(_varying(system)), list[str]()
     given = chosen_inputs(system, inputs, problems)
     given = _free_inputs(motion, given, inputs is None, problems, left_out)
     names = chosen_outputs(system, outputs, _default_outputs(instant), problems)
     if problems:
         raise UseError(CALL, problems)
     return _made(motion, given, names, left_out)
+
+
+def _varying(system: System) -> Iterator[str]:
+    """Ratios that vary, whose linear equations nobody has written down yet."""
+    for component in system.elements:
+        if is_transmission(component):
+            reason = "has a ratio that varies, which cannot be linearised"
+            yield f"{component.name} {reason}; put a Gear of its ratio in its place"
 
 
 def _made(motion: Motion, given: list[Given], names: list[str], left_out: list[str]) -> Linear:

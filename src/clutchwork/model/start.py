@@ -10,11 +10,12 @@ from clutchwork.declare.rational import ONE, ZERO, Echelon, Row, exact, plus, sm
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
 from clutchwork.elements.bases.motion import MotionError
+from clutchwork.model.transmissions import start_grips, start_rows
 from clutchwork.signals.bases.waveform import value
 from clutchwork.signals.constant import Constant
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
     from clutchwork.declare.node import Component, Node, Signal
@@ -70,25 +71,66 @@ def initial_speeds(
     inputs = {len(model.nodes) + number: exact(speed) for number, speed in enumerate(prescribed)}
     given = {node: speed for node, speed in enumerate(model.speed) if speed is not None and node not in made.loose}
     slack = ROUNDING * max([ONE, *map(abs, given.values())])
-    echelon, used, problems = Echelon(made.independent, traced=False), dict[int, Row](), list[Problem]()
+    echelon, used, problems = Echelon(made.independent, traced=False), dict[str, Row](), list[Problem]()
     # shafts between springs follow from all others and come last, after those inside of composites
     own = len(model.nodes) - model.inner
     free = set(range(len(model.nodes))) - given.keys()
     rest = sorted(free, key=lambda node: (node in made.loose, node >= own, node))
-    for node in (*given, *rest):
-        # all speeds are known: those that nobody gave follow
-        if node not in given and len(used) == len(made.independent):
-            break
-        row = _row(made.speeds[node], inputs, given.get(node, ZERO))
+    for node in given:
+        row = _row(made.speeds[node], inputs, given[node])
         left = echelon.rest(row)
         if left.keys() - {KNOWN}:
-            balance = _row(_balance(model, made, node), inputs, ZERO) if node >= own and node not in given else {}
+            echelon.add(row)
+            used[model.node_label(node)] = row
+        elif abs(left.get(KNOWN, ZERO)) > slack:
+            problems.append(_problem(model, used, node, row, left[KNOWN]))
+    problems += _follow_ratios(model, made, inputs, echelon, used, slack)
+    for component, tie in start_grips(model, made):
+        row = _row(tie, inputs, ZERO)
+        if echelon.rest(row).keys() - {KNOWN}:
+            echelon.add(row)
+            used[path_of(component)] = row
+    for node in rest:
+        # all speeds are known: those that nobody gave follow
+        if len(used) == len(made.independent):
+            break
+        row = _row(made.speeds[node], inputs, ZERO)
+        if echelon.rest(row).keys() - {KNOWN}:
+            balance = _row(_balance(model, made, node), inputs, ZERO) if node >= own else {}
             row = balance if echelon.rest(balance).keys() - {KNOWN} else row
             echelon.add(row)
-            used[node] = row
-        elif node in given and abs(left.get(KNOWN, ZERO)) > slack:
-            problems.append(_problem(model, used, node, row, left[KNOWN]))
+            used[model.node_label(node)] = row
     return [echelon.solved[node].get(KNOWN, ZERO) for node in made.independent], problems
+
+
+def _follow_ratios(
+    model: Mechanism,
+    made: Kinematics,
+    inputs: dict[int, Fraction],
+    echelon: Echelon,
+    used: dict[str, Row],
+    slack: Fraction,
+) -> Iterator[Problem]:
+    """Rates that the ratios tie together at the start, and given speeds that contradict them."""
+    for component, tie in start_rows(model, made):
+        row = _row(tie, inputs, ZERO)
+        left = echelon.rest(row)
+        if left.keys() - {KNOWN}:
+            echelon.add(row)
+            used[path_of(component)] = row
+        elif abs(left.get(KNOWN, ZERO)) > slack:
+            guilty = _guilty(used, row)
+            message = f"has the ratio {component.initial_ratio():.9g} at the start, which contradicts "
+            message += f"the initial speed of {' and '.join(guilty)}" if guilty else "the prescribed speeds"
+            remedy = "correct one of them, or remove a speed: it then follows from the ratio"
+            yield Problem(path_of(component), "ratio", message, remedy=remedy)
+
+
+def _guilty(used: dict[str, Row], row: Row) -> list[str]:
+    """Whose rows together make another one."""
+    kinematic = [{column: value for column, value in other.items() if column != KNOWN} for other in used.values()]
+    target = {column: value for column, value in row.items() if column != KNOWN}
+    return [list(used)[place] for place in smallest(kinematic, target)]
 
 
 def _balance(model: Mechanism, made: Kinematics, node: int) -> Row:
@@ -110,11 +152,9 @@ def _row(speed: Row, inputs: dict[int, Fraction], wanted: Fraction) -> Row:
     return {**row, KNOWN: known} if known else row
 
 
-def _problem(model: Mechanism, used: dict[int, Row], node: int, row: Row, excess: Fraction) -> Problem:
+def _problem(model: Mechanism, used: dict[str, Row], node: int, row: Row, excess: Fraction) -> Problem:
     unit = "m/s" if model.nodes[node].domain is Domain.TRANSLATION else "rad/s"
-    kinematic = [{column: value for column, value in other.items() if column != KNOWN} for other in used.values()]
-    target = {column: value for column, value in row.items() if column != KNOWN}
-    guilty = [model.node_label(list(used)[place]) for place in smallest(kinematic, target)]
+    guilty = _guilty(used, row)
     speed = model.speed[node] or ZERO
     message = (
         f"contradicts the initial speed of {' and '.join(guilty)}, which gives {float(speed - excess):.9g} {unit}"

@@ -126,6 +126,7 @@ class Kinematics:
     speeds: list[Row]
     independent: list[int]  # nodes, in the order of the reduced coordinates
     massless: set[int]  # of these
+    followers: dict[int, int] = field(default_factory=dict)  # transmission -> massless node that follows from it
     loose: frozenset[int] = frozenset()  # nodes whose initial speed follows from springs in series
     notes: list[str] = field(default_factory=list)
 

@@ -22,6 +22,7 @@ from clutchwork.base.kept import kept
 from clutchwork.base.shown import shown
 from clutchwork.declare.node import Domain
 from clutchwork.declare.speech import where_signals
+from clutchwork.model.transmissions import is_transmission
 from clutchwork.results import heat_channels, reactions
 from clutchwork.results.forms import LOCKED as LOCKED
 from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Powers, Slip, Total
@@ -147,6 +148,8 @@ class Channels(Mapping[str, Channel]):
         work = Total(tuple(index for branch in acting for index in self._total("work", branch).indices))
         yield f"{name}.power", Channel("W", Powers(powers))
         yield f"{name}.work", Channel("J", work)
+        if is_transmission(first.component):
+            yield f"{name}.torque", Channel(TORQUE[first.domain], self._total("torque", first))
 
     def _states(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
         passive = branch.component.passive()

@@ -253,6 +253,9 @@ CLUTCHWORK_INLINE void element_torques(const Workspace<T>& ws, const Branch<T>& 
     if constexpr (E::states > 0) E::state_rates(p, at, rates);
     if constexpr (CoupledElement<E>) {
       E::torques(p, at, OwnTorques<S>(torque));
+    } else if constexpr (TransmissionElement<E>) {
+      // solved for once all others are known
+      torque[0] = torque[1] = S(T(0));
     } else {
       torque[0] = E::torque(p, at);
     }

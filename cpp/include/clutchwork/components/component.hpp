@@ -110,6 +110,15 @@ concept TorqueElement = requires(const typename E::template Params<double>& p, c
   { E::inputs } -> std::convertible_to<int>;
 };
 
+/// Element of two ways whose rates a ratio of its states and inputs ties together: rate 1 = ratio rate 2.
+template <class E>
+concept TransmissionElement =
+    requires(const typename E::template Params<double>& p, const At<double>& at, double* rates) {
+      { E::ratio(p, at) } -> std::same_as<double>;
+      { E::state_rates(p, at, rates) } -> std::same_as<void>;
+      requires E::ways == 2;
+    };
+
 /// The same for an element of several ways: a torque along each, zero along one that it only watches.
 template <class E>
 concept CoupledElement = requires(const typename E::template Params<double>& p, const At<double>& at, double* rates) {

@@ -117,4 +117,15 @@ CLUTCHWORK_INLINE Dual<T, N> pow(const Dual<T, N>& a, const Dual<T, N>& b) {
   return Dual<T, N>::chain(a, b.v * pow(a.v, b.v - T(1)), b, p * log(a.v), p);
 }
 
+/// y += a x, for a plain factor.
+template <class T>
+CLUTCHWORK_INLINE void add_times(T a, const T& x, T& y) {
+  y += a * x;
+}
+template <class T, int N>
+CLUTCHWORK_INLINE void add_times(T a, const Dual<T, N>& x, Dual<T, N>& y) {
+  y.v += a * x.v;
+  for (int i = 0; i < N; ++i) y.d[i] += a * x.d[i];
+}
+
 }  // namespace clutchwork

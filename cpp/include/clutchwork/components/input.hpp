@@ -57,6 +57,16 @@ CLUTCHWORK_INLINE double segment_slope(const double* c, double s) {
   return x;
 }
 
+/// Second time derivative of a segment s seconds after its start.
+inline double segment_curvature(const double* c, double s) {
+  auto wave = [&](const double* w) {
+    if (w[0] == 0) return 0.0;
+    const double phase = w[1] * s + w[2], fast = w[1] * w[1], slow = w[3] * w[3];
+    return w[0] * exp(-w[3] * s) * ((slow - fast) * sin(phase) - 2 * w[1] * w[3] * cos(phase));
+  };
+  return 2 * c[2] + 6 * c[3] * s + (c[4] != 0 ? wave(c + 4) + wave(c + 8) : 0.0);
+}
+
 /// Integral of a segment from its start to s seconds later.
 inline double segment_integral(const double* c, double s) {
   double x = s * (c[0] + s * (c[1] / 2 + s * (c[2] / 3 + s * c[3] / 4)));
@@ -147,6 +157,13 @@ template <class T>
 CLUTCHWORK_INLINE double signal_slope(const Workspace<T>& ws, int i, double t) {
   const Signal& signal = ws.in.signal[i];
   return signal.varying ? segment_slope(signal.coef, t - signal.start) : 0.0;
+}
+
+/// Second time derivative of signal i at time t on its present segment.
+template <class T>
+double signal_curvature(const Workspace<T>& ws, int i, double t) {
+  const Signal& signal = ws.in.signal[i];
+  return signal.varying && !signal.linear ? segment_curvature(signal.coef, t - signal.start) : 0.0;
 }
 
 /// Bounds of signal i from time t to its next knot; infinite where they are not plain.

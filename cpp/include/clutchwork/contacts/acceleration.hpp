@@ -3,6 +3,7 @@
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/contacts/problem.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// How the slips accelerate without the torques of the contacts, and the problem that finds those.
@@ -41,6 +42,7 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
     }
     add(branch_torque_once(ws, b, rate_of(ws, d), ws.state, ws.seen.state_rates), d);
   }
+  if (ws.ratios.inside) accelerate_rows(ws, q);
 }
 
 /// Acceleration of a slip for mass-weighted acceleration q.
@@ -49,7 +51,7 @@ T slip_acceleration(const Workspace<T>& ws, int c, const T* q) {
   const int d = int(ws.sys.elements) + c;
   T a = ws.geometry.white.times(d, q);
   for (int p = 0; p < ws.sys.prescribed; ++p) a += prescribed_share(ws, d, p) * ws.in.prescribed_slope[p];
-  return a;
+  return ws.ratios.inside ? a + pulled(ws, d) : a;
 }
 
 /// Acceleration of a slip that the prescribed speeds give.

@@ -16,7 +16,7 @@ template <class T>
 void release(Workspace<T>& ws, int c, int sign) {
   const int d = int(ws.sys.elements) + c;
   const double slip = value(rate_of(ws, d));
-  const bool moving = abs(slip) > slip_tolerance(ws);
+  const bool moving = abs(slip) > slip_tolerance(ws) && !is_tied(ws, c);
   ws.contact.mode[c] = !moving ? sign : slip > 0 ? forward : backward;
   if (moving) ws.contact.forced[c] = ws.contact.mode[c];
   if (!ws.contact.compliant[c]) ws.piece[d] = piece_of(ws, d, moving ? abs(slip) : 0.0);
@@ -47,7 +47,8 @@ Choice choice_of(Workspace<T>& ws, int c, double slip, double tolerance, bool hi
     mode = forced = parting < 0 ? backward : forward;
     return Choice::slips;
   }
-  const bool still = mode == locked && !rigid, arrived = hit && ws.happened.cause != Cause::input && !rigid;
+  const bool still = mode == locked && !rigid,
+             arrived = hit && ws.happened.cause != Cause::input && (!rigid || is_tied(ws, c));
   const bool rests = still || arrived || abs(slip) <= tolerance;
   if (rests && forced == 0) return Choice::sticks;
   mode = rests ? forced : slip > 0 ? forward : backward;

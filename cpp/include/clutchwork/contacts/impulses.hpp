@@ -4,6 +4,7 @@
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/acceleration.hpp>
 #include <clutchwork/contacts/problem.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -37,6 +38,20 @@ void meter_impulse(Workspace<T>& ws, const T* x, Jump&& prescribed_jump, Torque&
   }
 }
 
+/// The impulses that transmissions take of those of contacts.
+template <class T>
+void take_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list) {
+  Ratios<T>& r = ws.ratios;
+  const int ne = int(ws.sys.elements);
+  for (int k = 0; k < r.rank; ++k) {
+    r.share[k] = T(0);
+    for (int a = 0; a < p.n; ++a) r.share[k] -= p.x[a] * r.part[(ne + list[a]) * r.n + k];
+  }
+  torques_of_rows(ws, [&](auto&& carry) {
+    for (int a = 0; a < p.n; ++a) carry(ne + list[a], p.x[a]);
+  });
+}
+
 /// Apply the impulses of a solved problem over speeds: new speeds, and the work of each contact.
 template <class T>
 void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list) {
@@ -51,20 +66,23 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
     take_heat(ws, ne + list[a], -work);
   }
   backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
+  if (ws.ratios.inside) take_impulses(ws, p, list);
   meter_impulse(
       ws, x, [](int) { return T(0); },
       [&](int d) {
         for (int a = 0; a < p.n; ++a) {
           if (ne + list[a] == d) return p.x[a];
         }
-        return T(0);
+        return impulse_of_row(ws, d);
       });
   for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
+  if (ws.ratios.inside) move_followers(ws);
   // the sources behind prescribed speeds take their share
   for (int k = 0; k < ws.sys.prescribed; ++k) {
     T impulse = T(0);
     for (int i = 0; i < nv; ++i) impulse += T(ws.sys.mass_prescribed[i * ws.sys.prescribed + k]) * x[i];
     for (int a = 0; a < p.n; ++a) impulse -= p.x[a] * prescribed_share(ws, ne + list[a], k);
+    if (ws.ratios.inside) impulse -= impulse_on_source(ws, k);
     ws.prescribed_work[k] += impulse * ws.in.prescribed[k];
   }
   // friction transmits no impulse: what was locked and is moved now slips
@@ -140,6 +158,28 @@ bool stop_within_tolerance(Workspace<T>& ws, int located) {
       ws, [&](int c) { return ws.contact.mode[c] == locked && (c == located || !contact_one_way(ws, c)); });
 }
 
+/// Transmissions keep their rates together while prescribed speeds jump; x: mass-weighted.
+template <class T>
+void jump_beside(Workspace<T>& ws, T* x) {
+  Ratios<T>& r = ws.ratios;
+  const int nv = int(ws.sys.speeds);
+  T *wanted = r.wanted, *taken = r.pull;
+  for (int a = 0; a < r.n; ++a) {
+    const int d = first_of(ws, a);
+    wanted[a] = T(0);
+    for (int p = 0; p < ws.sys.prescribed; ++p) {
+      const T share = prescribed_share(ws, d, p) - r.value[a] * prescribed_share(ws, d + 1, p);
+      wanted[a] -= share * (ws.in.prescribed[p] - ws.in.prescribed_before[p]);
+    }
+  }
+  without_followers(ws, wanted);
+  for (int k = 0; k < r.rank; ++k) taken[k] = dot(nv, r.span + k * nv, x);
+  take_off_span(ws, x);
+  follow_rows(ws, wanted, x);
+  for (int k = 0; k < r.rank; ++k) r.share[k] -= taken[k];
+  torques_of_rows(ws, [](auto&&) {});
+}
+
 /// A jump of prescribed speeds: friction transmits no impulse, rigid parts follow.
 template <class T>
 void prescribed_jump(Workspace<T>& ws) {
@@ -155,9 +195,11 @@ void prescribed_jump(Workspace<T>& ws) {
     axpy(nv, -jump, ws.geometry.prescribed_momentum + p * nv, x);
   }
   if (!any) return;
+  if (ws.ratios.inside) jump_beside(ws, x);
   backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
   meter_impulse(
-      ws, x, [&](int p) { return ws.in.prescribed[p] - ws.in.prescribed_before[p]; }, [](int) { return T(0); });
+      ws, x, [&](int p) { return ws.in.prescribed[p] - ws.in.prescribed_before[p]; },
+      [&](int d) { return impulse_of_row(ws, d); });
   // impulse of each source: its column of inertia times the jumps of all node speeds
   for (int n = 0; n < sys.nodes; ++n) {
     T jump = basis_row(sys, n).times(x);
@@ -170,11 +212,12 @@ void prescribed_jump(Workspace<T>& ws) {
     }
   }
   for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
-  const double tolerance = slip_tolerance(ws);
-  for (int c = 0; c < sys.contacts; ++c) {
-    const double slip = value(rate_of(ws, int(sys.elements) + c));
-    if (abs(slip) > tolerance) ws.contact.mode[c] = slip > 0 ? forward : backward;
+  if (ws.ratios.inside) {
+    move_followers(ws);
+    for (int p = 0; p < np; ++p)
+      ws.prescribed_work[p] -= impulse_on_source(ws, p) * (ws.in.prescribed[p] + ws.in.prescribed_before[p]) * T(0.5);
   }
+  part_moved(ws, slip_tolerance(ws));
 }
 
 }  // namespace clutchwork

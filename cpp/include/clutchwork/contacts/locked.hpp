@@ -20,7 +20,7 @@ bool factor_mobility(Workspace<T>& ws) {
   const int nc = int(ws.sys.contacts);
   h.near.whole = g.near.whole;
   for (int q = 0; q < nc; ++q) carrier[q] = -1;
-  for (int a = 0; a < h.n; ++a) carrier[g.place[h.contact[a]]] = a;
+  for (int a = 0; a < h.n_fixed; ++a) carrier[g.place[h.contact[a]]] = a;
   for (int q = 0; q < nc; ++q) {
     row[q] = m;
     if (carrier[q] < 0) continue;
@@ -41,10 +41,11 @@ bool factor_mobility(Workspace<T>& ws) {
 template <class T>
 void solve_locked(const Workspace<T>& ws, const T* b, T* x) {
   const Held<T>& h = ws.held;
-  for (int a = 0; a < h.n; ++a) h.turned[a] = b[h.turn[a]];
-  forward_solve(h.n, h.near, h.factor, h.turned);
-  backward_solve(h.n, h.near, h.factor, h.turned);
-  for (int a = 0; a < h.n; ++a) x[h.turn[a]] = h.turned[a];
+  const int n = h.n_fixed;
+  for (int a = 0; a < n; ++a) h.turned[a] = b[h.turn[a]];
+  forward_solve(n, h.near, h.factor, h.turned);
+  backward_solve(n, h.near, h.factor, h.turned);
+  for (int a = 0; a < n; ++a) x[h.turn[a]] = h.turned[a];
 }
 
 /// Direction of row `own` of a split in terms of the pivot rows, in pivot order.
@@ -145,6 +146,33 @@ void list_carriers(Workspace<T>& ws, int n) {
     h.number[a] = h.n;
     h.contact[h.n++] = h.all[a];
   }
+  h.n_fixed = h.n;
+}
+
+/// Whether the direction of a contact varies, for it moves a speed that follows from a transmission.
+template <class T>
+bool varies(const Workspace<T>& ws, int c) {
+  const T* via = ws.ratios.via + (ws.sys.elements + c) * ws.ratios.n;
+  for (int b = 0; b < ws.ratios.n; ++b) {
+    if (value(via[b]) != 0) return true;
+  }
+  return false;
+}
+
+/// As list_carriers beside transmissions, which come before all contacts: those whose directions vary are the last.
+template <class T>
+void list_carriers_beside(Workspace<T>& ws, int n) {
+  Held<T>& h = ws.held;
+  h.n = 0;
+  for (int varying = 0; varying < 2; ++varying) {
+    for (int a = 0; a < n; ++a) {
+      const bool rigid = value(ws.ratios.whole[ws.sys.elements + h.all[a]]) == 0;
+      if ((h.number[a] < 0 && !rigid) || int(varies(ws, h.all[a])) != varying) continue;
+      h.number[a] = h.n;
+      h.contact[h.n++] = h.all[a];
+    }
+    if (varying == 0) h.n_fixed = h.n;
+  }
 }
 
 /// The others are spares: the direction of each in terms of the carriers.
@@ -202,7 +230,8 @@ void tie_far_spares(Workspace<T>& ws, int n) {
 template <class T>
 void list_driven(Workspace<T>& ws) {
   for (int s = 0; s < ws.held.n_spare; ++s) {
-    bool driven = false;
+    // what transmissions hold moves when their ratios do
+    bool driven = ws.ratios.n > 0;
     for (int p = 0; p < ws.sys.prescribed; ++p) driven = driven || driven_share(ws, s, p) != 0;
     if (driven) ws.held.driven[ws.held.n_driven++] = s;
   }
@@ -216,15 +245,15 @@ void list_locked(Workspace<T>& ws) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
     if (ws.contact.mode[c] == locked) h.in_set[n] = 0, h.all[n] = h.contact[n] = c, ++n;
   }
-  h.n = n;
+  h.n = h.n_fixed = n;
   h.n_spare = h.n_sets = h.n_driven = 0;
   h.too_many = false;
-  if (!ws.geometry.redundant || n < 2) return;
+  if (ws.ratios.n == 0 && (!ws.geometry.redundant || n < 2)) return;
   if (is_few(ws.sys)) {
     const int rank = split_held(ws, n);
     for (int a = 0; a < n; ++a) h.number[a] = -1;
     for (int j = 0; j < rank; ++j) h.number[h.order[j]] = 0;
-    list_carriers(ws, n);
+    ws.ratios.n > 0 ? list_carriers_beside(ws, n) : list_carriers(ws, n);
     if (h.n == n) return;
     tie_spares(ws, n, rank);
   } else {

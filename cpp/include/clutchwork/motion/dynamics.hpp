@@ -105,12 +105,14 @@ CLUTCHWORK_INLINE void inputs_of(Form& form, Real<T> t, const T* y) {
 template <class T>
 void sparse_multipliers(const Workspace<T>& ws, const T* torque, int np, T* out) {
   const System& sys = ws.sys;
-  const int m = ws.held.n, nv = int(sys.speeds), ne = int(sys.elements);
+  const int m = ws.held.n_fixed, nv = int(sys.speeds), ne = int(sys.elements);
   T *q = ws.held.motion, *b = ws.held.rhs;
   for (int i = 0; i < nv; ++i) q[i] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
     ws.geometry.white.add(ws.branch[k].direction, torque[k], q);
   }
+  // those of varying directions are known
+  for (int a = m; a < ws.held.n; ++a) ws.geometry.white.add(ne + ws.held.contact[a], out[a], q);
   for (int p = 0; p < np; ++p) axpy(nv, -ws.in.prescribed_slope[p], ws.geometry.prescribed_momentum + p * nv, q);
   for (int a = 0; a < m; ++a) {
     const int d = ne + ws.held.contact[a];
@@ -176,6 +178,10 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* y, const T* velocity, const T*
   drift_torques(form, y, velocity, d, edge);
   T size = T(0);
   for (int k = 0; k < ws.n_branches; ++k) size += abs(ws.seen.torque[k]);
+  if constexpr (Form::full) {
+    varying_multipliers(ws, ws.ratios.drift, edge.multiplier, [](const auto& x) { return x.v; });
+    varying_multipliers(ws, ws.ratios.drift, edge.drift, [](const auto& x) { return x.d[0]; });
+  }
   multipliers(ws, ws.seen.torque, true, edge.multiplier);
   multipliers(ws, ws.seen.drift, false, edge.drift);
   for (int a = 0; a < m; ++a) {

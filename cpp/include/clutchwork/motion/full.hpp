@@ -3,6 +3,7 @@
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/motion/form.hpp>
+#include <clutchwork/motion/ratios.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -36,17 +37,6 @@ struct FullForm : SparseForm<T> {
   }
   void solve_whole(T* b, int count) const { solve_lu(count, ws.full.factor, ws.full.pivot, b); }
 };
-
-/// y += a x, for a plain factor.
-template <class T>
-CLUTCHWORK_INLINE void add_times(T a, const T& x, T& y) {
-  y += a * x;
-}
-template <class T, int N>
-CLUTCHWORK_INLINE void add_times(T a, const Dual<T, N>& x, Dual<T, N>& y) {
-  y.v += a * x.v;
-  for (int i = 0; i < N; ++i) y.d[i] += a * x.d[i];
-}
 
 /// The inputs that are shared states.
 template <class T, class S>
@@ -207,6 +197,8 @@ template <class T, class S>
     for (int i = rows.first[k]; i < rows.first[k + 1]; ++i) add_times(rows.val[i], e.torque[k], e.d[rows.col[i]]);
   }
   if (ws.sys.shared > 0) whole_shared(form, e);
+  // those of transmissions were zero up to here; the rates of states that give ratios are known now
+  if (ws.ratios.n > 0) whole_ratios(ws, e, form.nz());
 }
 
 /// d at (t, y), with rates and torques of the branches where they are wanted.
@@ -214,10 +206,12 @@ template <class T>
 void evaluate_whole(FullForm<T>& form, Real<T> t, const T* y, T* d, T* rate, T* torque) {
   Workspace<T>& ws = form.ws;
   inputs_at(ws, t);
+  if (ws.ratios.n > 0) input_slopes_at(ws, t);
   Whole<T> e = ws.full.plain;
   e.d = d, e.input = ws.in.u, e.rate = rate, e.torque = torque;
   for (int i = 0; i < form.n(); ++i) e.y[i] = y[i];
   whole_motion(form, e);
+  varying_multipliers(ws, ws.ratios.plain, ws.seen.carried, [](const T& x) { return x; });
 }
 
 /// Signals as dual numbers, column `time` of which is time; beyond the last one: none is.
@@ -238,12 +232,13 @@ void linearize_whole(FullForm<T>& form, Real<T> t, const T* y, T* d, T* dt, Edge
   const int n = form.n();
   full_inputs(form, t, y);
   input_slopes_at(ws, t);
-  const Whole<Dual<T, N>>& e = ws.full.some;
+  Whole<Dual<T, N>>& e = ws.full.some;
   for (int first = 0; first <= n; first += N) {
     // the column behind the last unknown is time
     const int last = smaller(first + N, n);
     for (int i = 0; i < n; ++i) e.y[i] = Dual<T, N>(y[i]);
     for (int i = first; i < last; ++i) e.y[i].d[i - first] = T(1);
+    e.time = n - first;
     lift_inputs(ws, n - first, e);
     whole_motion(form, e);
     for (int i = 0; i < n; ++i) {
@@ -262,7 +257,8 @@ void linearize_whole(FullForm<T>& form, Real<T> t, const T* y, T* d, T* dt, Edge
 template <class T>
 void drift_whole(FullForm<T>& form, const T* y, const T* velocity, const T* state_rates, T* torque, T* drift) {
   Workspace<T>& ws = form.ws;
-  const Whole<Dual<T, 1>>& e = ws.full.along;
+  Whole<Dual<T, 1>>& e = ws.full.along;
+  e.time = 0;
   const int nz = form.nz();
   for (int i = 0; i < form.n(); ++i) {
     e.y[i] = Dual<T, 1>(y[i]);

@@ -4,6 +4,7 @@
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/form.hpp>
 #include <clutchwork/motion/geometry.hpp>
@@ -123,6 +124,7 @@ Status take_outside(Workspace<T>& ws) {
   ws.params_changed = false;
   note_torques(ws);
   keep_prescribed(ws);
+  keep_ratios(ws);
   load_inputs(ws, ws.time);
   input_slopes_at(ws, ws.time);
   find_process_pieces(ws);

@@ -139,10 +139,41 @@ template <class Form, class Integrator>
   }
 }
 
+/// Slip of a locked contact at s, which transmissions hold.
+template <class Form, class T = typename Form::Scalar>
+double slip_beside(Form& form, Step<Form>& step, int c, double s) {
+  Workspace<T>& ws = form.ws;
+  interpolate(form, step, s, step.point());
+  inputs_at(ws, step.t + s * step.h);
+  expand(form, step.point(), ws.out.v);
+  const int d = int(ws.sys.elements) + c;
+  T slip = rate_row(ws.sys, d).times(ws.out.v);
+  for (int p = 0; p < ws.sys.prescribed; ++p) slip += prescribed_share(ws, d, p) * ws.in.prescribed[p];
+  return value(slip);
+}
+
+/// Where a transmission parts what it held together itself. Inside a step the interpolant keeps its row less exactly
+/// than at the ends, so that the slip must leave zero there.
+template <class Form, class Integrator>
+void find_parting_beside(Form& form, Step<Form>& step, Hit& hit) {
+  auto& ws = form.ws;
+  if (!step.dense) Integrator::prepare_dense(form, step);
+  for (int i = 0; i < ws.held.n_driven; ++i) {
+    const int spare = ws.held.driven[i], c = ws.held.spare[spare];
+    const double end = abs(slip_beside(form, step, c, 1.0)), zero = slip_tolerance(ws);
+    if (end <= zero) continue;
+    const double clear = larger(zero, 0.01 * end);
+    auto f = [&](double s) { return clear - abs(slip_beside(form, step, c, s)); };
+    const double s = first_crossing(f, clear, clear - end, hit.s);
+    if (is_first(hit, s)) hit = {Hit::parting, spare, s, -1};
+  }
+}
+
 /// Where prescribed speeds part what locked contacts hold together. docs/theory/events.md, rule 11
 template <class Form, class Integrator>
 void find_parting(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
+  if (ws.ratios.n > 0) return find_parting_beside<Form, Integrator>(form, step, hit);
   const double zero = slip_tolerance(ws);
   for (int i = 0; i < ws.held.n_driven; ++i) {
     auto f = [&](double s) {

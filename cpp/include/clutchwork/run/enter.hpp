@@ -5,6 +5,7 @@
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/branches.hpp>
 #include <clutchwork/motion/reduce.hpp>
@@ -114,13 +115,20 @@ bool count_reduced(Workspace<T>& ws) {
   return true;
 }
 
+/// The locked contacts, sorted by what transmissions leave of their directions.
+template <class T>
+void list_locked_now(Workspace<T>& ws) {
+  const BesideRatios<T> beside(ws);
+  list_locked(ws);
+}
+
 /// Reduced motion of the present modes; the state goes to ws.reduced.y. False: the inertias differ too much to tell
 /// them apart.
 template <class T>
 bool enter_mode(Workspace<T>& ws) {
   const System& sys = ws.sys;
   relax_open(ws);
-  list_locked(ws);
+  list_locked_now(ws);
   pack_branches(ws);
   list_laws(ws);
   list_processes(ws);

@@ -2,6 +2,7 @@
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/components/pieces.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/shared.hpp>
@@ -37,9 +38,10 @@ bool pass_knot(Form& form, Step<Form>& step) {
   auto& ws = form.ws;
   using T = typename Form::Scalar;
   keep_prescribed(ws);
+  keep_ratios(ws);
   load_inputs(ws, ws.time);
   settle_pieces(ws);
-  bool decide = refresh_loads(ws);
+  bool decide = refresh_loads(ws) || ratios_jump(ws);
   for (int p = 0; p < ws.sys.prescribed; ++p)
     decide = decide || value(ws.in.prescribed[p] - ws.in.prescribed_before[p]) != 0;
   if (decide) return true;

@@ -2,6 +2,7 @@
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/run/break_away.hpp>
 #include <clutchwork/run/event.hpp>
@@ -88,6 +89,10 @@ class Phase : public Pace<typename Form::Scalar> {
       if (fresh) form_.solve_mass(ws_.reduced.y);
     }
     for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = ws_.reduced.y[i];
+    if constexpr (Form::full) {
+      if (ws_.ratios.n > 0) prepare_ratios(form_);
+      if (fresh) keep_ties(form_, step_, ws_.time, step_.y0());
+    }
     if constexpr (!Form::small) balance_massless(form_, step_);
     ws_.fresh_phase = ws_.stiffened = false;
     // at a knot the row is the right limit, which comes after it
@@ -140,6 +145,7 @@ class Phase : public Pace<typename Form::Scalar> {
     step_.t = ws_.time;
     const double error = Integrator::advance(form_, step_, reach_);
     if (!judge(error, all_finite(form_.n(), step_.y1()))) return false;
+    if constexpr (Form::full) keep_ties(form_, step_, end_of_step(), step_.y1());
     look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
     return true;
   }
@@ -247,9 +253,11 @@ class Phase : public Pace<typename Form::Scalar> {
     if (hit.what == Hit::set) force_set(hit);
     for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = step_.u()[i];
     ws_.in.time = -infinity;
+    if constexpr (Form::full) keep_ties(form_, step_, ws_.time, step_.y0());
     export_state(form_, step_.y0());
     input_slopes_at(ws_, ws_.time);
     keep_prescribed(ws_);
+    keep_ratios(ws_);
     if (!passes(hit) && !over_) settle_later(hit);
   }
 

@@ -49,6 +49,15 @@ void balance_massless(FullForm<T>& form, Step<FullForm<T>>& step) {
   }
 }
 
+/// Speeds at y brought onto the ties of transmissions. docs/theory/varying-ratios.md (9)
+template <class T>
+void keep_ties(FullForm<T>& form, Step<FullForm<T>>& step, Real<T> t, T* y) {
+  Workspace<T>& ws = form.ws;
+  if (ws.ratios.n == 0) return;
+  evaluate(form, t, y, step.slope());
+  settle_ties(form, y);
+}
+
 /// Derivatives, rates, slopes, multipliers at one end of the step.
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void look_inline(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {

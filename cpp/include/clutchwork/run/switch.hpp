@@ -8,6 +8,8 @@
 #include <clutchwork/contacts/decision.hpp>
 #include <clutchwork/contacts/impulses.hpp>
 #include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/ratio_jumps.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/loads.hpp>
@@ -125,6 +127,17 @@ void report_changes(Workspace<T>& ws, bool at_start, double energy_before) {
   }
 }
 
+/// What jumps at an instant: prescribed speeds while the ratios are still those before, then the ratios.
+template <class T>
+void jump(Workspace<T>& ws) {
+  if (ws.ratios.n == 0) return prescribed_jump(ws);
+  {
+    const BesideRatios<T> beside(ws, true);
+    prescribed_jump(ws);
+  }
+  jump_ratios(ws, slip_tolerance(ws));
+}
+
 /// Decide the modes at the present instant and report what changed.
 template <class T>
 Status switch_modes(Workspace<T>& ws) {
@@ -136,7 +149,10 @@ Status switch_modes(Workspace<T>& ws) {
 
   forget_forced(ws);
   if (ws.happened.cause == Cause::slip_zero && located >= 0) ws.contact.forced[located] = 0;
-  if (!at_start) prescribed_jump(ws), see_speeds(ws);
+  if (!at_start) jump(ws);
+  const BesideRatios<T> beside(ws);
+  if (ws.ratios.n > 0) settle_rows(ws);
+  if (!at_start) see_speeds(ws);
   const double energy_before = kinetic_energy(ws);
   const Status decided = decide(ws, at_start);
   if (decided != Status::running) return decided;

@@ -8,13 +8,13 @@
 /// Memory of a run in one block, and the sizes of its arrays.
 namespace clutchwork {
 
-/// Whether a system is one of few speeds.
-inline bool is_few(const System& s) { return s.speeds <= few_speeds; }
+/// Whether the matrices of a system are whole: it has few speeds, or directions that vary.
+inline bool is_few(const System& s) { return s.speeds <= few_speeds || s.transmissions > 0; }
 
 /// Numbers of things in a system, by which arrays are sized; for few speeds the matrices are whole.
 struct Sizes {
-  std::int64_t speeds, prescribed, supplies, meters, states, shared, nodes, elements, contacts, directions, references, signals,
-      processes;
+  std::int64_t speeds, prescribed, supplies, meters, states, shared, nodes, elements, contacts, directions, references,
+      signals, processes, transmissions;
   bool few;
   bool full;                ///< it runs in the full form
   std::int64_t spares;      ///< most locked contacts that can depend on others
@@ -41,10 +41,11 @@ struct Sizes {
         references(s.n_input_refs + s.prescribed),
         signals(s.inputs),
         processes(s.processes),
+        transmissions(s.transmissions),
         few(is_few(s)),
         full(s.full != nullptr && s.full[0] != 0) {
     const auto nv = speeds, nc = contacts;
-    spares = few ? (nc > 1 ? nc : 0) : s.spares, set = few ? spares : s.set_size;
+    spares = few ? (nc > 1 || transmissions > 0 ? nc : 0) : s.spares, set = few ? spares : s.set_size;
     factor = few ? nv * (nv + 1) / 2 : s.factor_room, white = few ? directions * nv : s.direction_room;
     mobility = few ? nc * (nc + 1) / 2 : s.mobility_room;
     expansion = few ? nv * nv : s.expansion_room, rate = few ? directions * nv : s.rate_room;

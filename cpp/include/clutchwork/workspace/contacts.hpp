@@ -44,12 +44,13 @@ struct Happened {
 /// them: contacts/locked.hpp.
 template <class T>
 struct Held {
-  int n = 0;                                        ///< number of carriers
-  int* contact = nullptr;                           ///< of each carrier
-  Envelope near;                                    ///< of the factor
-  int* turn = nullptr;                              ///< carrier at each row of the factor
-  T* factor = nullptr;                              ///< Cholesky factor of the mobility of the carriers
-  bool mapped = false;                              ///< the torques of the carriers are a linear map, below
+  int n = 0;               ///< number of carriers
+  int n_fixed = 0;         ///< of those whose directions do not vary, which come first: docs/theory/varying-ratios.md
+  int* contact = nullptr;  ///< of each carrier
+  Envelope near;           ///< of the factor
+  int* turn = nullptr;     ///< carrier at each row of the factor
+  T* factor = nullptr;     ///< Cholesky factor of the mobility of the carriers
+  bool mapped = false;     ///< the torques of the carriers are a linear map, below
   T *reach = nullptr, *reach_prescribed = nullptr;  ///< torques by those of branches and prescribed accelerations
 
   int n_spare = 0, n_sets = 0, n_driven = 0;

@@ -179,6 +179,7 @@ struct Whole {
   S *y = nullptr, *d = nullptr;                           ///< speeds and states; what `evaluate` gives
   S* input = nullptr;                                     ///< of each reference
   S *rate = nullptr, *torque = nullptr, *heat = nullptr;  ///< of each branch
+  int time = -1;                                          ///< column of the derivatives that is time, -1: none
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
