@@ -1,6 +1,6 @@
 """The page that compares part by part, from docs/parts.toml and the declarations.
 
-A part of that file that is not declared is no claim: it is listed as missing.
+A part of that file that is not declared does not count as a claim: it is listed as missing.
 """
 
 from __future__ import annotations

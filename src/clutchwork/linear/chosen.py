@@ -99,7 +99,7 @@ def _unusable(name: str, form: Any, integrals: Collection[int], drawn: Collectio
     if isinstance(form, Mode):
         return "does not change with a state; ask for the torque or the slip of the contact"
     if any(column in drawn for column in columns_of(form)):
-        return f"holds losses, which a linear system has not; ask for '{name.rpartition('.')[0]}.power'"
+        return f"holds losses, which a linear system does not have; ask for '{name.rpartition('.')[0]}.power'"
     if any(column in integrals for column in columns_of(form)):
         return f"is an integral over the run; ask for '{name.rpartition('.')[0]}.power'"
     return ""

@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/component.hpp>
+#include <clutchwork/layout.gen.hpp>
 
 namespace clutchwork::elements {
 
