@@ -12,7 +12,7 @@ using namespace clutchwork;
 namespace {
 
 // arguments of a function: rate, states, inputs, parameters
-constexpr int most = 24;
+constexpr int most = 40;
 using D = Dual<double, most>;
 constexpr int longest = 6;
 
@@ -50,7 +50,11 @@ struct Fields {
       f.start[k] = 1, f.start[k + 1] = longest;
       f.fixed[k] = f.fixed[k + 1] = true;
     };
-    auto word = [&](int k, int values) { f.words[k] = values, f.start[k] = 0, f.fixed[k] = true; };
+    auto word = [&](int k, int values) {
+      f.words[k] = values, f.fixed[k] = true;
+      // any number that says how many states there are: all of them
+      if (values > 0) f.start[k] = 0;
+    };
     visit(curve, word);
     P p{};
     // counts, whose derivatives nobody asks for
@@ -72,7 +76,7 @@ struct Fields {
 template <class F>
 void differentiate(F&& f, const double* x, int n, int outputs, const bool* fixed, bool lenient) {
   D dual[most], r[most];
-  double moved[most], plain[most], up[most], down[most];
+  double moved[most], plain[most] = {}, up[most] = {}, down[most] = {};
   for (int i = 0; i < n; ++i) dual[i] = D::variable(x[i], i), moved[i] = x[i];
   f(static_cast<const D*>(dual), r), f(x, plain);
   for (int o = 0; o < outputs; ++o) CHECK(plain[o] - plain[o] != 0 ? lenient : check::same_bits(r[o].v, plain[o]));

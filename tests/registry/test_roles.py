@@ -77,7 +77,7 @@ def test_work_stands_in_the_table_where_it_is_declared(cls):
     run = _run(cls)
     energy, work = run.energy, run["x.work"][-1]
     assert set(energy.sources) == ({"x"} if Work.SOURCE in cls.work else set())
-    assert set(energy.heat) == ({"x"} if Work.LOSS in cls.work else set())
+    assert set(energy.heat) == ({"x"} if Work.LOSS in cls.work or cls.supply else set())
     stored = energy.elastic
     assert (stored != 0.0) == (Work.STORE in cls.work)
     # both shafts together lose what the element takes
@@ -93,7 +93,11 @@ def test_a_thermal_node_takes_its_share_and_changes_nothing_else(cls, share):
     cold, warm = _run(cls).energy, _run(cls, "lining", share).energy
     assert warm.elastic == pytest.approx(cold.elastic, rel=1e-6, abs=1e-9)
     assert warm.kinetic == pytest.approx(cold.kinetic, rel=1e-6)
-    if Work.SOURCE in cls.work:
+    if cls.supply:
+        # it draws its heat besides its work
+        assert warm.thermal["lining"] == pytest.approx(share * warm.heat["x"], rel=1e-6)
+        assert warm.sources == pytest.approx(cold.sources, rel=1e-6)
+    elif Work.SOURCE in cls.work:
         # what the node takes of the work of a load is heat, the rest leaves the driveline
         assert warm.thermal["lining"] == pytest.approx(-share * cold.sources["x"], rel=1e-6)
         assert warm.sources["x"] == pytest.approx((1.0 - share) * cold.sources["x"], rel=1e-6, abs=1e-9)

@@ -48,7 +48,7 @@ def solve(modes: Mapping[str, Mode], mode: str, y: Any, times: np.ndarray, rtol:
         assert found.success, found.message
         stop = float(found.t[-1])
         inside = (times >= t) & (times <= stop)
-        values[inside] = found.sol(times[inside]).T
+        values[inside] = found.sol(times[inside]).T if inside.any() else 0.0
         if found.status == 0:
             return Course(values, tuple(changes))
         which = next(k for k, hits in enumerate(found.t_events) if len(hits))

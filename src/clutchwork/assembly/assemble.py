@@ -17,9 +17,10 @@ from clutchwork.assembly.sparse import sparse
 from clutchwork.base.errors import ModelError
 from clutchwork.declare.core import number
 from clutchwork.declare.layout import FIELDS
+from clutchwork.declare.node import is_reference
 from clutchwork.declare.ports import ports
 from clutchwork.declare.rational import ONE, Row, plus
-from clutchwork.declare.schema import Role
+from clutchwork.declare.schema import Role, inputs
 from clutchwork.declare.speech import path_of
 from clutchwork.model.findings import Findings, Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
@@ -166,8 +167,11 @@ def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role,
 
 
 def _is_coupled(component: Any) -> bool:
-    """Whether it is an element of several ways."""
-    return len(type(component).ways) > 1
+    """Whether it has several ways, or own states that what other components give acts on, or that make its heat."""
+    if len(type(component).ways) > 1 or (component.supply and component.heat_path()):
+        return True
+    given = (getattr(component, name) for names, _ in inputs(type(component)) for name in names)
+    return component.role is Role.TORQUE and bool(component.own_states()) and any(map(is_reference, given))
 
 
 def _first_ways(model: Mechanism, which: Callable[[Any], bool]) -> list[int]:

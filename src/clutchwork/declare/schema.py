@@ -162,16 +162,17 @@ def curve(
     rising: str = "strictly",
     at_least: float | None = None,
     constant: bool = False,
+    default: None = MISSING,  # type: ignore[assignment]
     example: tuple[tuple[float, float], ...] | None = None,
     kw_only: bool = True,
 ) -> Any:
     """A piecewise linear function as (x, y) points with x increasing: a `Curve` of the C++ `Params`.
 
-    `at_least` bounds y; with `constant` a number may stand for one point.
+    `at_least` bounds y; with `constant` a number may stand for one point. A composite may have one with default None.
     """
     ranges: dict[str, Any] = {"unit_x": unit_x, "units": units, "units_x": units_x, "at_least": at_least}
-    spec = Spec("curve", unit_y, doc, **ranges, rising=rising, constant=constant, example=example)
-    return _field(spec, MISSING, kw_only)
+    spec = Spec("curve", unit_y, doc, default is None, **ranges, rising=rising, constant=constant, example=example)
+    return _field(spec, default, kw_only)
 
 
 def numbers(

@@ -266,6 +266,12 @@ concept Sized = requires(const typename C::template Params<double>& p) {
   { C::count(p) } -> std::same_as<int>;
 };
 
+/// Switching torque element that oscillates by itself: the rate of that [1/s], as no error estimate may feel it.
+template <class E>
+concept Paced = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::pace(p, at) } -> std::same_as<double>;
+};
+
 /// A component whose function of the rate has kinks. Where it switches too, its pieces are numbered by the interval
 /// between kinks first: interval + (edges + 1) mode.
 template <class E, class T = double>

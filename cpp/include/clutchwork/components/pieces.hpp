@@ -59,6 +59,18 @@ int settled_piece(const Workspace<T>& ws, const Branch<T>& b, const T* rate) {
     return b.piece;
   });
 }
+/// Rate at which a switching element oscillates by itself [1/s].
+template <class T>
+double own_pace(const Workspace<T>& ws, const Branch<T>& b, T rate) {
+  return visit_torque(b.kind, [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (Paced<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+      return value(E::pace(p, At<T>{rate, ws.state + b.state, b.input, b.piece, ws.sys.points}));
+    }
+    return 0.0;
+  });
+}
 inline bool is_settling(int kind) {
   return visit_torque(kind, [](auto tag) { return Settling<typename decltype(tag)::type>; });
 }

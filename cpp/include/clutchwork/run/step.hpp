@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/input.hpp>
+#include <clutchwork/components/pieces.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/form.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
@@ -112,8 +113,9 @@ double collision_step(Form& form, int k) {
   return square > 0 ? 0.5 / sqrt(square) : infinity;
 }
 
-/// Longest step that resolves the oscillating signals, which the error estimate may not see: with work half a radian
-/// of a sine or half a time constant of a decay, for the quadrature; else what the samples of the guards need.
+/// Longest step that resolves the oscillating signals and elements, which the error estimate may not see: with work
+/// half a radian of a sine or half a time constant of a decay, for the quadrature; else what the samples of the guards
+/// need.
 /// docs/theory/events.md, rule 6
 template <class T>
 double signal_step(const Workspace<T>& ws) {
@@ -121,6 +123,12 @@ double signal_step(const Workspace<T>& ws) {
   for (int k = 0; k < ws.in.n_varying; ++k) {
     const Signal& signal = ws.in.signal[ws.in.ref_signal[ws.in.varying[k]]];
     if (!signal.linear) fastest = larger(fastest, segment_rate(signal.coef, ws.time - signal.start));
+  }
+  if constexpr (!has_lanes<T>) {
+    for (int i = 0; i < ws.guard.n_switching; ++i) {
+      const int k = ws.guard.switching[i];
+      if (ws.branch[k].law < 0) fastest = larger(fastest, own_pace(ws, ws.branch[k], ws.here.rate[k]));
+    }
   }
   return fastest > 0 ? (ws.options.work ? 0.5 : 1.5) / fastest : infinity;
 }

@@ -130,6 +130,24 @@ def prescribed(turning: str, moving: str) -> Callable[[Pen, Drawn], None]:
     return draw
 
 
+def motor(pen: Pen, shown: Drawn) -> None:
+    """A circle with the letter of a machine."""
+    pen.circle(0.0, 0.0, 10.5, look=BLANK)
+    pen.text(0.0, -3.2, "M", 10.0)
+    _to_shaft(pen, shown, 10.5)
+
+
+def engine(pen: Pen, shown: Drawn) -> None:
+    """A cylinder with its piston and a crank."""
+    pen.box(-11.0, -10.5, 11.0, 10.5, look=BLANK)
+    pen.line((-4.5, 8.5), (-4.5, -0.5), look=INK._replace(width=1.2))
+    pen.line((4.5, 8.5), (4.5, -0.5), look=INK._replace(width=1.2))
+    pen.box(-3.6, 1.5, 3.6, 5.5, look=BODY)
+    pen.line((0.0, 3.0), (2.4, -5.2), look=INK._replace(width=1.4))
+    pen.circle(0.0, -5.6, 3.2, look=Look(width=0.8))
+    _to_shaft(pen, shown, 11.0)
+
+
 def over_speed(points: Callable[[Any], list[Point]]) -> Callable[[Pen, Drawn], None]:
     """A box with the course of a torque over the speed."""
 
@@ -242,6 +260,10 @@ TORQUES = {
     "prescribed_speed": Symbol(prescribed("ω", "v"), 15.0, 11.0, 11.0),
     "prescribed_position": Symbol(prescribed("φ", "x"), 15.0, 11.0, 11.0),
     "prescribed_acceleration": Symbol(prescribed("α", "a"), 15.0, 11.0, 11.0),
+    "electric_motor": Symbol(motor, 15.0, 11.0, 11.0),
+    "motor_torque": Symbol(motor, 15.0, 11.0, 11.0),
+    "engine": Symbol(engine, 15.0, 11.0, 11.0),
+    "engine_torque": Symbol(engine, 15.0, 11.0, 11.0),
     "speed_torque": Symbol(over_speed(_table), 15.0, 11.0, 11.0),
     "linear_torque": Symbol(over_speed(_linear), 15.0, 11.0, 11.0),
     "quadratic_torque": Symbol(over_speed(_quadratic), 15.0, 11.0, 11.0),
