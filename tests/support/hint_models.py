@@ -199,7 +199,18 @@ def parallel(gears: int) -> cw.Driveline:
 
 CRITICAL = 2.0 * float(np.sqrt(1e6 / 15.0))  # N m s/rad, of the shaft of `ringing`
 
+
+def towed(speed: float) -> cw.Driveline:
+    """A converter whose wheels are pulled along."""
+    d = cw.Driveline("towed")
+    engine, turbine = d.shaft("engine", inertia=0.2, speed=speed), d.shaft("turbine", inertia=1.0, speed=0.5 * speed)
+    tables = {"speed_ratio": (0.0, 1.0), "torque_ratio": (2.0, 1.0), "capacity": (1e-3, 0.0)}
+    d.add(cw.TorqueConverter("converter", impeller=engine, turbine=turbine, **tables))
+    return d
+
+
 CASES: dict[str, Case] = {
+    "unknown there": Case(lambda: towed(-20.0), lambda: towed(20.0), 0.2),
     "never locks": Case(lambda: launch(60.0), lambda: launch(150.0), 2.0),
     "lifts off": Case(lambda: belted(300.0), lambda: belted(900.0), 1.0),
     "full and slips": Case(lambda: hill(250.0), lambda: hill(500.0), 2.0),

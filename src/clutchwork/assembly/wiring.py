@@ -171,6 +171,7 @@ def _branch(component: Component, way: Direction, places: Places) -> Branch:
             grounded[domains[port]] = grounded.get(domains[port], 0.0) + factor
     if not type(component).ways and "base" not in joined:
         # what brakes a shaft alone rests on the housing
+        direction[HOUSING] = direction.get(HOUSING, 0.0) - 1.0
         grounded[way.domain] = grounded.get(way.domain, 0.0) - 1.0
     watched = way.way is not None and way.way.watched
     return Branch(way.name, component, direction, way.domain, grounded=grounded, number=way.number, watched=watched)
