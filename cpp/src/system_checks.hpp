@@ -232,6 +232,11 @@ inline bool contact_fits(const System& s, std::int64_t i, std::int64_t& states) 
            plain_inputs(s, s.contact_input[i], E::inputs);
   });
   visit_contact_curves(s.contact_kind[i], [&](int at) { good = good && curve_fits(s, s.contact_param[i] + at); });
+  visit_contact(s.contact_kind[i], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    const auto& p = *reinterpret_cast<const typename E::template Params<double>*>(s.params + s.contact_param[i]);
+    if constexpr (FittedLaw<E>) good = good && E::fits(p);
+  });
   visit_law(s.contact_law[i], [&](auto tag) {
     using L = typename decltype(tag)::type;
     good = good && s.contact_law_param[i] + param_count<L> <= s.n_params &&
@@ -241,6 +246,17 @@ inline bool contact_fits(const System& s, std::int64_t i, std::int64_t& states) 
   if (!good || !tables_fit(s, i)) return false;
   states = states_of(s.contact_kind[i], s.contact_law[i], s.params + s.contact_law_param[i]);
   return s.contact_state[i] + states <= s.states - s.shared;
+}
+
+/// Whether the contacts that follow loads are those that must, in order, in the full form.
+inline bool loads_fit(const System& s) {
+  std::int64_t found = 0;
+  for (std::int64_t c = 0; c < s.contacts; ++c) {
+    if (!is_loaded(s.contact_kind[c])) continue;
+    if (found >= s.loads || s.load_contact[found] != c) return false;
+    ++found;
+  }
+  return found == s.loads && (found == 0 || s.full[0] != 0);
 }
 
 /// Whether the rows of a matrix end in order, each with speeds in ascending order.
@@ -269,8 +285,8 @@ inline bool matrices_fit(const System& s) {
 
 /// Offsets and numbers inside the system that the core follows without looking.
 inline bool in_range(const System& s) {
-  bool good = offsets_in_range(s) && ways_fit(s) && transmissions_fit(s) && shared_in_range(s) && meters_in_range(s) &&
-              matrices_fit(s);
+  bool good = offsets_in_range(s) && ways_fit(s) && loads_fit(s) && transmissions_fit(s) && shared_in_range(s) &&
+              meters_in_range(s) && matrices_fit(s);
   for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
   std::int64_t all = 0, own = 0;
   for (std::int64_t i = 0; good && i < s.elements; ++i, all += own) good = element_fits(s, i, own);

@@ -27,7 +27,7 @@ OWN = cases.OWN / "msl"
 REQUIRED = {
     "rot_First", "rot_ElasticBearing", "rot_CoupledClutches", "rt_TestFriction", "rot_OneWayClutchDisengaged",
     "rt_SupportTorque1", "rt_SimpleDriveTrain", "rt_Directions", "rt_TestSpeed", "tra_Brake", "tra_Damper",
-    "tra_Oscillator", "tra_Vehicle",
+    "tra_Oscillator", "tra_Vehicle", "rot_LossyGearDemo1",
 }  # fmt: skip
 
 

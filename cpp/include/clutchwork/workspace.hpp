@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/workspace/contacts.hpp>
+#include <clutchwork/workspace/loads.hpp>
 #include <clutchwork/workspace/motion.hpp>
 #include <clutchwork/workspace/ratios.hpp>
 #include <clutchwork/workspace/run.hpp>
@@ -35,6 +36,8 @@ struct Workspace {
   Contacts<T> contact;
   Happened<T> happened;
   Held<T> held;
+  Loads<T> loads;
+  CoupledMemory<T> coupled;
   SetMemory<T> set;
   ProblemMemory<T> problem;
   Decision<T> decision;
@@ -66,8 +69,9 @@ void lay_out(W& ws, A& a) {
   a.keep(ws.piece, n.directions, -(1ll << 31), (1ll << 31) - 1), a.keep(ws.heading, n.directions, backward, forward);
   a.take(ws.branch, n.directions), a.take(ws.branch_of, n.directions);
   auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
-  each(ws.in, ws.contact, ws.happened, ws.held, ws.set, ws.problem, ws.decision, ws.geometry, ws.reduced, ws.rows,
-       ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.here, ws.there, ws.guard, ws.seen, ws.out, ws.events);
+  each(ws.in, ws.contact, ws.happened, ws.held, ws.loads, ws.coupled, ws.set, ws.problem, ws.decision, ws.geometry,
+       ws.reduced, ws.rows, ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.here, ws.there, ws.guard, ws.seen,
+       ws.out, ws.events);
 }
 
 /// Lay the arrays of a workspace into memory; returns the size needed.

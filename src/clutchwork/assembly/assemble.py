@@ -24,10 +24,11 @@ from clutchwork.declare.schema import Role, inputs
 from clutchwork.declare.speech import path_of
 from clutchwork.model.findings import Findings, Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
+from clutchwork.model.loads import load_arrays
 from clutchwork.model.model import Model
 from clutchwork.model.pools import Pools
 from clutchwork.model.start import initial_angles, start
-from clutchwork.model.structure import Kinematics, Mechanism
+from clutchwork.model.structure import Kinematics, Mechanism, follows_load
 from clutchwork.model.transmissions import ordered
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     arrays |= _rates(model, rates, columns, Role.CONTACT, "contact")
     states = list[float]()
     arrays |= _elements(model, pools, wires, states)
+    arrays |= load_arrays(model)
     arrays |= _contacts(model, pools, wires, states)
     arrays |= meter_arrays(model)
     # torques that know the rates of others
@@ -167,8 +169,8 @@ def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role,
 
 
 def _is_coupled(component: Any) -> bool:
-    """Whether it has several ways, or own states that what other components give acts on, or that make its heat."""
-    if len(type(component).ways) > 1 or (component.supply and component.heat_path()):
+    """Whether it has several ways, follows a load, or own states that others act on, or that make its heat."""
+    if len(type(component).ways) > 1 or follows_load(component) or (component.supply and component.heat_path()):
         return True
     given = (getattr(component, name) for names, _ in inputs(type(component)) for name in names)
     return component.role is Role.TORQUE and bool(component.own_states()) and any(map(is_reference, given))
@@ -235,7 +237,7 @@ def _tolerance(contact: Any) -> float:
 
 
 def _gears(model: Mechanism) -> Iterable[Gearing]:
-    for gear in model.role(Role.GEAR):
+    for gear in model.geared:
         joined = ports(gear)
         for row in gear.rows():
             yield Gearing(gear, {port: (model.places.of(joined[port]), float(c)) for port, c in row.items()})
@@ -244,6 +246,7 @@ def _gears(model: Mechanism) -> Iterable[Gearing]:
 def _shaped(arrays: Mapping[str, Any], model: Mechanism, made: Kinematics) -> dict[str, Array]:
     """The arrays with the type and shape that the layout says."""
     sizes = {"nodes": len(model.nodes), "speeds": len(made.independent), "prescribed": len(model.role(Role.MOTION))}
+    sizes |= {"elements": len(arrays["element_kind"]), "contacts": len(arrays["contact_kind"])}
     shaped = {}
     for name, kind, shape, _ in FIELDS:
         lengths = [size if isinstance(size, int) else sizes.get(size, len(arrays[name])) for size in shape]

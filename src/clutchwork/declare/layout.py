@@ -45,6 +45,7 @@ COUNTS = (
     ("envelope_room", "room for the factor of the reduced motion"),
     ("spares", "locked contacts that can depend on others, at most"),
     ("set_size", "contacts of the largest set that depend on each other"),
+    ("loads", "contacts whose capacity follows the torque of a gear row"),
 )
 
 # (name, type, shape, meaning); directions are those of the elements, then those of the contacts
@@ -89,6 +90,10 @@ FIELDS = (
     ("contact_state", "i4", ("contacts",), "offset of the law's states into states"),
     ("contact_tolerance", "f8", ("contacts",), "slip [rad/s] below which it may lock; 0: exact zero crossing"),
     ("contact_initial", "i4", ("contacts",), "0: decided by slip and load, 1: locked at the start"),
+    ("load_contact", "i4", ("loads",), "contact that follows the torque of its gear row"),
+    ("load_motion", "f8", ("loads", "nodes"), "speeds in a virtual motion in which that row alone is violated, by one"),
+    ("load_element_rate", "f8", ("loads", "elements"), "rate of each element in it"),
+    ("load_contact_rate", "f8", ("loads", "contacts"), "slip of each contact in it"),
     ("flow_kind", "i4", ("flows",), "number of the kind among the flows"),
     ("flow_param", "i4", ("flows",), "offset into params"),
     ("flow_input", "i4", ("flows",), "offset into input_refs"),
@@ -183,6 +188,7 @@ CAUSES = {
     5: ("impulse", "speeds jumped"),
     7: ("passing", "the slip of an open contact passed zero: nothing changes but the direction"),
     8: ("fault", "a fault of the contact was triggered; it stays for the rest of the run"),
+    9: ("jam", "no torque balanced the friction of a gear, so that it stopped at once"),
 }
 
 # integrators by name, with their numbers in the core; auto chooses between the others
@@ -234,6 +240,11 @@ STATUS = (
         "jammed",
         "prescribed speeds turn a freewheel backward, which nothing can hold",
         "prescribe speeds that let it overrun, or put a shaft with inertia and a spring in between",
+    ),
+    (
+        "unbalanced",
+        "no torques fit the friction that follows loads",
+        "give a named gear more efficiency, or the shafts that drive it more inertia",
     ),
     ("interrupted", "the run was interrupted", "what was computed up to here is kept in .trajectory"),
 )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.speech import of_files
 from clutchwork.model.kinematics import kinematics
+from clutchwork.model.loads import load_problems
 from clutchwork.model.parts import Parts, Sensor
 from clutchwork.model.problems import TOO_FAR_APART, model_advice, no_shaft, part_problems
 from clutchwork.model.settings import settings_problems
@@ -129,6 +130,7 @@ def _find(model: Model, incomplete: Sequence[str]) -> Findings:
         if made is None:
             return Findings(problems + wrong, advice, None)
         speeds, motions, wrong = start(mechanism, made)
+        wrong += load_problems(mechanism)
     except ArithmeticError:
         return Findings([*problems, TOO_FAR_APART], advice, None)
     problems += wrong

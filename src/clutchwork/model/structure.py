@@ -52,6 +52,11 @@ class Mechanism:
         return [component for component in self.components if component.role is role]
 
     @cached_property
+    def geared(self) -> list[Any]:
+        """Gears, and contacts that are gears with friction."""
+        return [*self.role(Role.GEAR), *(contact for contact in self.role(Role.CONTACT) if follows_load(contact))]
+
+    @cached_property
     def acting(self) -> list[tuple[Any, Row]]:
         """Torque elements and contacts with their rate over the nodes, one entry for each of their ways."""
         return [(c, row) for role in (Role.TORQUE, Role.CONTACT) for c in self.role(role) for row in self.directions(c)]
@@ -90,21 +95,26 @@ class Mechanism:
         return {} if node.fixed else {self.places.of(node): factor}
 
     def rigid_rows(self) -> Iterator[RigidRow]:
-        """Rows of all gears, then of all prescribed speeds."""
-        for gear in self.role(Role.GEAR):
+        """Rows of all gears, then of contacts that have some, then of all prescribed speeds."""
+        for gear in self.geared:
             joined = ports(gear)
             for coefficients in gear.rows():
                 row: Row = {}
                 for port, coefficient in coefficients.items():
                     row = plus(row, coefficient, self._at(joined[port], ONE))
-                yield RigidRow(path_of(gear), row)
+                yield RigidRow(path_of(gear), row, gear)
         for number, motion in enumerate(self.role(Role.MOTION), len(self.nodes)):
-            yield RigidRow(path_of(motion), {**self.direction(motion), number: MINUS})
+            yield RigidRow(path_of(motion), {**self.direction(motion), number: MINUS}, motion)
 
     def node_label(self, place: int) -> str:
         """Path of a node in messages."""
         node = self.nodes[place]
         return f'{"mass" if node.domain is Domain.TRANSLATION else "shaft"} "{node.name}"'
+
+
+def follows_load(component: Component) -> bool:
+    """Whether the capacity of a contact follows the torque of its own gear row."""
+    return "bound" in component.hooks
 
 
 def _sensible(value: Any, least: float = -inf) -> bool:
@@ -117,6 +127,7 @@ class RigidRow:
 
     owner: str  # 'element "g1" (gear)'
     coefficients: Row
+    component: Any = None
 
 
 @dataclass

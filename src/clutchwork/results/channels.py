@@ -21,6 +21,7 @@ from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.kept import kept
 from clutchwork.base.shown import shown
 from clutchwork.declare.node import Domain
+from clutchwork.declare.ports import directions
 from clutchwork.declare.speech import where_signals
 from clutchwork.model.transmissions import is_transmission
 from clutchwork.results import heat_channels, reactions
@@ -241,8 +242,8 @@ def _left_out(angles: bool, work: bool, wiring: Wiring) -> dict[str, str]:
 
 
 def _gear_torques(wiring: Wiring, made: Array) -> Iterator[tuple[str, Channel]]:
-    """Torque that a gear puts on the member at each port; several rows of one gear add up."""
-    totals: dict[str, tuple[Array, Domain]] = {}
+    """Torque that a gear puts on the member at each port; several rows of one gear add up, and its friction."""
+    totals = _mesh_friction(wiring)
     for index, row in enumerate(wiring.gears):
         if row.is_line:
             yield from _line(wiring, row, made[index])
@@ -267,6 +268,20 @@ def _line(wiring: Wiring, row: GearRow, made: Array) -> Iterator[tuple[str, Chan
     yield f"{row.name}.torque", Channel(TORQUE[domain], torque)
     yield f"{row.name}.speed", Channel(SPEED[domain], rate)
     yield f"{row.name}.power", Channel("W", Power(torque, rate))
+
+
+def _mesh_friction(wiring: Wiring) -> dict[str, tuple[Array, Domain]]:
+    """Torque at each port of the contacts that have gear rows, by their friction alone."""
+    totals: dict[str, tuple[Array, Domain]] = {}
+    geared = {row.name: row for row in wiring.gears}
+    for index, branch in enumerate(wiring.contacts):
+        if branch.name in geared:
+            (way,) = directions(branch.component)
+            for port, domain in geared[branch.name].domains.items():
+                vector = np.zeros(wiring.row_size)
+                vector[wiring.columns["contact_torque"].start + index] = float(way.coefficients.get(port, 0))
+                totals[f"{branch.name}.torque_{port}"] = vector, domain
+    return totals
 
 
 def _column(column: int, unit: str) -> Channel:

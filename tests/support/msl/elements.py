@@ -211,14 +211,12 @@ def _gear(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
 
 
 def _lossy_gear(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
-    """Without losses a gear, without efficiencies a gear and a bearing at its input."""
-    rows = [[float(x) for x in row] for row in e["loss_table"]]
-    gear = _gear(b, name, e, at)
-    if any(row[1:] != [1.0, 1.0, 0.0, 0.0] for row in rows):
-        friction, scale = _friction({"tau_pos": [(row[0], row[3]) for row in rows]}, "tau_pos")
-        bearing = cw.BearingFriction(name, shaft=at("flange_a"), base=at("support"), friction=friction, torque=scale)
-        gear = [replace(gear[0], name=f"{name}_gear"), bearing]
-    return gear
+    """Without losses a gear."""
+    rows = [tuple(float(x) for x in row) for row in e["loss_table"]]
+    if all(row[1:] == (1.0, 1.0, 0.0, 0.0) for row in rows):
+        return _gear(b, name, e, at)
+    ends = {"input": at("flange_a"), "output": at("flange_b"), "support": at("support")}
+    return [cw.LossyGear(name, ratio=float(e["ratio"]), loss_table=rows, **ends)]
 
 
 def _planetary(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
@@ -270,12 +268,4 @@ ENTRIES: dict[str, Entry] = {
 
 def missing(case: Mapping[str, Any]) -> list[str]:
     """What the elements of the case are that has no entry."""
-    found = {e["type"] for e in case["elements"].values()} - set(ENTRIES)
-    if any(e["type"] == "lossy_gear" and not _plain_losses(e) for e in case["elements"].values()):
-        found.add("lossy_gear with efficiencies")
-    return sorted(found)
-
-
-def _plain_losses(e: Mapping[str, Any]) -> bool:
-    """Whether a gear loses a torque that depends on its speed alone."""
-    return all(float(row[1]) == float(row[2]) == 1.0 and float(row[3]) == float(row[4]) for row in e["loss_table"])
+    return sorted({e["type"] for e in case["elements"].values()} - set(ENTRIES))

@@ -168,7 +168,7 @@ class Builder:
             elif what not in (*MODE_COLUMNS, "lossPower"):
                 outputs[output["csv"]] = self.kinematic(output["signal"])
         friction = {"clutch", "brake", "bearing_friction", "one_way_clutch", "lossy_gear"}
-        made = {contact.name for contact in self.driveline.elements if contact.role is Role.CONTACT}
+        made = {e.name for e in self.driveline.elements if e.role is Role.CONTACT or isinstance(e, cw.LossyGear)}
         contacts = tuple(name for name, e in self.elements.items() if e["type"] in friction and name in made)
         return Model(self.driveline, outputs, contacts)
 

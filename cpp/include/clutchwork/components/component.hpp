@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/bound.hpp>
 #include <clutchwork/components/dual.hpp>
 #include <clutchwork/declared.gen.hpp>
 
@@ -146,6 +147,13 @@ concept ShapedContact = requires(const typename E::template Params<double>& p) {
 template <class E>
 concept LimitedContact = requires(const typename E::template Params<double>& p, const At<double>& at) {
   { E::limit(p, at, 0.5, 1) } -> std::same_as<double>;
+};
+
+/// Contact whose capacity follows the torque of its own gear row: what holds against slip in a direction, over that
+/// load; `at.rate` is the size of the slip.
+template <class E>
+concept LoadedContact = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::bound(p, at, 1) } -> std::same_as<Bound<double>>;
 };
 
 /// Freewheel that gives way at a torque.

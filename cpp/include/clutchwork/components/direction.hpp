@@ -114,6 +114,7 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
     b.law_input = ws.in.u + sys.contact_law_input[c];
     b.law_input_slope = ws.in.du + sys.contact_law_input[c];
     b.shaped = is_shaped(b.kind);
+    b.follows = ws.loads.of[c] >= 0;
     b.pressed = ws.contact.pressed[c] != 0;
     b.compliant = ws.contact.compliant[c] != 0;
     if (b.compliant) b.sign = forward;

@@ -79,6 +79,25 @@ CLUTCHWORK_INLINE S contact_gain(int kind, const T* params, const S& mu, int dir
   });
 }
 
+/// What holds against slip of a size in a direction, over its load, of a contact that follows one.
+template <class T, class S>
+Bound<S> contact_bound(int kind, const T* params, const S& slip, const S* input, int piece, const Real<T>* points,
+                       int direction) {
+  return visit_contact(kind, [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (LoadedContact<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(params);
+      return E::bound(p, At<S>{slip, nullptr, input, piece, points}, direction);
+    }
+    return Bound<S>{};
+  });
+}
+
+/// Whether a contact follows a load.
+inline bool is_loaded(int kind) {
+  return visit_contact(kind, [](auto tag) { return LoadedContact<typename decltype(tag)::type>; });
+}
+
 /// Static coefficient of a law.
 template <class T>
 CLUTCHWORK_INLINE T law_hold(int law, const T* params, const T* input, const Real<T>* points) {

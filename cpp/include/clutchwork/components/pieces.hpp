@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/kinds.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// The smooth pieces of elements and laws: kinks over the rate, and those that change by their own states.
@@ -147,6 +148,8 @@ int edge_count(const Workspace<T>& ws, int direction) {
                         [&](auto tag) { return count(tag, ws.params + sys.element_param[direction]); });
   }
   const int c = direction - int(sys.elements);
+  if (is_loaded(sys.contact_kind[c]))
+    return visit_contact(sys.contact_kind[c], [&](auto tag) { return count(tag, ws.params + sys.contact_param[c]); });
   return visit_law(sys.contact_law[c], [&](auto tag) { return count(tag, ws.params + sys.contact_law_param[c]); });
 }
 
@@ -167,6 +170,8 @@ double edge_at(const Workspace<T>& ws, int direction, int i) {
                         [&](auto tag) { return at(tag, ws.params + sys.element_param[direction]); });
   }
   const int c = direction - int(sys.elements);
+  if (is_loaded(sys.contact_kind[c]))
+    return visit_contact(sys.contact_kind[c], [&](auto tag) { return at(tag, ws.params + sys.contact_param[c]); });
   return visit_law(sys.contact_law[c], [&](auto tag) { return at(tag, ws.params + sys.contact_law_param[c]); });
 }
 

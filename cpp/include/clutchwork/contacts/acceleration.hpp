@@ -17,8 +17,14 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   const int nv = int(sys.speeds);
   for (int i = 0; i < nv; ++i) q[i] = T(0);
   ws.decision.effort = 0;
+  for (int l = 0; l < sys.loads; ++l) {
+    ws.coupled.given[l] = T(0);
+    for (int p = 0; p < sys.prescribed; ++p)
+      ws.coupled.given[l] += ws.loads.by_slope[l * sys.prescribed + p] * ws.in.prescribed_slope[p];
+  }
   auto add = [&](T size, int d) {
     ws.geometry.white.add(d, size, q);
+    for (int l = 0; l < sys.loads; ++l) ws.coupled.given[l] += ws.loads.by_torque[l * ws.n_directions + d] * size;
     ws.decision.effort += abs(value(size)) * sqrt(value(ws.geometry.own[d]));
   };
   for (int p = 0; p < sys.prescribed; ++p)
@@ -26,7 +32,7 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   for (int d = 0; d < ws.n_directions; ++d) {
     const int c = d - int(sys.elements);
     int sign = 0;
-    if (c >= 0 && !ws.contact.loaded[c]) continue;
+    if (c >= 0 && (!ws.contact.loaded[c] || ws.loads.of[c] >= 0)) continue;
     if (c >= 0 && !ws.contact.compliant[c]) {
       if (candidate[c]) continue;
       sign = ws.contact.mode[c];

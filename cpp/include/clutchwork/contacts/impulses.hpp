@@ -158,6 +158,14 @@ bool stop_within_tolerance(Workspace<T>& ws, int located) {
       ws, [&](int c) { return ws.contact.mode[c] == locked && (c == located || !contact_one_way(ws, c)); });
 }
 
+/// A contact that follows a load and jams stops at once; the others that are locked stay so, but for freewheels.
+/// docs/theory/load-dependent.md, rule 4
+template <class T>
+bool stop_jammed(Workspace<T>& ws, int jammed) {
+  return least_impulses(
+      ws, [&](int c) { return c == jammed || (ws.contact.mode[c] == locked && !contact_one_way(ws, c)); });
+}
+
 /// Transmissions keep their rates together while prescribed speeds jump; x: mass-weighted.
 template <class T>
 void jump_beside(Workspace<T>& ws, T* x) {

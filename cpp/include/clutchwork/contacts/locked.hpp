@@ -5,6 +5,7 @@
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/dependent.hpp>
 #include <clutchwork/contacts/eliminate.hpp>
+#include <clutchwork/contacts/loaded_set.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -58,11 +59,29 @@ void resolve_direction(int rank, int nv, const T* rows, const int* order, const 
   }
 }
 
-/// Label each carrier with the lowest one of its set.
+/// Whether locked contacts follow loads.
+template <class T>
+bool holds_loads(const Workspace<T>& ws) {
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    if (ws.contact.mode[ws.sys.load_contact[l]] == locked) return true;
+  }
+  return false;
+}
+
+/// Label each carrier with the lowest one of its set; where some follow loads, which any torque may make, all are one.
 template <class T>
 void join_sets(Workspace<T>& ws, int* label) {
   const int nc = int(ws.sys.contacts);
   for (int a = 0; a < ws.held.n; ++a) label[a] = a;
+  if (ws.held.n_spare > 0 && holds_loads(ws)) {
+    int lowest = -1;
+    for (int a = 0; a < ws.held.n; ++a) {
+      if (is_rigid(ws, ws.held.contact[a])) continue;
+      if (lowest < 0) lowest = a;
+      label[a] = lowest;
+    }
+    return;
+  }
   for (int s = 0; s < ws.held.n_spare; ++s) {
     int lowest = -1;
     for (int a = 0; a < ws.held.n; ++a) {
@@ -105,7 +124,7 @@ void list_sets(Workspace<T>& ws, const int* label) {
       if (label_of(s) == root) add(ws.held.spare[s], s);
     }
     const int size = at - ws.held.set_first[ws.held.n_sets - 1];
-    if (!is_few(ws.sys) && size > ws.sys.set_size) ws.held.too_many = true;
+    if (!is_few(ws.sys) && ws.sys.loads == 0 && size > ws.sys.set_size) ws.held.too_many = true;
   }
   ws.held.set_first[ws.held.n_sets] = at;
 }
@@ -281,6 +300,11 @@ DependentSet<T> dependent_set(Workspace<T>& ws, int k, const T* carried, T noise
     for (int r = 0; r < rank; ++r) {
       set.column[i * rank + r] = i < rank ? T(i == r ? 1 : 0) : ws.held.tie[place[i] * nc + place[r]];
     }
+    if (ws.loads.of[c] >= 0) {
+      // a bound over its load, which is not known before the torques are
+      set.lower[i] = T(-infinity), set.upper[i] = T(infinity);
+      continue;
+    }
     set.lower[i] = -capacity_of(ws, c, forward) - noise;
     set.upper[i] = (contact_one_way(ws, c) ? freewheel_limit(ws, c) : capacity_of(ws, c, backward)) + noise;
   }
@@ -293,19 +317,42 @@ LimitLoad<T> limit_of(Workspace<T>& ws, const DependentSet<T>& set) {
   return {set, ws.set.tableau, ws.set.limit_x, ws.set.price, ws.set.basis, ws.set.place};
 }
 
-/// What set k has left of its limit load, as a share of the load: below zero it cannot hold.
+/// The loads without the torques of the locked contacts, from those with the torques of the carriers.
 template <class T>
-[[gnu::noinline]] T set_room(Workspace<T>& ws, int k, const T* carried, T noise) {
+void outer_loads(Workspace<T>& ws, const T* load, const T* carried) {
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    ws.loads.outer[l] = load[l];
+    for (int a = 0; a < ws.held.n; ++a)
+      ws.loads.outer[l] -= ws.loads.by_torque[l * ws.n_directions + ws.sys.elements + ws.held.contact[a]] * carried[a];
+  }
+}
+
+/// What set k has left of its limit load, as a share of the load: below zero it cannot hold. `load`: with the torques
+/// of the carriers.
+template <class T>
+[[gnu::noinline]] T set_room(Workspace<T>& ws, int k, const T* carried, T noise, const T* load) {
   const DependentSet<T> set = dependent_set(ws, k, carried, noise);
-  return limit_of(ws, set).solve() - T(1);
+  if (ws.sys.loads == 0 || !holds_loads(ws)) return limit_of(ws, set).solve() - T(1);
+  outer_loads(ws, load, carried);
+  LoadedLimit<T> limit = loaded_limit(ws, set, ws.held.set_member + ws.held.set_first[k], noise);
+  return solve_loaded(limit) - T(1);
 }
 
 /// Torques of all contacts of set k in place of those of its carriers: `give` takes contact and torque.
 template <class T, class Give>
 void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
+  const int* member = ws.held.set_member + ws.held.set_first[k];
+  if (ws.sys.loads > 0 && holds_loads(ws)) {
+    outer_loads(ws, ws.loads.now, carried);
+    LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
+    // what holds the largest multiple of the load holds the load in proportion
+    const T factor = solve_loaded(limit);
+    for (int i = 0; i < set.n; ++i) give(member[i], value(limit.size) > 0 ? limit.x[i] / factor : T(0));
+    return;
+  }
   Shares<T>{set, ws.set.deflection, ws.set.step, ws.set.residual, ws.set.matrix}.solve();
-  for (int i = 0; i < set.n; ++i) give(ws.held.set_member[ws.held.set_first[k] + i], set.x[i]);
+  for (int i = 0; i < set.n; ++i) give(member[i], set.x[i]);
 }
 
 /// Torques of the locked contacts, carriers given, by contact: `give` takes contact and torque.
@@ -323,15 +370,24 @@ CLUTCHWORK_INLINE void locked_torques(Workspace<T>& ws, const T* carried, Give&&
 template <class T>
 void break_set(Workspace<T>& ws, int k, const T* carried) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
+  const int* member = ws.held.set_member + ws.held.set_first[k];
+  auto force = [&](auto&& price) {
+    double most = 0;
+    for (int i = 0; i < set.n; ++i) most = larger(most, abs(value(price(i))));
+    for (int i = 0; i < set.n; ++i) {
+      const double own = value(price(i));
+      if (abs(own) > 1e-9 * most) ws.contact.forced[member[i]] = own > 0 ? backward : forward;
+    }
+  };
+  if (ws.sys.loads > 0 && holds_loads(ws)) {
+    outer_loads(ws, ws.loads.now, carried);
+    LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
+    solve_loaded(limit);
+    return force([&](int i) { return limit.price_of(i); });
+  }
   LimitLoad<T> limit = limit_of(ws, set);
   limit.solve();
-  double most = 0;
-  for (int i = 0; i < set.n; ++i) most = larger(most, abs(value(limit.price[i])));
-  for (int i = 0; i < set.n; ++i) {
-    const double price = value(limit.price[i]);
-    if (abs(price) > 1e-9 * most)
-      ws.contact.forced[ws.held.set_member[ws.held.set_first[k] + i]] = price > 0 ? backward : forward;
-  }
+  force([&](int i) { return limit.price[i]; });
 }
 
 /// Torques of the contacts that a decision has locked: what it gave them together, shared as everywhere else.
@@ -344,6 +400,14 @@ void share_decided(Workspace<T>& ws) {
     carried[a] = ws.decision.torque[ws.held.contact[a]];
     for (int s = 0; s < ws.held.n_spare; ++s)
       carried[a] += ws.held.tie[s * nc + a] * ws.decision.torque[ws.held.spare[s]];
+  }
+  // as if the carriers held all of it
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    const T* by_torque = ws.loads.by_torque + l * ws.n_directions + ws.sys.elements;
+    for (int a = 0; a < ws.held.n; ++a)
+      ws.loads.now[l] += by_torque[ws.held.contact[a]] * (carried[a] - ws.decision.torque[ws.held.contact[a]]);
+    for (int s = 0; s < ws.held.n_spare; ++s)
+      ws.loads.now[l] -= by_torque[ws.held.spare[s]] * ws.decision.torque[ws.held.spare[s]];
   }
   for (int k = 0; k < ws.held.n_sets; ++k) share_load(ws, k, carried, [&](int c, T x) { ws.decision.torque[c] = x; });
 }

@@ -6,6 +6,7 @@
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/full.hpp>
+#include <clutchwork/motion/loads.hpp>
 #include <clutchwork/motion/reduce.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/workspace.hpp>
@@ -168,14 +169,41 @@ CLUTCHWORK_INLINE void drift_torques(Form& form, const T* y, const T* velocity, 
   }
 }
 
+/// Loads, how fast they change, and how far from their ends the lines are with which contacts slip that follow them.
+template <class T>
+[[gnu::noinline]] void sense_loads(Workspace<T>& ws, Edge<T>& edge) {
+  loads_of(ws, ws.seen.torque, true, ws.loads.now);
+  loads_of(ws, ws.seen.drift, false, ws.loads.drift);
+  for (int l = 0; l < ws.sys.loads; ++l) edge.load[l] = ws.loads.now[l], edge.load_drift[l] = ws.loads.drift[l];
+  for (int i = 0; i < ws.loads.n_sliding; ++i) {
+    const int l = ws.loads.sliding[i];
+    T by_load = T(0);
+    edge.clearance[l] = line_clearance(ws, l, edge.rate[ws.loads.branch[i]], by_load);
+    edge.closing[l] = by_load * ws.loads.drift[l];
+  }
+}
+
+/// Size of the time derivative of the capacity of a contact that follows a load.
+template <class T>
+T load_swing(const Workspace<T>& ws, int c, T torque) {
+  const int l = ws.loads.of[c];
+  const Bound<T> bound = bound_of(ws, c, value(torque) > 0 ? backward : forward, T(0), 0);
+  return abs(bound.slope[bound.line_at(ws.loads.now[l])] * ws.loads.drift[l]);
+}
+
 /// Multipliers of the locked contacts, their drift and their capacities there.
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void sense(Form& form, const T* y, const T* velocity, const T* d, Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
   const int m = ws.held.n;
-  if constexpr (Form::full) full_drifts(form, d, edge);
-  if (m == 0) return;
+  if constexpr (Form::full) {
+    full_drifts(form, d, edge);
+    if (m == 0 && ws.loads.n_sliding == 0) return;
+  } else {
+    if (m == 0) return;
+  }
   drift_torques(form, y, velocity, d, edge);
+  if constexpr (Form::full) sense_loads(ws, edge);
   T size = T(0);
   for (int k = 0; k < ws.n_branches; ++k) size += abs(ws.seen.torque[k]);
   if constexpr (Form::full) {
@@ -190,10 +218,14 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* y, const T* velocity, const T*
     edge.swing[a] = choose(
         load_bends(ws, ws.held.contact[a]), [&] { return capacity_swing(ws, ws.held.contact[a], edge.capacity[a]); },
         [] { return T(0); });
+    if constexpr (Form::full) {
+      const int c = ws.held.contact[a];
+      if (ws.loads.of[c] >= 0) edge.swing[a] = load_swing(ws, c, edge.multiplier[a]);
+    }
   }
   if constexpr (!has_lanes<T>) {
     for (int k = 0; k < ws.held.n_sets; ++k) [[unlikely]]
-      edge.room[k] = set_room(ws, k, edge.multiplier, edge.noise[0]);
+      edge.room[k] = set_room(ws, k, edge.multiplier, edge.noise[0], edge.load);
   }
 }
 
@@ -202,7 +234,8 @@ template <class T>
 double room_ahead(Workspace<T>& ws, int k, const Edge<T>& edge, double time) {
   T* carried = ws.held.carried;
   for (int a = 0; a < ws.held.n; ++a) carried[a] = edge.multiplier[a] + T(time) * edge.drift[a];
-  return value(set_room(ws, k, carried, edge.noise[0]));
+  for (int l = 0; l < ws.sys.loads; ++l) ws.loads.drift[l] = edge.load[l] + T(time) * edge.load_drift[l];
+  return value(set_room(ws, k, carried, edge.noise[0], ws.loads.drift));
 }
 
 /// v = Z z + Y u.

@@ -116,8 +116,38 @@ void whole_torque(const FullForm<T>& form, const Whole<S>& e, int k) {
   S* rates = e.d + form.nz() + b.state;
   if (b.law < 0) return element_torques(ws, b, e.rate + k, own, input, rates, e.torque + k);
   const S* law_input = e.input + (b.law_input - ws.in.u);
+  // what follows a load is solved for with all torques
+  if (b.follows) {
+    e.torque[k] = S(T(0));
+    return;
+  }
   e.torque[k] = b.compliant ? bending_torque<most_own_states, T, S>(ws, b, e.rate[k], own, input, law_input, rates)
                             : sliding_torque<T, S>(ws, b, e.rate[k], input, law_input);
+}
+
+/// Torques of the contacts in slip that follow loads: each is a line over its load, and the loads are sums of all
+/// torques. docs/theory/load-dependent.md (6)
+template <class T, class S>
+[[gnu::noinline]] void whole_loads(const FullForm<T>& form, const Whole<S>& e) {
+  const Workspace<T>& ws = form.ws;
+  const int m = ws.loads.n_sliding, nd = ws.n_directions, np = int(ws.sys.prescribed);
+  for (int i = 0; i < m; ++i) {
+    const int l = ws.loads.sliding[i], k = ws.loads.branch[i], line = ws.loads.line[l];
+    const Branch<T>& b = ws.branch[k];
+    const T *by_branch = ws.loads.by_branch + l * nd, sign = T(b.sign);
+    const Bound<S> bound = contact_bound<T, S>(b.kind, b.params, S(sign) * e.rate[k], e.input + (b.input - ws.in.u),
+                                               b.piece, ws.sys.points, b.sign);
+    S given = S(T(0));
+    for (int j = 0; j < ws.n_branches; ++j) add_times(by_branch[j], e.torque[j], given);
+    for (int p = 0; p < np; ++p) given += S(ws.loads.by_prescribed[l * np + p] * ws.in.prescribed_slope[p]);
+    const S slope = bound.slope[line] * S(sign);
+    for (int j = 0; j < m; ++j) e.coupling[i * m + j] = slope * S(by_branch[ws.loads.branch[j]]) + S(T(i == j ? 1 : 0));
+    e.followed[i] = -(slope * given + bound.offset[line] * S(sign));
+  }
+  // a singular one gives no finite torque, which ends the run
+  factor_lu(m, e.coupling, e.pivot);
+  solve_lu(m, e.coupling, e.pivot, e.followed);
+  for (int i = 0; i < m; ++i) e.torque[ws.loads.branch[i]] = e.followed[i];
 }
 
 /// Heats of the branches; the first way of an element has that of all.
@@ -193,6 +223,7 @@ template <class T, class S>
   for (int k = 0; k < ws.n_branches; ++k) {
     if (ws.branch[k].ways > 0) whole_torque(form, e, k);
   }
+  if (ws.loads.n_sliding > 0) whole_loads(form, e);
   for (int k = 0; k < ws.n_branches; ++k) {
     for (int i = rows.first[k]; i < rows.first[k + 1]; ++i) add_times(rows.val[i], e.torque[k], e.d[rows.col[i]]);
   }

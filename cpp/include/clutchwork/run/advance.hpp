@@ -82,6 +82,7 @@ void start_contacts(Workspace<T>& ws) {
 template <class T>
 bool start(Workspace<T>& ws) {
   if (!prepare_geometry(ws)) return false;
+  prepare_loads(ws);
   ws.time = ws.options.t_start;
   ws.statistics = {};
   ws.events.n = 0;

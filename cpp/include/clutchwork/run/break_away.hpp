@@ -50,6 +50,7 @@ void torques_at(Form& form, Step<Form>& step, double s) {
   if (ws.sys.prescribed > 0) input_slopes_at(ws, t);
   observe(form, t, step.point(), step.slope());
   multipliers(ws, ws.seen.torque, true, ws.seen.carried);
+  if (ws.sys.loads > 0) loads_of(ws, ws.seen.torque, true, ws.loads.now);
   ++ws.statistics.locations;
 }
 
@@ -116,6 +117,21 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
   hit = {Hit::multiplier, who, s, -1};
 }
 
+/// The same for a set with contacts that follow loads: its limit load has kinks where a load changes its sign. Far from
+/// it at both ends, ahead of both and in the middle, it is taken to be far from it in between.
+template <class Form, class Integrator>
+[[gnu::noinline]] void find_loaded_limit(Form& form, Step<Form>& step, int k, double least, Hit& hit) {
+  auto& ws = form.ws;
+  if (!step.dense) Integrator::prepare_dense(form, step);
+  auto f = [&](double s) {
+    torques_at(form, step, s);
+    return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
+  };
+  if (least >= ample - 1 && f(0.5) >= ample - 1) return;
+  const double s = first_dip(f, value(ws.here.room[k]), value(ws.there.room[k]), hit.s);
+  if (is_first(hit, s)) hit = {Hit::set, k, s, -1};
+}
+
 /// Where a dependent set of locked contacts reaches its limit load.
 template <class Form, class Integrator>
 [[gnu::noinline]] void find_set_limit(Form& form, Step<Form>& step, Hit& hit) {
@@ -126,13 +142,17 @@ template <class Form, class Integrator>
     const double coming = room_ahead(ws, k, ws.here, step.h), gone = room_ahead(ws, k, ws.there, -step.h);
     const double change = larger(abs(after - before), larger(before - coming, after - gone));
     bool bends = false;
+    if (ws.sys.loads > 0 && holds_loads(ws)) {
+      find_loaded_limit<Form, Integrator>(form, step, k, smaller(smaller(before, after), smaller(coming, gone)), hit);
+      continue;
+    }
     for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
       bends = bends || load_bends(ws, ws.held.set_member[i]);
     if (!bends && smaller(before, after) > change) continue;
     if (!step.dense) Integrator::prepare_dense(form, step);
     auto f = [&](double s) {
       torques_at(form, step, s);
-      return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0]));
+      return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
     };
     const double s = first_crossing(f, before, after, hit.s);
     if (is_first(hit, s)) hit = {Hit::set, k, s, -1};

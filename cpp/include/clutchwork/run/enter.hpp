@@ -95,6 +95,7 @@ template <class T>
 bool reduce_motion(Workspace<T>& ws) {
   const bool few = is_few(ws.sys);
   map_prescribed(ws);
+  if (ws.sys.loads > 0) map_loads(ws);
   ws.held.mapped = few && !ws.reduced.is_sparse;
   if (ws.held.mapped) map_multipliers(ws);
   if (few && ws.reduced.is_sparse && !eliminate_locked(ws)) return false;

@@ -276,6 +276,29 @@ void find_load(Form& form, Step<Form>& step, Hit& hit) {
   }
 }
 
+/// Where a load passes to the other line of the bound with which its contact slips. docs/theory/load-dependent.md, rule
+/// 3
+template <class Form, class Integrator>
+[[gnu::noinline]] void find_flip(Form& form, Step<Form>& step, Hit& hit) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  for (int i = 0; i < ws.loads.n_sliding; ++i) {
+    const int l = ws.loads.sliding[i], k = ws.loads.branch[i];
+    const double start = value(ws.here.clearance[l]), end = value(ws.there.clearance[l]);
+    const double drift = step.h * larger(abs(value(ws.here.closing[l])), abs(value(ws.there.closing[l])));
+    if (smaller(start, end) > larger(abs(end - start), drift)) continue;
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    const double noise = 1e-12 * torque_size(ws);
+    auto f = [&](double s) {
+      torques_at(form, step, s);
+      T by_load = T(0);
+      return noise + value(line_clearance(ws, l, ws.seen.rate[k], by_load));
+    };
+    const double s = first_crossing(f, noise + start, noise + end, hit.s);
+    if (is_first(hit, s)) hit = {Hit::flip, l, s, -1};
+  }
+}
+
 /// First guard that turns negative inside the step.
 template <class Form, class Integrator>
 CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
@@ -291,6 +314,7 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   if (ws.held.n_driven > 0) find_parting<Form, Integrator>(form, step, hit);
   if (ws.guard.n_faulty > 0) find_fault<Form, Integrator>(form, step, hit);
   if (ws.guard.n_bounded > 0) find_exit<Form, Integrator>(form, step, hit);
+  if (ws.loads.n_sliding > 0) find_flip<Form, Integrator>(form, step, hit);
   if (ws.guard.n_near > 0) find_load<Form, Integrator>(form, step, hit);
   return hit;
 }

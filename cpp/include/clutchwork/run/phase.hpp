@@ -269,6 +269,7 @@ class Phase : public Pace<typename Form::Scalar> {
 
   /// Guards that need no decision: the next piece of a law or a table, an open contact that passes zero.
   CLUTCHWORK_INLINE bool passes(const Hit& hit) {
+    if (hit.what == Hit::flip) return passes_flip(hit.index);
     if (hit.what == Hit::process) return passes_process(hit);
     const LineGuard* guard = hit.what == Hit::line ? &ws_.guard.line[hit.index] : nullptr;
     const bool law = hit.what == Hit::law || (guard != nullptr && guard->kind == LineGuard::turn);
@@ -294,6 +295,25 @@ class Phase : public Pace<typename Form::Scalar> {
     if (moved) return false;
     look_here();
     h_ = ws_.last_step;
+    return true;
+  }
+
+  /// A load changes to the other line, with the same torque.
+  bool passes_flip(int l) {
+    const int c = ws_.sys.load_contact[l];
+    if (events_crowd(ws_, int(ws_.sys.elements) + c)) {
+      leave(Status::zeno);
+      return false;
+    }
+    ws_.loads.line[l] = 1 - ws_.loads.line[l];
+    if (!is_balanced(ws_, ws_.here.rate)) {
+      ws_.loads.jammed = c;
+      hand_over(Cause::jam, c);
+      return true;
+    }
+    look_here();
+    // no restart follows that would shorten it
+    h_ = ws_.last_step = smaller(ws_.last_step, larger(h_, reach_));
     return true;
   }
 

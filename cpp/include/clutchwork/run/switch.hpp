@@ -25,6 +25,7 @@ template <class T>
 T torque_after(const Workspace<T>& ws, int c) {
   const int d = int(ws.sys.elements) + c;
   if (!ws.contact.loaded[c]) return T(0);
+  if (ws.loads.of[c] >= 0) return ws.decision.torque[c];
   const T held = ws.contact.mode[c] == locked ? ws.decision.torque[c] : T(0);
   if (ws.contact.mode[c] == locked && !ws.contact.compliant[c]) return held;
   const Branch<T> b = make_branch(ws, d, ws.contact.mode[c]);
@@ -40,7 +41,7 @@ void accelerations_after(Workspace<T>& ws) {
   for (int c = 0; c < nc; ++c) stuck[c] = ws.contact.mode[c] == locked;
   free_motion(ws, stuck, q);
   for (int c = 0; c < nc; ++c) {
-    const bool holds = ws.contact.mode[c] == locked && ws.contact.loaded[c];
+    const bool holds = (ws.contact.mode[c] == locked && ws.contact.loaded[c]) || ws.loads.of[c] >= 0;
     if (holds) ws.geometry.white.add(ne + c, ws.decision.torque[c], q);
   }
   for (int c = 0; c < nc; ++c) out[c] = ws.contact.mode[c] == locked ? T(0) : slip_acceleration(ws, c, q);
@@ -57,6 +58,9 @@ Status settle(Workspace<T>& ws, int located) {
         return Status::running;
       case Settled::no:
         return Status::no_mode;
+      case Settled::unbalanced:
+        ws.detail.component = verdict.contact < 0 ? -1 : int(ws.sys.elements) + verdict.contact;
+        return Status::unbalanced;
       case Settled::jams:
         ws.detail.component = int(ws.sys.elements) + verdict.contact;
         return Status::jammed;
@@ -96,7 +100,14 @@ Status decide(Workspace<T>& ws, bool at_start) {
   for (int c = 0; at_start && c < ws.sys.contacts; ++c) {
     ws.contact.impulse[c] = ws.contact.mode[c] == locked && ws.happened.mode[c] != locked;
   }
-  Status status = settle(ws, located);
+  Status status = ws.loads.jammed < 0 ? settle(ws, located) : Status::unbalanced;
+  for (int round = 0; status == Status::unbalanced && round < ws.sys.loads; ++round) {
+    const int c = ws.loads.jammed >= 0 ? ws.loads.jammed : ws.detail.component - int(ws.sys.elements);
+    ws.loads.jammed = -1;
+    if (c < 0 || !stop_jammed(ws, c)) return status;
+    ws.happened.cause = Cause::jam, ws.happened.contact = c;
+    status = settle(ws, -1);
+  }
   if (status == Status::running && stops_short(ws, located)) {
     if (!stop_within_tolerance(ws, located)) return Status::no_mode;
     see_speeds(ws);

@@ -14,7 +14,7 @@ inline bool is_few(const System& s) { return s.speeds <= few_speeds || s.transmi
 /// Numbers of things in a system, by which arrays are sized; for few speeds the matrices are whole.
 struct Sizes {
   std::int64_t speeds, prescribed, supplies, meters, states, shared, nodes, elements, contacts, directions, references,
-      signals, processes, transmissions;
+      signals, processes, transmissions, loads;
   bool few;
   bool full;                ///< it runs in the full form
   std::int64_t spares;      ///< most locked contacts that can depend on others
@@ -40,12 +40,15 @@ struct Sizes {
         directions(s.elements + s.contacts),
         references(s.n_input_refs + s.prescribed),
         signals(s.inputs),
+        loads(s.loads),
         processes(s.processes),
         transmissions(s.transmissions),
         few(is_few(s)),
         full(s.full != nullptr && s.full[0] != 0) {
     const auto nv = speeds, nc = contacts;
     spares = few ? (nc > 1 || transmissions > 0 ? nc : 0) : s.spares, set = few ? spares : s.set_size;
+    // those that follow loads make one set of all that is locked
+    if (loads > 0) set = nc;
     factor = few ? nv * (nv + 1) / 2 : s.factor_room, white = few ? directions * nv : s.direction_room;
     mobility = few ? nc * (nc + 1) / 2 : s.mobility_room;
     expansion = few ? nv * nv : s.expansion_room, rate = few ? directions * nv : s.rate_room;

@@ -90,14 +90,18 @@ struct SetMemory {
   T *tableau = nullptr, *limit_x = nullptr, *price = nullptr;
   T *deflection = nullptr, *step = nullptr, *residual = nullptr, *matrix = nullptr;
   int *basis = nullptr, *place = nullptr;
+  T *low = nullptr, *high = nullptr;                               ///< where members follow loads: bounds
+  int *follower = nullptr, *line = nullptr, *best_line = nullptr;  ///< and which they are, and their lines
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    const auto m = n.set;
+    const auto m = n.set, more = 2 * n.loads, wide = m + more + 1;
     a.scratch(p.column, m * m), a.scratch(p.load, m), a.scratch(p.lower, m), a.scratch(p.upper, m), a.scratch(p.x, m);
-    a.scratch(p.tableau, m * (m + 1)), a.scratch(p.limit_x, m + 1), a.scratch(p.price, m + 1);
+    a.scratch(p.tableau, (m + more) * wide), a.scratch(p.limit_x, wide), a.scratch(p.price, wide);
     a.scratch(p.deflection, m), a.scratch(p.step, m), a.scratch(p.residual, m), a.scratch(p.matrix, m * m);
-    a.take(p.basis, m), a.take(p.place, m + 1);
+    a.take(p.basis, m + more), a.take(p.place, wide);
+    a.scratch(p.low, more > 0 ? wide : 0), a.scratch(p.high, more > 0 ? wide : 0), a.take(p.follower, n.loads);
+    a.take(p.line, more), a.take(p.best_line, more);
   }
 };
 

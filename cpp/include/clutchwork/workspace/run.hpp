@@ -16,20 +16,24 @@ struct LineGuard {
 /// What the guards need at one end of a step.
 template <class T>
 struct Edge {
-  T* rate;        ///< rate of each branch
-  T* slope;       ///< its time derivative
-  T* multiplier;  ///< torque of each locked contact
-  T* drift;       ///< its time derivative
-  T* capacity;    ///< static torque of each locked contact
-  T* swing;       ///< size of its time derivative where its load bends over time, else zero
-  T* noise;       ///< round-off of the torque of each locked contact
-  T* room;        ///< what each dependent set has left of its limit load, as a share of the load
+  T* rate;               ///< rate of each branch
+  T* slope;              ///< its time derivative
+  T* multiplier;         ///< torque of each locked contact
+  T* drift;              ///< its time derivative
+  T* capacity;           ///< static torque of each locked contact
+  T* swing;              ///< size of its time derivative where its load bends over time, else zero
+  T* noise;              ///< round-off of the torque of each locked contact
+  T *load, *load_drift;  ///< each load, and its time derivative
+  T *clearance,
+      *closing;  ///< of each load whose contact slips: how far its line is above the other; how fast that changes
+  T* room;       ///< what each dependent set has left of its limit load, as a share of the load
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.rate, n.directions), a.take(p.slope, n.directions), a.take(p.multiplier, n.contacts);
     a.take(p.drift, n.contacts), a.take(p.capacity, n.contacts), a.take(p.swing, n.contacts);
-    a.take(p.noise, n.contacts), a.take(p.room, n.contacts);
+    a.take(p.noise, n.contacts), a.take(p.room, n.contacts), a.take(p.load, n.loads), a.take(p.load_drift, n.loads),
+        a.take(p.clearance, n.loads), a.take(p.closing, n.loads);
   }
 };
 

@@ -62,6 +62,7 @@ struct Branch {
   int sign;           ///< direction of slip of a contact
   bool pressed;       ///< a contact with a load; a freewheel without one still blocks
   bool compliant;     ///< a contact whose law never sticks: smooth over signed slip
+  bool follows;       ///< a contact whose torque follows a load
   bool shaped;        ///< a contact whose torque per load is not the coefficient itself
 };
 
