@@ -86,7 +86,7 @@ def test_a_corner_at_a_constant_speed():
     ("values", "words"),
     [
         ({"polygon": True}, "pitch is missing"),
-        ({"polygon": True, "pitch": 0.01, "teeth_input": 2}, "teeth_input is no"),
+        ({"polygon": True, "pitch": 0.01, "teeth_input": 2}, "teeth_input does not make a polygon"),
     ],
 )
 def test_mistakes(values, words):

@@ -42,7 +42,7 @@ class Chain(Component):
             found.append(("pitch", "is missing", "give the length of a link, or leave out `polygon`"))
         few = [name for name in ("teeth_input", "teeth_output") if getattr(self, name) < 3]
         if self.polygon and few:
-            found.append((few[0], "is no polygon", "give at least 3 teeth, or leave out `polygon`"))
+            found.append((few[0], "does not make a polygon", "give at least 3 teeth, or leave out `polygon`"))
         return found
 
     def exact_ratio(self) -> Fraction:
