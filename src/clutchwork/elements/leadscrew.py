@@ -13,7 +13,7 @@ from clutchwork.elements.rack_mesh import RackMesh
 
 @component(Role.COMPOSITE)
 class Leadscrew(Heating):
-    """Screw that moves a nut with its mass, with the sliding friction of the thread; self-locking where its lead is small.
+    """Screw that moves a mass by its nut, with the friction of its thread; self-locking where its lead is small.
 
     Use it for lifting tables, presses and linear axes. One turn of the screw moves the mass by the lead. The lead angle
     is `atan(lead/(2 pi radius))`; efficiencies as of a `WormGear`.
