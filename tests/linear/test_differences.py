@@ -81,7 +81,7 @@ def moving(cls: Any) -> cw.Driveline:
 
 # the slope of a road follows from its position and cannot be pushed; friction at its limit can be pushed one way alone
 NOT_SMOOTH = (cw.Road, cw.JenkinsElement)
-SMOOTH = [cls for cls in samples.acting(*samples.ELEMENT_ROLES) if cls not in (*NOT_SMOOTH, cw.VariableRatio)]
+SMOOTH = [cls for cls in samples.declared(*samples.ELEMENT_ROLES) if cls not in NOT_SMOOTH]
 
 
 @pytest.mark.parametrize("cls", SMOOTH, ids=lambda cls: cls.__name__)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +19,6 @@ from clutchwork.linear.notes import notes
 from clutchwork.linear.own_states import own_states
 from clutchwork.linear.quantity import Quantity
 from clutchwork.linear.result import Linear
-from clutchwork.model.transmissions import is_transmission
 from clutchwork.results.channels import channels
 
 if TYPE_CHECKING:
@@ -59,21 +58,13 @@ def linearise(
     """
     instant = instant_of(model, at)
     motion, system = Motion(instant), instant.system
-    problems, left_out = list(_varying(system)), list[str]()
+    problems, left_out = list[str](), list[str]()
     given = chosen_inputs(system, inputs, problems)
     given = _free_inputs(motion, given, inputs is None, problems, left_out)
     names = chosen_outputs(system, outputs, _default_outputs(instant), problems)
     if problems:
         raise UseError(CALL, problems)
     return _made(motion, given, names, left_out)
-
-
-def _varying(system: System) -> Iterator[str]:
-    """Ratios that vary, whose linear equations nobody has written down yet."""
-    for component in system.elements:
-        if is_transmission(component):
-            reason = "has a ratio that varies, which cannot be linearised"
-            yield f"{component.name} {reason}; put a Gear of its ratio in its place"
 
 
 def _made(motion: Motion, given: list[Given], names: list[str], left_out: list[str]) -> Linear:
@@ -115,8 +106,14 @@ def _free_inputs(
 ) -> list[Given]:
     """Inputs without prescribed speeds that locked contacts hold."""
     tied = {int(k) for k in np.flatnonzero(np.abs(motion.free.ties).max(axis=0, initial=0.0) > ROUND_OFF)}
-    kept = [one for one in given if one.motion not in tied]
+    # a ratio that moves acts by its slope too
+    turning = np.abs(motion.local.split(motion.local.ratio)[2][motion.ties.rate != 0.0]).max(axis=0, initial=0.0)
+    ratios = {int(k) for k in np.flatnonzero(turning)}
+    kept = [one for one in given if one.motion not in tied and one.signal not in ratios]
     for one in given:
+        if one.signal in ratios:
+            reason = f"{one.name} acts by its slope too: give the ratio by a RatioActuator and take its command"
+            left_out.append(f"{reason}; it is left out") if default else problems.append(f"inputs: {reason}")
         if one.motion in tied:
             reason = f"{one.name} cannot change by itself: locked contacts hold that motion"
             left_out.append(f"{reason}; it is left out") if default else problems.append(f"inputs: {reason}")

@@ -77,6 +77,11 @@ class Followers:
     over_kept: Array  # one row for each
 
 
+def apart(count: int) -> Followers:
+    """All of them stay."""
+    return Followers(np.arange(count), np.eye(count))
+
+
 def followers(rates: Array) -> Followers:
     """Keep the first independent ones of rows; a row that is a combination of those before follows them from then on.
 
@@ -103,4 +108,6 @@ def preference(instant: Instant) -> Sequence[int]:
     """Independent speeds in the order in which the model names their shafts: the first ones stay."""
     names = [node.name for node in instant.system.nodes]
     places = [names.index(name) for name in instant.system.independent]
-    return [int(i) for i in np.argsort(places, kind="stable")]
+    # those without inertia that follow from transmissions go first
+    following = {int(i) for i in instant.system.transmission_speed}
+    return sorted(range(len(places)), key=lambda i: (i in following, places[i]))

@@ -2,6 +2,7 @@
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/kinds.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/workspace.hpp>
@@ -10,7 +11,8 @@
 namespace clutchwork {
 
 /// Sizes of the matrix of derivatives. Rows: torque of each direction, rate of each state, static torque of each
-/// contact, most torque of each contact, then least one, value of each flow. Columns: rate of each direction, each
+/// contact, most torque of each contact, then least one, value of each flow, ratio of each transmission, then its time
+/// derivative with the rates of what it depends on held. Columns: rate of each direction, each
 /// state, each signal, then the value itself.
 struct LocalSizes {
   std::int64_t directions, states, contacts, signals;
@@ -21,7 +23,7 @@ struct LocalSizes {
         states(s.states),
         contacts(s.contacts),
         signals(s.inputs),
-        rows(directions + states + 3 * contacts + s.flows),
+        rows(directions + states + 3 * contacts + s.flows + 2 * s.transmissions),
         columns(directions + states + signals + 1) {}
 };
 
@@ -67,6 +69,7 @@ class LocalDerivatives {
     }
     for (int h = 0; h < sys_.heats; ++h) fill_heat(h);
     for (int f = 0; f < sys_.flows; ++f) fill_flow(f);
+    for (int a = 0; a < sys_.transmissions; ++a) fill_ratio(a);
     for (int i = 0; i < sys_.processes; ++i) fill_process(i);
     for (int c = 0; c < sys_.contacts; ++c) fill_bounds(c);
   }
@@ -156,6 +159,30 @@ class LocalDerivatives {
       value_in(row) -= value(factor * rate[w] * torque[w]);
     }
     if (!valued) value_in(row) = before;
+  }
+
+  /// Ratio of transmission a, and its time derivative with the rates of its states and inputs held.
+  void fill_ratio(int a) {
+    using D = Dual<S, 1>;
+    const int k = ws_.branch_of[first_of(ws_, a)];
+    const Branch<T>& b = ws_.branch[k];
+    Point at;
+    place(at, b, ws_.seen.rate + k);
+    visit_transmission(ws_, a, [&](auto tag, const auto& p) {
+      using E = typename decltype(tag)::type;
+      D own[E::states > 0 ? E::states : 1], input[E::inputs > 0 ? E::inputs : 1];
+      if constexpr (E::states > 0)
+        E::state_rates(p, At<S>{at.rate[0], at.own, at.input, b.piece, sys_.points, at.rate}, at.own_rates);
+      for (int i = 0; i < E::states; ++i) own[i] = D(at.own[i]), own[i].d[0] = S(value(at.own_rates[i]));
+      for (int i = 0; i < E::inputs; ++i) {
+        input[i] = D(at.input[i]);
+        input[i].d[0] = S(value(slope_of_input(ws_, int(b.input - ws_.in.u) + i)));
+      }
+      const D ratio = E::ratio(p, At<D>{D(S(0)), own, input, b.piece, sys_.points});
+      const std::int64_t first = n_.rows - 2 * sys_.transmissions;
+      add(out_ + (first + a) * n_.columns, T(1), ratio.v, b);
+      add(out_ + (first + sys_.transmissions + a) * n_.columns, T(1), ratio.d[0], b);
+    });
   }
 
   void fill_branch(int k) {
