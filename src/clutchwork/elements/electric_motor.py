@@ -82,9 +82,16 @@ class ElectricMotor(Heating):
     efficiencies: Sequence[Sequence[float]] | None = numbers(
         "1", "map of efficiencies, a row over the torques for each speed", above=0.0, default=None
     )
-    derating: Points | None = curve("K", "1", "factor on all limits over the temperature", at_least=0.0, default=None)
+    derating: Points | None = curve(
+        "K",
+        "1",
+        "factor on all limits over the temperature",
+        at_least=0.0,
+        default=None,
+        example=((290.0, 1.0), (400.0, 0.5)),
+    )
     temperature: SignalLike | None = signal(
-        "K", "temperature that derates it, that of its node by default", default=None, otherwise=293.15
+        "K", "temperature that derates it, that of its node by default", default=None, otherwise=293.15, example=300.0
     )
     thermal_mass: float | None = param("J/K", "heat capacity of a winding of its own", default=None, above=0.0)
     cooling: float = param("W/K", "conductance from that to the ambient", default=0.0, at_least=0.0)
@@ -124,7 +131,7 @@ class ElectricMotor(Heating):
         if not given:
             return [] if len(axes) == 2 else [("speeds", "belongs to a map", "give losses or efficiencies")]
         found = shape_problems(given[0], getattr(self, given[0]), self.speeds, self.torques)
-        if not found and given == ["efficiencies"] and any(eta > 1.0 for row in self.efficiencies for eta in row):
+        if not found and any(eta > 1.0 for row in self.efficiencies or () for eta in row):
             found.append(("efficiencies", "exceeds 1", "give losses where something else drives it"))
         return found
 

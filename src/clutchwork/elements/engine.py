@@ -129,7 +129,7 @@ class Engine(Component):
         missing = [name for name, value in parts.items() if value is None]
         if missing:
             return [(missing[0], "is missing", "give speeds, throttles and torques")]
-        if self.throttles[0] != 0.0 or len(self.throttles) < 2:  # type: ignore[index]
+        if tuple(self.throttles or ())[:1] != (0.0,) or len(self.throttles or ()) < 2:
             return [("throttles", "must start at 0 and have two numbers", "give the closed throttle too")]
         return shape_problems("torques", self.torques, self.speeds, self.throttles)
 
