@@ -19,7 +19,7 @@ KNOWN = parts_page.declared()
 # what stands inside of others, or has no counterpart as a part of its own
 INSIDE = {
     *("AirDrag", "Grade", "RollingResistance", "PlateContact", "JenkinsElement", "WetDrag", "Flyweights", "OilFlow"),
-    *("BeltContact", "PolygonSprocket", "EngineTorque", "Displacement", "PressureValve"),
+    *("BeltContact", "PolygonSprocket", "EngineTorque", "MotorTorque", "Displacement", "PressureValve"),
     *("DiaphragmSpring", "TorqueLimiter", "CentrifugalClutch", "FundamentalClutch", "Wear"),
 }
 
