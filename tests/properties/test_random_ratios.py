@@ -1,7 +1,7 @@
 """Random drivelines of three clutches with a ratio that varies, to a shaft of its own or across two that there are.
 
 Sequences of events at a loose tolerance against a tight one, the ratio, the energy, and some of them against
-enumeration and SciPy's DOP853, with which 130 of them were compared once.
+enumeration and SciPy's DOP853.
 """
 
 from __future__ import annotations
