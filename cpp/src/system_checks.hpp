@@ -223,6 +223,12 @@ inline bool element_fits(const System& s, std::int64_t i, std::int64_t& states) 
   return good;
 }
 
+/// Whether a torque element has the position of a stop.
+inline bool is_place(const System& s, std::int64_t i) {
+  return i >= 0 && i < s.elements &&
+         visit_torque(s.element_kind[i], [](auto tag) { return decltype(tag)::type::states > 0; });
+}
+
 /// Whether a contact and its law lie inside the pools; their states.
 inline bool contact_fits(const System& s, std::int64_t i, std::int64_t& states) {
   bool good = true;
@@ -244,6 +250,10 @@ inline bool contact_fits(const System& s, std::int64_t i, std::int64_t& states) 
   });
   visit_law_curves(s.contact_law[i], [&](int at) { good = good && curve_fits(s, s.contact_law_param[i] + at); });
   if (!good || !tables_fit(s, i)) return false;
+  const bool stops =
+      visit_contact(s.contact_kind[i], [](auto tag) { return StopContact<typename decltype(tag)::type>; });
+  good = good && (stops ? is_place(s, s.contact_place[i]) : s.contact_place[i] == -1);
+  if (!good) return false;
   states = states_of(s.contact_kind[i], s.contact_law[i], s.params + s.contact_law_param[i]);
   return s.contact_state[i] + states <= s.states - s.shared;
 }

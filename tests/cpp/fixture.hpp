@@ -155,7 +155,7 @@ class Model {
     own.resize(std::size_t(law_states<L>(law)));
     contact_input_.push_back(put(refs_, signals)), contact_law_input_.push_back(put(refs_, law_signals));
     contact_state_.push_back(put(state_, own));
-    contact_tolerance_.push_back(tolerance), contact_initial_.push_back(locked);
+    contact_tolerance_.push_back(tolerance), contact_initial_.push_back(locked), contact_place_.push_back(-1);
     return int(contacts_.size()) - 1;
   }
   /// A state that any component may read as offset + scale * state.
@@ -280,7 +280,7 @@ class Model {
         add(element_input_);
     put(contact_rate), add(rates(contacts_, given_of, np));
     add(contact_kind_), add(contact_param_), add(contact_input_), add(contact_law_), add(contact_law_param_);
-    add(contact_law_input_), add(contact_state_), add(contact_tolerance_), add(contact_initial_);
+    add(contact_law_input_), add(contact_state_), add(contact_tolerance_), add(contact_initial_), add(contact_place_);
     add(flow_kind_), add(flow_param_), add(flow_input_), add(flow_from_), add(flow_to_);
     add(process_kind_), add(process_param_), add(process_input_), add(process_state);
     add(heat_direction), add(heat_to_), add(heat_share_), add(shared_scale_), add(shared_offset_);
@@ -302,7 +302,8 @@ class Model {
   Numbers contact_tolerance_, shared_, shared_scale_, shared_offset_, heat_share_;
   Indices source_, refs_, input_first_, input_count_, element_kind_, element_param_, element_state_, element_input_;
   Indices element_way_, contact_kind_, contact_law_, contact_param_, contact_law_param_, contact_input_, contact_state_;
-  Indices contact_law_input_, contact_initial_, flow_kind_, flow_param_, flow_input_, flow_from_, flow_to_, heat_to_;
+  Indices contact_law_input_, contact_initial_, contact_place_, flow_kind_, flow_param_, flow_input_, flow_from_,
+      flow_to_, heat_to_;
   Indices process_kind_, process_param_, process_input_, process_state_;
   std::vector<Pair> elements_, contacts_, heats_;
 };

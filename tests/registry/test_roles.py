@@ -14,7 +14,8 @@ from clutchwork.elements.bases.heating import Heating
 from support import samples
 from support.declarations import Cam, Coil, EddyBrake, OiledCoil
 
-TORQUES = samples.acting(Role.TORQUE)
+# what measures alone has no work
+TORQUES = [cls for cls in samples.acting(Role.TORQUE) if cls is not cw.Displacement]
 NEW = [EddyBrake, Coil, OiledCoil, Cam]
 # so that they do what they are for within a moment
 VALUES = {

@@ -14,8 +14,8 @@ from clutchwork.base.kept import kept
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.node import Component, Domain, Node
 from clutchwork.declare.ports import Direction, directions, port_domains, ports
-from clutchwork.declare.schema import State
-from clutchwork.model.parts import Sensor
+from clutchwork.declare.schema import Role, State
+from clutchwork.model.parts import Place, Sensor, is_stop, place_of
 from clutchwork.model.structure import Places
 
 if TYPE_CHECKING:
@@ -42,8 +42,8 @@ class Branch:
 
     @property
     def hidden(self) -> bool:
-        """Whether it only measures a speed."""
-        return self.watched or isinstance(self.component, Sensor)
+        """Whether it only measures."""
+        return self.watched or isinstance(self.component, Sensor | Place)
 
 
 @dataclass(frozen=True)
@@ -186,6 +186,21 @@ def _with_states(branches: list[Branch]) -> list[Branch]:
         states = tuple((state.name, state.unit, first + k) for k, state in enumerate(own))
         made.append(replace(branch, states=states))
         first += len(own)
+    return _with_places(made)
+
+
+def _with_places(branches: list[Branch]) -> list[Branch]:
+    """The same with the positions of stops among the states of these, in the unit of their motion."""
+    named = {branch.name: branch for branch in branches}
+    made = list[Branch]()
+    for branch in branches:
+        if isinstance(branch.component, Place):
+            branch = replace(branch, states=())
+        elif branch.component.role is Role.CONTACT and is_stop(branch.component):
+            ((name, _, index),) = named[place_of(branch.component)].states
+            unit = "rad" if branch.domain is Domain.ROTATION else "m"
+            branch = replace(branch, states=((name, unit, index),))
+        made.append(branch)
     return made
 
 

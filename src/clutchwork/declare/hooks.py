@@ -36,6 +36,7 @@ HOOKS = (
     Hook(("limit",), "LimitedContact", ("contact",), "a static torque of its own"),
     Hook(("bound",), "LoadedContact", ("contact",), "a capacity that follows the torque of its own gear row"),
     Hook(("holding",), "YieldingContact", ("contact",), "a freewheel that gives way"),
+    Hook(("end", "restitution", "rest_speed"), "StopContact", ("contact",), "a stop, which holds at its ends alone"),
     Hook(("fault", "fault_kind", "fault_report"), "FaultyContact", ("contact",), "a contact that can fail"),
 )
 

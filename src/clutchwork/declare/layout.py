@@ -90,6 +90,7 @@ FIELDS = (
     ("contact_state", "i4", ("contacts",), "offset of the law's states into states"),
     ("contact_tolerance", "f8", ("contacts",), "slip [rad/s] below which it may lock; 0: exact zero crossing"),
     ("contact_initial", "i4", ("contacts",), "0: decided by slip and load, 1: locked at the start"),
+    ("contact_place", "i4", ("contacts",), "torque element whose state is the position of a stop, -1: it is none"),
     ("load_contact", "i4", ("loads",), "contact that follows the torque of its gear row"),
     ("load_motion", "f8", ("loads", "nodes"), "speeds in a virtual motion in which that row alone is violated, by one"),
     ("load_element_rate", "f8", ("loads", "elements"), "rate of each element in it"),
@@ -189,6 +190,7 @@ CAUSES = {
     7: ("passing", "the slip of an open contact passed zero: nothing changes but the direction"),
     8: ("fault", "a fault of the contact was triggered; it stays for the rest of the run"),
     9: ("jam", "no torque balanced the friction of a gear, so that it stopped at once"),
+    10: ("impact", "the gap of a stop closed: it bounced, or holds"),
 }
 
 # integrators by name, with their numbers in the core; auto chooses between the others
@@ -238,8 +240,8 @@ STATUS = (
     ("bad_system", "the system bytes do not fit this core", "assemble the driveline again with this version"),
     (
         "jammed",
-        "prescribed speeds turn a freewheel backward, which nothing can hold",
-        "prescribe speeds that let it overrun, or put a shaft with inertia and a spring in between",
+        "prescribed speeds turn a freewheel backward or go beyond a stop, which nothing can hold",
+        "prescribe speeds that let it overrun or stay inside, or put a shaft with inertia and a spring in between",
     ),
     (
         "unbalanced",

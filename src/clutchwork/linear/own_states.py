@@ -61,10 +61,9 @@ def wound_up(instant: Instant, S_r: Array, S_s: Array, S_i: Array) -> NDArray[np
     """States that only count how far something has turned: their rates are multiples of one rate, or nothing."""
     branches = (*instant.wiring.elements, *instant.wiring.contacts)
     found = []
-    for direction, branch in enumerate(branches):
+    for branch in branches:
         for _, _, index in branch.states:
-            others = np.delete(S_r[index], direction)
-            if not (S_s[index].any() or S_i[index].any() or others.any()):
+            if not (S_s[index].any() or S_i[index].any() or np.count_nonzero(S_r[index]) > 1):
                 found.append(index)
     return np.array(found, dtype=int)
 

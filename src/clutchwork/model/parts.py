@@ -8,12 +8,18 @@ from typing import Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import HOUSING, Component, Node, Part, Rate, ThermalNode
+from clutchwork.declare.ports import ends
 from clutchwork.declare.schema import Role, inputs
 from clutchwork.elements.damper import Damper
+from clutchwork.elements.displacement import Displacement
 
 
 class Sensor(Damper):
     """Gives the speed of a shaft to flows and processes; it has no torque and no signals of its own."""
+
+
+class Place(Displacement):
+    """The position of a stop, which stands among the signals of that."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +61,10 @@ def _pieces(component: Component) -> Iterator[Part]:
     parts = list(component.parts())
     if not parts and role(component) is not Role.COMPOSITE:
         yield component
+    if is_stop(component):
+        follower, base = ends(component)
+        (start,) = component.initial_states()
+        yield Place(place_of(component), base=base, follower=follower, initial_position=start)
     for part in parts:
         # the part with the name of the whole is one piece
         if isinstance(part, Node | ThermalNode) or part.name == component.name:
@@ -78,6 +88,16 @@ def role(component: Any) -> Role:
     """What a component is to the engine."""
     found: Role = type(component).role
     return found
+
+
+def is_stop(component: Component) -> bool:
+    """Whether it is a contact that exists at the ends of a gap alone."""
+    return "end" in type(component).hooks
+
+
+def place_of(stop: Component) -> str:
+    """Name of the position of a stop."""
+    return f"{stop.name}.place"
 
 
 def state_name(value: Any) -> str:

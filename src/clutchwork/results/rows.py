@@ -40,8 +40,8 @@ def numbers(wiring: Wiring) -> list[Named]:
 def _states(wiring: Wiring) -> Iterator[Named]:
     """States of elements and contacts, then the shared ones: heat of thermal nodes, processes."""
     owners: list[Branch | Source] = [*wiring.elements, *wiring.contacts, *wiring.thermal]
-    for branch in owners:
-        yield from ((f"{branch.component.name}.{name}", unit) for name, unit, _ in branch.states)
+    own = [(index, f"{owner.component.name}.{name}", unit) for owner in owners for name, unit, index in owner.states]
+    yield from ((name, unit) for _, name, unit in sorted(own))
     for process in wiring.processes:
         for (name, unit, _), scale in zip(process.states, state_scales(process.component), strict=True):
             yield f"{process.name}.{name}", unit if scale == 1.0 else f"{scale:g} {unit}"

@@ -162,6 +162,15 @@ concept YieldingContact = requires(const typename E::template Params<double>& p)
   { E::holding(p) } -> std::same_as<double>;
 };
 
+/// Contact that exists where its position is at an end alone: side -1 its lower end, 1 its upper one, not finite: there
+/// is none. Speeds return times the restitution, or not at all below the speed of rest.
+template <class E>
+concept StopContact = requires(const typename E::template Params<double>& p) {
+  { E::end(p, 1) } -> std::same_as<double>;
+  { E::restitution(p, 1) } -> std::same_as<double>;
+  { E::rest_speed(p) } -> std::same_as<double>;
+};
+
 /// Contact that can fail: `fault` is above zero when it does, then for good.
 template <class E>
 concept FaultyContact = requires(const typename E::template Params<double>& p, const At<double>& at) {

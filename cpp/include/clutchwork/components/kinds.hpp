@@ -132,10 +132,20 @@ T contact_limit(const Sys& sys, int c, const T* params, const T* input, const T*
   });
 }
 
+/// The sign of the slip that a contact cannot oppose, however pressed: forward of a freewheel, away from the end of a
+/// stop that is closed; 0: there is none.
+template <class T>
+CLUTCHWORK_INLINE int free_way(const Workspace<T>& ws, int c) {
+  if (ws.contact.fault[c] == cannot_transmit) return 0;
+  return visit_contact(ws.sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (StopContact<E> && !has_lanes<T>) return -ws.contact.side[c];
+    return int(E::one_way);
+  });
+}
 template <class T>
 CLUTCHWORK_INLINE bool contact_one_way(const Workspace<T>& ws, int c) {
-  if (ws.contact.fault[c] == cannot_transmit) return false;
-  return visit_contact(ws.sys.contact_kind[c], [](auto tag) { return decltype(tag)::type::one_way; });
+  return free_way(ws, c) != 0;
 }
 
 /// What a freewheel holds before it gives way [N m].

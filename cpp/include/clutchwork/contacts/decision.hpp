@@ -45,7 +45,7 @@ Choice choice_of(Workspace<T>& ws, int c, double slip, double tolerance, bool hi
   // prescribed speeds have parted: there is no choice
   if (hit && ws.happened.cause == Cause::torque_limit && rigid) {
     const double parting = slip != 0 ? slip : value(slip_slope(ws, c));
-    if (parting < 0 && contact_one_way(ws, c)) return Choice::jams;
+    if (parting * free_way(ws, c) < 0) return Choice::jams;
     mode = forced = parting < 0 ? backward : forward;
     return Choice::slips;
   }
@@ -109,9 +109,10 @@ BoundedProblem<T> pose_problem(Workspace<T>& ws, bool warm) {
     const int c = list[a];
     const T resists_forward = usable_capacity(ws, c, forward), resists_backward = usable_capacity(ws, c, backward);
     p.gradient[a] = slip_acceleration(ws, c, q);
-    p.lower[a] = -resists_forward;
-    p.upper[a] = contact_one_way(ws, c) ? freewheel_limit(ws, c) : resists_backward;
-    capacity[a] = larger(resists_forward, p.upper[a]);
+    const int way = free_way(ws, c);
+    p.lower[a] = way < 0 ? T(-infinity) : -resists_forward;
+    p.upper[a] = way > 0 ? freewheel_limit(ws, c) : resists_backward;
+    capacity[a] = larger(-p.lower[a], p.upper[a]);
     p.x[a] = warm ? ws.decision.torque[c] : T(0);
     if (is_rigid(ws, c)) p.matrix.diagonal[a] = T(1e-300);
   }
@@ -141,7 +142,7 @@ double slope_noise(const Workspace<T>& ws, const BoundedProblem<T>& p, int a, in
 /// docs/theory/contacts.md, rule 3
 template <class T>
 bool overruns(const Workspace<T>& ws, const BoundedProblem<T>& p, int a) {
-  return contact_one_way(ws, ws.decision.list[a]) && value(p.slope[a]) < 0;
+  return value(p.slope[a]) * free_way(ws, ws.decision.list[a]) < 0;
 }
 
 /// Of the bound torques that cannot hold, the first of a freewheel, else the one that gives way most (-1: all hold).

@@ -116,15 +116,17 @@ bool least_impulses(Workspace<T>& ws, Stops&& stops) {
   bool needed = false;
   for (int a = 0; a < n; ++a) {
     const double slip = value(rate_of(ws, ne + list[a]));
-    needed = needed || slip < -tolerance || (stops(list[a]) && slip > tolerance);
+    needed = needed || slip * free_way(ws, list[a]) < -tolerance || (stops(list[a]) && abs(slip) > tolerance);
   }
   if (!needed) return true;
   BoundedProblem<T> p = gather(ws, list, n);
   T* capacity = ws.problem.capacity;
   for (int a = 0; a < n; ++a) {
     p.gradient[a] = rate_of(ws, ne + list[a]);
-    p.lower[a] = stops(list[a]) ? T(-infinity) : T(0);
-    p.upper[a] = capacity[a] = T(infinity);
+    const bool both = stops(list[a]);
+    p.lower[a] = both || free_way(ws, list[a]) < 0 ? T(-infinity) : T(0);
+    p.upper[a] = both || free_way(ws, list[a]) > 0 ? T(infinity) : T(0);
+    capacity[a] = T(infinity);
     p.x[a] = T(0);
   }
   capacity_weights(p, capacity);
@@ -133,7 +135,7 @@ bool least_impulses(Workspace<T>& ws, Stops&& stops) {
   for (int a = 0; a < n; ++a) {
     // a freewheel that an impulse has closed is locked, one that it has left behind overruns
     const bool stopped = abs(value(p.slope[a])) <= tolerance;
-    if (stopped && (stops(list[a]) || value(p.x[a]) > 0)) ws.contact.mode[list[a]] = locked;
+    if (stopped && (stops(list[a]) || value(p.x[a]) * free_way(ws, list[a]) > 0)) ws.contact.mode[list[a]] = locked;
   }
   return true;
 }

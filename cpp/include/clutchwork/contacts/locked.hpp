@@ -305,8 +305,9 @@ DependentSet<T> dependent_set(Workspace<T>& ws, int k, const T* carried, T noise
       set.lower[i] = T(-infinity), set.upper[i] = T(infinity);
       continue;
     }
-    set.lower[i] = -capacity_of(ws, c, forward) - noise;
-    set.upper[i] = (contact_one_way(ws, c) ? freewheel_limit(ws, c) : capacity_of(ws, c, backward)) + noise;
+    const int way = free_way(ws, c);
+    set.lower[i] = (way < 0 ? T(-infinity) : -capacity_of(ws, c, forward)) - noise;
+    set.upper[i] = (way > 0 ? freewheel_limit(ws, c) : capacity_of(ws, c, backward)) + noise;
   }
   return set;
 }

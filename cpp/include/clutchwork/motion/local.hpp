@@ -254,8 +254,13 @@ class LocalDerivatives {
       value_in(row_of_most(c)) = infinity, value_in(row_of_least(c)) = -infinity;
       return;
     }
-    add_static(row_of_least(c), c, forward, -1);
-    if (contact_one_way(ws_, c)) {
+    const int way = free_way(ws_, c);
+    if (way < 0) {
+      value_in(row_of_least(c)) = -infinity;
+    } else {
+      add_static(row_of_least(c), c, forward, -1);
+    }
+    if (way > 0) {
       value_in(row_of_most(c)) = value(freewheel_limit(ws_, c));
     } else {
       add_static(row_of_most(c), c, backward, 1);

@@ -74,6 +74,9 @@ void start_contacts(Workspace<T>& ws) {
     ws.guard.turned_at[c] = -infinity;
     const double slip = value(rate_of(ws, int(ws.sys.elements) + c));
     ws.contact.mode[c] = abs(slip) <= slip_tolerance(ws) ? open : slip > 0 ? forward : backward;
+    ws.contact.side[c] = ws.contact.struck[c] = 0;
+    ws.contact.met_at[c] = -infinity;
+    if (is_stop(ws, c)) ws.contact.mode[c] = open;
     ws.happened.mode[c] = ws.contact.mode[c];
   }
 }

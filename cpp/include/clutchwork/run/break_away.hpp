@@ -18,7 +18,9 @@ namespace clutchwork {
 template <class T>
 CLUTCHWORK_INLINE Real<T> margin(const Workspace<T>& ws, int a, T torque, T capacity) {
   capacity += ws.here.noise[a];
-  if (!contact_one_way(ws, ws.held.contact[a])) return value(capacity) - abs(value(torque));
+  const int way = free_way(ws, ws.held.contact[a]);
+  if (way == 0) return value(capacity) - abs(value(torque));
+  if (way < 0) return value(capacity - torque);
   return smaller(value(torque + capacity), value(freewheel_limit(ws, ws.held.contact[a]) - torque));
 }
 

@@ -10,6 +10,7 @@
 #include <clutchwork/motion/branches.hpp>
 #include <clutchwork/motion/reduce.hpp>
 #include <clutchwork/motion/sparse.hpp>
+#include <clutchwork/run/gaps.hpp>
 #include <clutchwork/run/methods.hpp>
 #include <clutchwork/run/processes.hpp>
 #include <clutchwork/run/stiffness.hpp>
@@ -133,6 +134,7 @@ bool enter_mode(Workspace<T>& ws) {
   pack_branches(ws);
   list_laws(ws);
   list_processes(ws);
+  list_gaps(ws);
   turn_jumped(ws);
   if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);

@@ -4,6 +4,7 @@
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/break_away.hpp>
+#include <clutchwork/run/gaps.hpp>
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
@@ -316,6 +317,7 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   if (ws.guard.n_bounded > 0) find_exit<Form, Integrator>(form, step, hit);
   if (ws.loads.n_sliding > 0) find_flip<Form, Integrator>(form, step, hit);
   if (ws.guard.n_near > 0) find_load<Form, Integrator>(form, step, hit);
+  if (ws.guard.n_gaps > 0) find_gap<Form, Integrator>(form, step, hit);
   return hit;
 }
 

@@ -39,12 +39,13 @@ template <class F>
   return f(x);
 }
 
-/// Root of a decreasing-through-zero function on [low, high] with f(low) >= 0 > f(high), to round-off (ITP).
+/// Root of a decreasing-through-zero function on [low, high] with f(low) >= 0 > f(high), to round-off (ITP). One that
+/// starts at zero is followed back to where it is above, in so many halvings.
 template <class F>
-double locate(F&& f, double low, double f_low, double high, double f_high) {
+double locate(F&& f, double low, double f_low, double high, double f_high, int halvings = 12) {
   // a guard that starts on its surface: step off it, or it is hit at once
-  for (int k = 1; k < 12 && f_low <= 0; ++k) {
-    const double x = low + (high - low) / double(1 << k), y = f(x);
+  for (int k = 1; k < halvings && f_low <= 0; ++k) {
+    const double x = low + (high - low) / double(1ll << k), y = f(x);
     if (y > 0) low = x, f_low = y;
   }
   if (f_low <= 0) return low;

@@ -252,6 +252,7 @@ class Phase : public Pace<typename Form::Scalar> {
     forget_forced(ws_);
     if (hit.what == Hit::set) force_set(hit);
     for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = step_.u()[i];
+    if (hit.what == Hit::gap) land_on_end(form_, step_, hit);
     ws_.in.time = -infinity;
     if constexpr (Form::full) keep_ties(form_, step_, ws_.time, step_.y0());
     export_state(form_, step_.y0());
@@ -335,6 +336,8 @@ class Phase : public Pace<typename Form::Scalar> {
       case Hit::exit:
         ws_.detail.component = ne + hit.index;
         return leave(Status::out_of_table);
+      case Hit::gap:
+        return hand_over(Cause::impact, hit.index);
       case Hit::fault:
         hand_over(Cause::fault, hit.index);
         return fail(ws_, hit.index);
@@ -353,7 +356,8 @@ class Phase : public Pace<typename Form::Scalar> {
     if (rolls_over(ws_, c)) return fail(ws_, c);
     if (is_rigid(ws_, c)) return;
     const double pull = hit.s > 0 ? value(ws_.happened.torque[c]) : value(ws_.there.multiplier[hit.index]);
-    ws_.contact.forced[c] = pull > 0 && !contact_one_way(ws_, c) ? backward : forward;
+    const int way = free_way(ws_, c);
+    ws_.contact.forced[c] = way != 0 ? way : pull > 0 ? backward : forward;
   }
 
   /// Freewheels of a set that gives way at their own limit do so for good.

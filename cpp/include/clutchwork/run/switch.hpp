@@ -11,6 +11,7 @@
 #include <clutchwork/contacts/ratio_jumps.hpp>
 #include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/contacts/stops.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/settle.hpp>
@@ -51,10 +52,15 @@ void accelerations_after(Workspace<T>& ws) {
 /// they are decided.
 template <class T>
 Status settle(Workspace<T>& ws, int located) {
+  const bool stops = has_stops(ws);
+  if (stops && !collide(ws)) return Status::no_mode;
+  if (stops) close_stops(ws);
   for (int round = 0; round <= ws.sys.contacts; ++round) {
     const Verdict verdict = settle_contacts(ws, located);
     switch (verdict.how) {
       case Settled::yes:
+        if (stops && takes_back_stops(ws)) continue;
+        if (stops) open_stops(ws);
         return Status::running;
       case Settled::no:
         return Status::no_mode;
@@ -75,8 +81,8 @@ Status settle(Workspace<T>& ws, int located) {
 template <class T>
 int backward_freewheel(const Workspace<T>& ws) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (!ws.contact.loaded[c] || !contact_one_way(ws, c)) continue;
-    if (value(rate_of(ws, int(ws.sys.elements) + c)) < -1e3 * slip_tolerance(ws)) return c;
+    if (!ws.contact.loaded[c]) continue;
+    if (value(rate_of(ws, int(ws.sys.elements) + c)) * free_way(ws, c) < -1e3 * slip_tolerance(ws)) return c;
   }
   return -1;
 }
@@ -129,9 +135,10 @@ void report_changes(Workspace<T>& ws, bool at_start, double energy_before) {
   const Happened<T>& before = ws.happened;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int mode = ws.contact.mode[c];
-    if (mode == before.mode[c] || (at_start && !ws.contact.impulse[c])) continue;
+    const bool struck = ws.contact.struck[c] != 0;
+    if (!struck && (mode == before.mode[c] || (at_start && !ws.contact.impulse[c]))) continue;
     const bool own = c == before.contact || before.contact < 0;
-    const Cause cause = at_start ? Cause::impulse : own ? before.cause : Cause::other_event;
+    const Cause cause = at_start ? Cause::impulse : struck ? Cause::impact : own ? before.cause : Cause::other_event;
     const double hits = value(mode == locked ? before.slope[c] : ws.decision.acceleration[c]);
     const double torque_before = value(before.torque[c]), torque = value(torque_after(ws, c));
     record(ws, {c, before.mode[c], mode, cause, hits, torque_before, torque, energy_before, energy_after});
@@ -154,7 +161,10 @@ template <class T>
 Status switch_modes(Workspace<T>& ws) {
   const int ne = int(ws.sys.elements), located = ws.happened.contact;
   const bool at_start = ws.happened.cause == Cause::initial;
-  if (located >= 0 && events_crowd(ws, ne + located)) return Status::zeno;
+  // bounces end by their own rule. docs/theory/play.md, rule 2
+  const bool bounces = ws.happened.cause == Cause::impact && ws.time > ws.contact.met_at[located];
+  if (located >= 0 && !bounces && events_crowd(ws, ne + located)) return Status::zeno;
+  for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.struck[c] = 0;
   ws.detail.component = located >= 0 ? ne + located : -1;
   if (ws.statistics.events > ws.options.max_events) return Status::too_many_events;
 
@@ -167,6 +177,7 @@ Status switch_modes(Workspace<T>& ws) {
   const double energy_before = kinetic_energy(ws);
   const Status decided = decide(ws, at_start);
   if (decided != Status::running) return decided;
+  if (ws.happened.cause == Cause::impact) ws.contact.met_at[located] = ws.time;
   find_pieces(ws);
   ws.fresh_phase = true;
   if (ws.contact.failed >= 0) {

@@ -14,6 +14,9 @@ struct Contacts {
   int* compliant = nullptr;                   ///< contacts with a law that never sticks
   int* fault = nullptr;                       ///< what has failed in it
   int* impulse = nullptr;                     ///< contacts that an impulse has locked at the start
+  int* side = nullptr;                        ///< of each stop: the end at which it is closed, -1 or 1, 0: it is open
+  int* struck = nullptr;                      ///< stops that have met an end at this instant
+  double* met_at = nullptr;                   ///< [s] when a stop met an end last
   int failed = -1;                            ///< contact whose fault ends the run
   double forced_time = -infinity;             ///< [s]
 
@@ -22,7 +25,8 @@ struct Contacts {
     a.keep(p.mode, n.contacts, backward, open), a.keep(p.forced, n.contacts, backward, forward);
     a.keep(p.pressed, n.contacts, 0, 1), a.keep(p.loaded, n.contacts, 0, 1);
     a.take(p.compliant, n.contacts), a.keep(p.fault, n.contacts, 0, choice::words<choice::Fault> - 1);
-    a.keep(p.impulse, n.contacts, 0, 1);
+    a.keep(p.impulse, n.contacts, 0, 1), a.keep(p.side, n.contacts, -1, 1), a.take(p.struck, n.contacts);
+    a.take(p.met_at, n.contacts);
   }
 };
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.schematic.look import INK
+from clutchwork.schematic.look import INK, THIN
 from clutchwork.schematic.pen import Pen
 from clutchwork.schematic.symbols.symbol import Drawn, Symbol, ends
 from clutchwork.schematic.symbols.torques import zigzag
@@ -54,7 +54,18 @@ def end_stop(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -14.0, 14.0)
 
 
+def displacement(pen: Pen, shown: Drawn) -> None:
+    """A measure between two lines."""
+    for x in (-12.0, 12.0):
+        pen.line((x, -7.0), (x, 7.0))
+    pen.line((-9.0, 0.0), (9.0, 0.0), look=THIN)
+    for sign in (-1.0, 1.0):
+        pen.line((sign * 7.0, 2.5), (sign * 10.0, 0.0), (sign * 7.0, -2.5), look=THIN)
+    ends(pen, shown, -12.0, 12.0)
+
+
 PLAY = {
+    "displacement": Symbol(displacement),
     "backlash": Symbol(backlash),
     "elastic_backlash": Symbol(elastic_backlash),
     "elastic_gap": Symbol(elastic_gap),
