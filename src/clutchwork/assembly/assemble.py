@@ -26,7 +26,7 @@ from clutchwork.model.findings import Findings, Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
 from clutchwork.model.loads import load_arrays
 from clutchwork.model.model import Model
-from clutchwork.model.parts import is_stop, place_of
+from clutchwork.model.parts import Place, is_stop, place_of
 from clutchwork.model.pools import Pools
 from clutchwork.model.start import initial_angles, start
 from clutchwork.model.structure import Kinematics, Mechanism, follows_load
@@ -215,7 +215,7 @@ def _transmissions(model: Mechanism, made: Kinematics, columns: Columns) -> dict
 
 def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
     contacts = model.role(Role.CONTACT)
-    elements = {element.name: number for number, element in enumerate(model.role(Role.TORQUE))}
+    places = {part.name: place for place, (part, _) in enumerate(model.acting) if isinstance(part, Place)}
     offsets = list[int]()
     for contact in contacts:
         # bristles start without deflection
@@ -230,7 +230,7 @@ def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
         "contact_state": offsets,
         "contact_tolerance": [_tolerance(contact) for contact in contacts],
         "contact_initial": [int(contact.locked) for contact in contacts],
-        "contact_place": [elements[place_of(contact)] if is_stop(contact) else -1 for contact in contacts],
+        "contact_place": [places[place_of(contact)] if is_stop(contact) else -1 for contact in contacts],
     }
 
 

@@ -21,7 +21,6 @@ from clutchwork.declare.node import Signal as Signal
 from clutchwork.declare.node import SignalLike as SignalLike
 from clutchwork.declare.node import ThermalNode as ThermalNode
 from clutchwork.declare.node import Work as Work
-from clutchwork.declare.ports import ends as ends
 from clutchwork.declare.rational import exact as exact
 from clutchwork.declare.schema import Role as Role
 from clutchwork.declare.schema import State as State

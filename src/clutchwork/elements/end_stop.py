@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare import Found, Node, Role, component, ends, option, param, port
+from clutchwork.declare import HOUSING, Found, Node, Role, component, option, param, port
 from clutchwork.elements.bases.stop import Stop
 
 
@@ -50,5 +50,6 @@ class EndStop(Stop):
 
     def initial_states(self) -> tuple[float, ...]:
         """Position at the start [rad]."""
-        follower, base = ends(self)
-        return (follower.angle - base.angle if self.initial_position is None else self.initial_position,)
+        if self.initial_position is not None:
+            return (self.initial_position,)
+        return (self.follower.angle - (self.base or HOUSING).angle,)

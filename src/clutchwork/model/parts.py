@@ -8,7 +8,7 @@ from typing import Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import HOUSING, Component, Node, Part, Rate, ThermalNode
-from clutchwork.declare.ports import ends
+from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import Role, inputs
 from clutchwork.elements.damper import Damper
 from clutchwork.elements.displacement import Displacement
@@ -62,9 +62,9 @@ def _pieces(component: Component) -> Iterator[Part]:
     if not parts and role(component) is not Role.COMPOSITE:
         yield component
     if is_stop(component):
-        follower, base = ends(component)
+        joined = ports(component)
         (start,) = component.initial_states()
-        yield Place(place_of(component), base=base, follower=follower, initial_position=start)
+        yield Place(place_of(component), base=joined["base"], follower=joined["follower"], initial_position=start)
     for part in parts:
         # the part with the name of the whole is one piece
         if isinstance(part, Node | ThermalNode) or part.name == component.name:

@@ -53,7 +53,6 @@ void accelerations_after(Workspace<T>& ws) {
 template <class T>
 Status settle(Workspace<T>& ws, int located) {
   const bool stops = has_stops(ws);
-  if (stops && !collide(ws)) return Status::no_mode;
   if (stops) close_stops(ws);
   for (int round = 0; round <= ws.sys.contacts; ++round) {
     const Verdict verdict = settle_contacts(ws, located);
@@ -100,7 +99,8 @@ void see_speeds(Workspace<T>& ws) {
 template <class T>
 Status decide(Workspace<T>& ws, bool at_start) {
   const int located = ws.happened.contact;
-  if (!settle_impulses(ws, at_start)) return Status::no_mode;
+  const bool stops = has_stops(ws);
+  if (!settle_impulses(ws, at_start) || (stops && !collide(ws))) return Status::no_mode;
   see_speeds(ws);
   find_pieces(ws);
   for (int c = 0; at_start && c < ws.sys.contacts; ++c) {
@@ -115,7 +115,7 @@ Status decide(Workspace<T>& ws, bool at_start) {
     status = settle(ws, -1);
   }
   if (status == Status::running && stops_short(ws, located)) {
-    if (!stop_within_tolerance(ws, located)) return Status::no_mode;
+    if (!stop_within_tolerance(ws, located) || (stops && !collide(ws))) return Status::no_mode;
     see_speeds(ws);
     status = settle(ws, -1);
   }
