@@ -228,8 +228,9 @@ CoupledProblem<T> pose_coupled(Workspace<T>& ws, BoundedProblem<T>& p) {
       // what moves nothing and is driven by nobody has no torque
       if (rigid && q.sliding[a] == 0) q.load[a] = -1;
     } else if (!rigid) {
-      q.lower[a] = -usable_capacity(ws, c, forward);
-      q.upper[a] = contact_one_way(ws, c) ? freewheel_limit(ws, c) : usable_capacity(ws, c, backward);
+      const int way = free_way(ws, c);
+      q.lower[a] = way < 0 ? T(-infinity) : -usable_capacity(ws, c, forward);
+      q.upper[a] = way > 0 ? freewheel_limit(ws, c) : usable_capacity(ws, c, backward);
     }
   }
   return q;

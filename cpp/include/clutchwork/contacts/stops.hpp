@@ -179,22 +179,6 @@ bool collide(Workspace<T>& ws) {
   return least_impulses(ws, [&](int c) { return lingers(ws, c, tolerance); }) && collide_all(ws, any);
 }
 
-/// Stops that were forced to open and would be driven back may hold: whether there are such ones. The acceleration is
-/// that of the decision.
-template <class T>
-bool takes_back_stops(Workspace<T>& ws) {
-  const int ne = int(ws.sys.elements);
-  bool any = false;
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (!is_stop(ws, c) || ws.contact.side[c] == 0 || ws.contact.forced[c] == 0 || is_rigid(ws, c)) continue;
-    const double noise = 1e-12 * ws.decision.effort * value(sqrt(ws.geometry.own[ne + c]));
-    if (-ws.contact.side[c] * value(slip_acceleration(ws, c, ws.decision.motion)) >= -noise) continue;
-    ws.contact.forced[c] = 0, ws.contact.mode[c] = locked;
-    any = true;
-  }
-  return any;
-}
-
 /// Stops that a decision has not locked are open, unless prescribed speeds drive them on.
 template <class T>
 void open_stops(Workspace<T>& ws) {

@@ -7,7 +7,18 @@ namespace clutchwork {
 /// The first thing that happens inside a step.
 struct Hit {
   enum What : int {
-    nothing, line, multiplier, set, parting, load, law, fault, exit, process, flip, gap
+    nothing,
+    line,
+    multiplier,
+    set,
+    parting,
+    load,
+    law,
+    fault,
+    exit,
+    process,
+    flip,
+    gap
   } what = nothing;
   int index = -1;  ///< guard, locked contact, dependent set, spare, contact, branch, or process
   double s = 1;    ///< where in the step, 0 to 1

@@ -48,6 +48,25 @@ void accelerations_after(Workspace<T>& ws) {
   for (int c = 0; c < nc; ++c) out[c] = ws.contact.mode[c] == locked ? T(0) : slip_acceleration(ws, c, q);
 }
 
+/// Stops that were forced to open and are driven back may hold after all: whether there are such ones.
+template <class T>
+bool takes_back_stops(Workspace<T>& ws) {
+  const int ne = int(ws.sys.elements);
+  auto forced = [&](int c) { return is_stop(ws, c) && ws.contact.side[c] * ws.contact.forced[c] != 0; };
+  bool any = false;
+  for (int c = 0; c < ws.sys.contacts; ++c) any = any || (forced(c) && !is_rigid(ws, c));
+  if (!any) return false;
+  accelerations_after(ws);
+  any = false;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const double noise = 1e-12 * ws.decision.effort * value(sqrt(ws.geometry.own[ne + c]));
+    if (!forced(c) || ws.contact.side[c] * value(ws.decision.acceleration[c]) <= noise) continue;
+    ws.contact.forced[c] = 0, ws.contact.mode[c] = locked;
+    any = true;
+  }
+  return any;
+}
+
 /// Decide the modes; freewheels that would have to hold more than they can give way for good on the way. `running`:
 /// they are decided.
 template <class T>
