@@ -39,13 +39,13 @@ int settled_interval(double x, int n, int present, double slack, Border&& border
   return k;
 }
 
-/// Numbers of a list, `numbers(...)` of the declaration.
-struct Numbers {
+/// NumberList of a list, `numbers(...)` of the declaration.
+struct NumberList {
   const double* at;
   int count;
 
   template <class T>
-  Numbers(const Curve<T>& c, const double* points)
+  NumberList(const Curve<T>& c, const double* points)
       : at(points + 3 * int(common(c.first))), count(int(common(c.count))) {}
   double operator[](int i) const { return at[3 * i]; }
 };
@@ -57,7 +57,7 @@ struct Mirrored {
 
   int borders() const { return 2 * points - 1; }
   int intervals() const { return 2 * points; }
-  double border(const Numbers& grid, int i) const {
+  double border(const NumberList& grid, int i) const {
     const int middle = points - 1;
     return i == middle ? 0.0 : i < middle ? -grid[middle - i] : grid[i - middle];
   }
@@ -68,7 +68,7 @@ struct Mirrored {
 
 /// Share of the way through a cell of a grid; zero beyond the last point.
 template <class S>
-CLUTCHWORK_INLINE S share_of_cell(const Numbers& grid, int cell, const S& x) {
+CLUTCHWORK_INLINE S share_of_cell(const NumberList& grid, int cell, const S& x) {
   if (cell + 1 >= grid.count) return S(0);
   return (x - S(grid[cell])) / S(grid[cell + 1] - grid[cell]);
 }

@@ -69,7 +69,7 @@ struct EngineTorque : declared::EngineTorque {
   }
   template <class T>
   static double edge(const Params<T>& p, const double* points, int i) {
-    return Mirrored{count_of(p.speeds)}.border(Numbers(p.speeds, points), i);
+    return Mirrored{count_of(p.speeds)}.border(NumberList(p.speeds, points), i);
   }
   template <class T>
   static bool fits(const Params<T>& p) {
@@ -88,7 +88,7 @@ struct EngineTorque : declared::EngineTorque {
       const S room = S(p.max_speed) - at.rate, size = S(T(1) / p.max_speed);
       least.watch((x.cut != 0 ? S(p.limit_band) - room : room) * size, x.cut != 0 ? burns : cuts);
     }
-    const Numbers columns(p.throttles, at.points);
+    const NumberList columns(p.throttles, at.points);
     const S u = given(p, at, x);
     if (x.column > 0) least.watch(u - S(columns[x.column - 1]), closer);
     if (x.column < columns.count) least.watch(S(columns[x.column]) - u, wider);
@@ -113,7 +113,7 @@ struct EngineTorque : declared::EngineTorque {
   template <class T>
   static T pace(const Params<T>& p, const At<T>& at) {
     if (value(p.ripples) == 0) return T(0);
-    const Numbers orders(p.orders, at.points);
+    const NumberList orders(p.orders, at.points);
     return abs(at.rate) * T(orders[orders.count - 1]);
   }
   /// From the present place on, as long as a guard is clearly passed.
@@ -190,7 +190,7 @@ struct EngineTorque : declared::EngineTorque {
   struct Row {
     const Params<T>& p;
     const double* points;
-    const Numbers grid, columns, torques;
+    const NumberList grid, columns, torques;
     int cell;
     S share;
 
@@ -213,7 +213,7 @@ struct EngineTorque : declared::EngineTorque {
       return low + (high - low) * (u - S(columns[interval - 1])) / S(columns[interval] - columns[interval - 1]);
     }
     S deficit() const {
-      const Numbers lack(p.deficit, points);
+      const NumberList lack(p.deficit, points);
       return value_in_cell(grid.count, cell, share, [&](int i) { return lack[i]; });
     }
   };
@@ -223,7 +223,7 @@ struct EngineTorque : declared::EngineTorque {
   static S wave(const Params<T>& p, const At<S>& at) {
     S sum = S(1);
     if (value(p.ripples) == 0) return sum;
-    const Numbers orders(p.orders, at.points), sizes(p.amplitudes, at.points), phases(p.phases, at.points);
+    const NumberList orders(p.orders, at.points), sizes(p.amplitudes, at.points), phases(p.phases, at.points);
     const S angle = own(p, at, crank);
     for (int i = 0; i < orders.count; ++i) sum += S(sizes[i]) * cos(S(orders[i]) * angle + S(phases[i]));
     return sum;
@@ -243,7 +243,7 @@ struct EngineTorque : declared::EngineTorque {
   template <class T, class S>
   static S most(const Params<T>& p, const At<S>& at, const Place& x) {
     if (p.limiter == choice::Limiter::cut) return S(1 - x.cut);
-    const Numbers grid(p.speeds, at.points);
+    const NumberList grid(p.speeds, at.points);
     const double start = grid[x.cell];
     if (x.side < 0 || start < value(p.max_speed) - value(p.limit_band)) return S(1);
     return start < value(p.max_speed) ? (S(p.max_speed) - at.rate) / p.limit_band : S(0);
@@ -260,7 +260,7 @@ struct EngineTorque : declared::EngineTorque {
   }
   template <class T, class S>
   static S reached(const Params<T>& p, const At<S>& at, const Place& x) {
-    const Numbers columns(p.throttles, at.points);
+    const NumberList columns(p.throttles, at.points);
     if (x.column == 0) return S(columns[0]);
     return x.column < columns.count ? given(p, at, x) : S(columns[columns.count - 1]);
   }

@@ -56,7 +56,7 @@ struct MotorTorque : declared::MotorTorque {
   }
   template <class T>
   static double edge(const Params<T>& p, const double* points, int i) {
-    return Mirrored{count_of(p.speeds)}.border(Numbers(p.speeds, points), i);
+    return Mirrored{count_of(p.speeds)}.border(NumberList(p.speeds, points), i);
   }
   template <class T>
   static bool fits(const Params<T>& p) {
@@ -72,7 +72,7 @@ struct MotorTorque : declared::MotorTorque {
     watch_clip(p, at, x, least);
     watch_load(p, at, x, least);
     const int n = warmths(p);
-    const Numbers at_kelvin(p.derating, at.points);
+    const NumberList at_kelvin(p.derating, at.points);
     const S warm = at.input[Input::temperature];
     if (n > 1 && x.warmth > 0) least.watch((warm - S(at_kelvin[x.warmth - 1])) * T(1e-2), cooler);
     if (n > 1 && x.warmth + 1 < n) least.watch((S(at_kelvin[x.warmth]) - warm) * T(1e-2), warmer);
@@ -95,7 +95,7 @@ struct MotorTorque : declared::MotorTorque {
   template <class T>
   static int settle(const Params<T>& p, const At<T>& at) {
     Place x(p, at.piece);
-    const Numbers kelvin(p.derating, at.points), loads(p.torques, at.points);
+    const NumberList kelvin(p.derating, at.points), loads(p.torques, at.points);
     const int n = warmths(p);
     if (n > 1) {
       const double warm = value(at.input[Input::temperature]);
@@ -156,7 +156,7 @@ struct MotorTorque : declared::MotorTorque {
 
     template <class T>
     Range(const Params<T>& p, const At<S>& at, const Place& x) : w(S(x.side) * at.rate) {
-      const Numbers grid(p.speeds, at.points), motor(p.motoring, at.points), generator(p.generating, at.points);
+      const NumberList grid(p.speeds, at.points), motor(p.motoring, at.points), generator(p.generating, at.points);
       const S share = share_of_cell(grid, x.cell, w);
       const S drives = value_in_cell(grid.count, x.cell, share, [&](int i) { return motor[i]; });
       const S brakes = value_in_cell(grid.count, x.cell, share, [&](int i) { return generator[i]; });
@@ -180,7 +180,7 @@ struct MotorTorque : declared::MotorTorque {
   /// Loss by the map at a torque f and a speed w >= 0.
   template <class T, class S>
   static S mapped(const Params<T>& p, const At<S>& at, const Place& x, const S& f, const S& w) {
-    const Numbers rows(p.speeds, at.points), columns(p.torques, at.points), map(p.map, at.points);
+    const NumberList rows(p.speeds, at.points), columns(p.torques, at.points), map(p.map, at.points);
     const Mirrored loads{columns.count};
     const int cell = loads.cell(x.load), sign = loads.side(x.load);
     const S down = share_of_cell(rows, x.cell, w), across = share_of_cell(columns, cell, S(sign) * f);
@@ -215,7 +215,7 @@ struct MotorTorque : declared::MotorTorque {
   /// Borders of the map over the torque.
   template <class T, class S>
   static void watch_load(const Params<T>& p, const At<S>& at, const Place& x, Least<S>& least) {
-    const Numbers loads(p.torques, at.points);
+    const NumberList loads(p.torques, at.points);
     const Mirrored grid{loads.count};
     const S f = torque(p, at), unit = S(T(1) / p.scale);
     if (x.load > 0) least.watch((f - S(grid.border(loads, x.load - 1))) * unit, less);
