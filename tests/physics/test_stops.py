@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import clutchwork as cw
+from support.msl.model import translate
 from support.runs import EXACT, TIGHT, at_end
 
 MASS, WEIGHT, HEIGHT = 2.0, 20.0, 1.0  # kg, N, m
@@ -243,3 +245,30 @@ def test_a_run_goes_on_from_a_closed_stop() -> None:
             whole[name] for name in ("ball.position", "ball.speed", "floor.torque", "floor.work")
         ]
         assert list(again.events) == [e for e in whole.events if e.time > time]
+
+
+def test_a_mass_with_stop_and_friction_of_the_conventions() -> None:
+    """Slowed by its friction it stays where it meets its stop, its centre half its length short of it."""
+    stopped = {"type": "mass_with_stop_and_friction", "m": 2.0, "L": 0.2, "smin": -1.0, "smax": 1.0}
+    friction = {"F_prop": 1.0, "F_Coulomb": 4.0, "F_Stribeck": 2.0, "fexp": 3.0}
+    case = {
+        "name": "slide",
+        "stop_time": 2.0,
+        "elements": {"m": {**stopped, **friction}},
+        "connections": [],
+        "signals": {},
+        "initial": {"m.s": 0.0, "m.v": 5.0},
+        "outputs": [{"csv": "s", "signal": "m.s"}, {"csv": "v", "signal": "m.v"}],
+    }
+    model = translate(case)
+    run = model.driveline.simulate(2.0, **TIGHT)
+    (hit,) = impacts(run)
+
+    def slope(t: float, y: list[float]) -> list[float]:
+        return [y[1], -(y[1] + 4.0 + 2.0 * np.exp(-3.0 * y[1])) / 2.0]
+
+    known = solve_ivp(slope, (0.0, hit.time), [0.0, 5.0], rtol=1e-11, atol=1e-12)
+    assert known.y[0][-1] == pytest.approx(0.9, abs=1e-8)
+    assert model.outputs["s"](run)[-1] == pytest.approx(0.9, abs=1e-12)
+    assert model.outputs["v"](run)[-1] == 0.0
+    assert hit.energy_before == pytest.approx(known.y[1][-1] ** 2, rel=1e-8)

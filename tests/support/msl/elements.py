@@ -230,6 +230,26 @@ def _wheel(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
     return [cw.RollingWheel(name, shaft=at("flangeR"), mass=at("flangeT"), radius=radius)]
 
 
+def _stopped_mass(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    """Friction, drag and inelastic stops beside a mass; the position is that of its centre."""
+    coulomb, stribeck = float(e["F_Coulomb"]), float(e["F_Stribeck"])
+    length, body = float(e.get("L", 0.0)), at("flange_a")
+    scale, speed = coulomb + stribeck, 1.0 / float(e["fexp"])
+    law = cw.Exponential(static=1.001, slow=1.0, fast=coulomb / scale, speed=speed)
+    housing = b.driveline.housing
+    return [
+        cw.BearingFriction(name, shaft=body, base=housing, friction=law, torque=scale),
+        cw.Damper(f"{name}_drag", base=housing, follower=body, damping=float(e["F_prop"])),
+        cw.EndStop(
+            f"{name}_stop",
+            follower=body,
+            lower=float(e["smin"]) + length / 2,
+            upper=float(e["smax"]) - length / 2,
+            initial_position=b.start_place(f"{name}.flange_a") + length / 2,
+        ),
+    ]
+
+
 ENTRIES: dict[str, Entry] = {
     "inertia": _nothing,
     "mass": _nothing,
@@ -241,6 +261,7 @@ ENTRIES: dict[str, Entry] = {
     "elasto_backlash": _backlash,
     "elasto_backlash2": _backlash,
     "elasto_gap": _elastic_gap,
+    "mass_with_stop_and_friction": _stopped_mass,
     "damper": _damper,
     "torque": _torque,
     "torque2": _torque2,

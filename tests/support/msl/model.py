@@ -94,11 +94,12 @@ class Builder:
         inertia = dict.fromkeys(self.network.nodes(), 0.0)
         label: dict[str, str] = {}
         for name, e in self.elements.items():
-            if e["type"] in ("inertia", "mass"):
+            if e["type"] in ("inertia", "mass", "mass_with_stop_and_friction"):
                 node = self.network.node(f"{name}.flange_a")
                 if node != GROUND:
                     inertia[node] += float(e["J"] if e["type"] == "inertia" else e["m"])
-                    label.setdefault(node, name)
+                    if e["type"] != "mass_with_stop_and_friction":
+                        label.setdefault(node, name)
         nodes = {GROUND: self.driveline.housing}
         taken = (set(self.elements) - set(label.values())) | {"housing"}
         moving = self._translating()
