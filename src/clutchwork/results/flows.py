@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.wiring import HOUSING, Branch, GearRow, Wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError
+from clutchwork.base.kept import kept
 from clutchwork.base.shown import shown
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.results import reactions
@@ -61,24 +62,30 @@ def flows(run: Recorded, begin: float, end: float) -> Flows:
     Parameters: begin and end [s].
     """
     wiring = run.wiring
-    edges = run.at([begin, end])
     window = [e for e in run.events if begin <= e.time < end or e.time == end == run.time[-1]]
+    jumps = sorted({e.time for e in window if e.energy_before != e.energy_after})
     joints, matrix = _joints(wiring)
-    steps = run.repeat(None).time
-    total = np.zeros(len(joints))
-    for times, weights in _gauss(steps, begin, end, wiring.row_size):
-        rows = run.repeat(times).rows
-        total += weights @ _powers(wiring, joints, matrix, rows)
-    jumps = {e.time for e in window if e.energy_before != e.energy_after}
-    kinetic = _kinetic(wiring, edges.rows)
-    for time in sorted(jumps):
-        before, after = _limits(run, time)
-        total += _jump(wiring, joints, before, after)
-        if time == run.options.t_start:
-            kinetic += _kinetic(wiring, np.array([before, after]))
-    made = dict(zip(joints, total.tolist(), strict=True))
-    found = dict(enumerate(kinetic.tolist()))
-    return Flows(begin, end, balance(wiring, edges.rows, Events(window)), made, found)
+    edges, first = np.array([begin, end, *jumps, *jumps]), True
+    total, kinetic, ends = np.zeros(len(joints)), np.zeros(len(wiring.nodes)), np.zeros((0, wiring.row_size))
+    for times, weights in _gauss(_steps(run), begin, end, wiring.row_size):
+        # all in one repetition; of an instant that is asked for more than once the first is the left limit
+        wanted = np.sort(np.concatenate([times, edges])) if first else times
+        rows = run.repeat(wanted).rows
+        total += weights @ _powers(wiring, joints, matrix, rows[np.searchsorted(wanted, times)])
+        if first:
+            left, right = (np.searchsorted(wanted, edges, side) for side in ("left", "right"))
+            ends = rows[left[:2]]
+            kinetic = _kinetic(wiring, ends)
+            for number in range(2, 2 + len(jumps)):
+                before, after = rows[left[number]], rows[right[number] - 1]
+                if edges[number] == run.options.t_start:
+                    before = _before_start(run, after)
+                    kinetic += _kinetic(wiring, np.array([before, after]))
+                total += _jump(wiring, joints, before, after)
+        first = False
+    found = dict(zip(joints, total.tolist(), strict=True))
+    stored = dict(enumerate(kinetic.tolist()))
+    return Flows(begin, end, balance(wiring, ends, Events(window)), found, stored)
 
 
 def _gauss(steps: Array, begin: float, end: float, row_size: int) -> Iterator[tuple[Array, Array]]:
@@ -90,6 +97,12 @@ def _gauss(steps: Array, begin: float, end: float, row_size: int) -> Iterator[tu
         widths = np.diff(some)
         times = some[:-1, None] + widths[:, None] * POINTS
         yield times.ravel(), (widths[:, None] * WEIGHTS).ravel()
+
+
+@kept
+def _steps(run: Recorded) -> Array:
+    """Ends of the steps of the solver [s]; the run is repeated once for them."""
+    return run.repeat(None).time
 
 
 def _joints(wiring: Wiring) -> tuple[list[Joint], Array]:
@@ -136,16 +149,13 @@ def _inertia(wiring: Wiring) -> Array:
     return np.array([node.inertia for node in wiring.nodes])
 
 
-def _limits(run: Recorded, time: float) -> tuple[Array, Array]:
-    """Output rows before and after a jump."""
-    both = run.repeat([time, time]).rows
-    if time > run.options.t_start:
-        return both[0], both[1]
-    system, before, speeds = run.system, both[0].copy(), run.wiring.columns["speed"]
-    given = [float(both[0, speeds] @ _direction(run.wiring, branch)) for branch in run.wiring.motions]
+def _before_start(run: Recorded, after: Array) -> Array:
+    """The output row before the impulses of the start."""
+    system, before, speeds = run.system, after.copy(), run.wiring.columns["speed"]
+    given = [float(after[speeds] @ _direction(run.wiring, branch)) for branch in run.wiring.motions]
     before[run.wiring.columns["contact_work"]] = 0.0
     before[speeds] = system.basis @ system.initial_speed + system.basis_prescribed @ np.array(given)
-    return before, both[0]
+    return before
 
 
 def _direction(wiring: Wiring, branch: Branch) -> Array:

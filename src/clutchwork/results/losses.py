@@ -12,6 +12,7 @@ from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
 from clutchwork.base.text import columns
 from clutchwork.declare.calls import explained, explained_methods
+from clutchwork.declare.node import Component, Domain, Work
 from clutchwork.results.flows import Flows
 from clutchwork.results.loss import Loss as Loss
 from clutchwork.results.ratios import input_and_output
@@ -173,8 +174,19 @@ def losses(run: Recorded, found: Flows, power: bool) -> Losses:
         share = heat[name] / total if total else 0.0
         lines.append(Loss(name, kind, taken, given, stored[name], heat[name], share, outside[name]))
     made = tuple((element, shaft, energy) for (element, shaft), energy in joints.items())
-    shafts = input_and_output(wiring)
+    shafts = input_and_output(wiring) or _drive_and_vehicle(wiring)
     return Losses(found.begin, found.end, tuple(lines), made, found.balance, power, run.system.name, shafts)
+
+
+def _drive_and_vehicle(wiring: Wiring) -> tuple[str, str] | None:
+    """The shaft of the first source and the heaviest mass."""
+    driven = [wiring.nodes[n].name for b in wiring.elements for n in b.direction if n >= 0 and _drives(b.component)]
+    masses = [node for node in wiring.nodes if node.domain is Domain.TRANSLATION]
+    return (driven[0], max(masses, key=lambda node: node.inertia).name) if driven and masses else None
+
+
+def _drives(component: Component) -> bool:
+    return Work.SOURCE in component.work
 
 
 def _summed(part: Mapping[str, float], owner: Callable[[str], str], scale: float) -> dict[str, float]:

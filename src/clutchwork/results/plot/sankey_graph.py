@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections import defaultdict, deque
+from collections import Counter, defaultdict, deque
+from collections.abc import Callable
 
 from clutchwork.base.classes import dataclass
 from clutchwork.results.loss import LossTable
@@ -92,7 +93,7 @@ def _columns(boxes: dict[str, Box], ribbons: list[Ribbon], first: str | None, la
     for ribbon in ribbons:
         beside[ribbon.start].add(ribbon.end)
         beside[ribbon.end].add(ribbon.start)
-    order = _forward(_by_distance(boxes, beside, first, last), boxes, ribbons, first, last)
+    order = _order(_by_distance(boxes, beside, first, last), boxes, ribbons, first, last)
     place = {name: number for number, name in enumerate(order)}
     column: dict[str, int] = {}
     for name in order:
@@ -102,7 +103,11 @@ def _columns(boxes: dict[str, Box], ribbons: list[Ribbon], first: str | None, la
         after = [column[other] for other in beside[name] if place[other] > place[name]]
         if after and not before:
             column[name] = min(after) - 1
-        elif boxes[name].outside < 0.0 and not after and column[name] > max(column.values()) - NEAR:
+        elif (
+            (boxes[name].outside < 0.0 or beside[name] == {last})
+            and not after
+            and column[name] > max(column.values()) - NEAR
+        ):
             # the loads of the end stand below each other
             column[name] = max(column.values())
     least = min(column.values(), default=0)
@@ -112,8 +117,9 @@ def _columns(boxes: dict[str, Box], ribbons: list[Ribbon], first: str | None, la
 def _by_distance(boxes: dict[str, Box], beside: dict[str, set[str]], first: str | None, last: str | None) -> list[str]:
     """Boxes by where they lie between drive and load."""
     start = first if first in boxes else max(boxes, key=lambda name: boxes[name].outside, default=None)
-    end = last if last in boxes else min(boxes, key=lambda name: boxes[name].outside, default=None)
-    here, there = _distances(beside, start), _distances(beside, end)
+    here = _distances(beside, start)
+    end = last if last in boxes else max(boxes, key=lambda name: here.get(name, 0), default=None)
+    there = _distances(beside, end)
 
     def key(name: str) -> tuple[float, int]:
         a, b = here.get(name, 0), there.get(name, 0)
@@ -134,34 +140,64 @@ def _distances(beside: dict[str, set[str]], start: str | None) -> dict[str, int]
     return found
 
 
-def _forward(
+def _order(
     order: list[str], boxes: dict[str, Box], ribbons: list[Ribbon], first: str | None, last: str | None
 ) -> list[str]:
-    """The order with boxes moved so that least goes against the main direction, from drive to load or back."""
-    drive = [name for name in order if name == first or boxes[name].outside > 0.0]
+    """An order in which little goes against the main direction, from drive to load or back."""
     ahead = 1.0 if _sent(ribbons, first, boxes) >= 0.0 else -1.0
-    largest = sum(abs(ribbon.energy) for ribbon in ribbons)
+    sent = [(r.start, r.end, r.energy) if ahead * r.energy > 0.0 else (r.end, r.start, -r.energy) for r in ribbons]
+    largest = sum(abs(energy) for *_, energy in sent)
     # what acts on the last shaft alone is behind it, whether it drives or brakes
-    loads = [ribbon.start for ribbon in ribbons if ribbon.end == last and boxes[ribbon.start].outside]
+    joints = Counter(name for ribbon in ribbons for name in (ribbon.start, ribbon.end))
+    loads = [ribbon.start for ribbon in ribbons if ribbon.end == last and joints[ribbon.start] == 1]
 
-    def cost(places: dict[str, int]) -> float:
-        back = sum(abs(r.energy) for r in ribbons if (places[r.start] < places[r.end]) != (ahead * r.energy > 0.0))
+    def cost(one: list[str]) -> float:
+        places = _numbered(one)
+        back = sum(abs(energy) for start, end, energy in sent if places[start] > places[end])
         if first in places and last in places:
             back += largest * (places[first] > places[last])
             back += largest * sum(places[name] < places[last] for name in loads)
         return back
 
-    best, improved = cost(_numbered(order)), True
-    while improved and drive:
+    tried = [_improved(one, cost) for one in (order, _greedy(order, sent))]
+    return min(tried, key=cost)
+
+
+def _improved(order: list[str], cost: Callable[[list[str]], float]) -> list[str]:
+    """The order with single boxes moved as long as that helps."""
+    best, improved = cost(order), True
+    while improved:
         improved = False
         for name in list(order):
             rest = [other for other in order if other != name]
             tried = [[*rest[:k], name, *rest[k:]] for k in range(len(order))]
-            costs = [cost(_numbered(one)) for one in tried]
+            costs = [cost(one) for one in tried]
             least = min(costs)
             if least < best * (1.0 - 1e-9):
                 order, best, improved = tried[costs.index(least)], least, True
     return order
+
+
+def _greedy(order: list[str], sent: list[tuple[str, str, float]]) -> list[str]:
+    """Boxes that only take go to the right, those that only give to the left, then those that give most more.
+
+    Source: P. Eades, X. Lin, W. F. Smyth 1993, doi:10.1016/0020-0190(93)90079-O.
+    """
+    left, right, rest = list[str](), list[str](), list(order)
+    while rest:
+        there = set(rest)
+        gives = {name: sum(abs(e) for a, b, e in sent if a == name and b in there) for name in rest}
+        takes = {name: sum(abs(e) for a, b, e in sent if b == name and a in there) for name in rest}
+        sinks = [name for name in rest if not gives[name]]
+        sources = [name for name in rest if not takes[name]]
+        if sinks:
+            right[:0] = [sinks[-1]]
+            rest.remove(sinks[-1])
+        else:
+            chosen = sources[0] if sources else max(rest, key=lambda name: gives[name] - takes[name])
+            left.append(chosen)
+            rest.remove(chosen)
+    return [*left, *right]
 
 
 def _numbered(order: list[str]) -> dict[str, int]:
