@@ -145,8 +145,7 @@ def _axle(d: cw.Driveline, inputs: Inputs, speed: float, slope: object) -> None:
     d.add(cw.Gear("final_drive", input=pinion, output=carrier, ratio=FINAL_DRIVE))
     car = node(d, "car")
     sides = {side: d.shaft(f"{side}_side", inertia=0.005, speed=turning) for side in ("left", "right")}
-    # sun and ring of equal size: the carrier turns with the mean of both sides, each has half of the torque
-    d.add(cw.Planetary("differential", sun=sides["left"], ring=sides["right"], carrier=carrier, ratio=1.0))
+    d.add(cw.Differential("differential", carrier=carrier, left=sides["left"], right=sides["right"]))
     for side, stiffness in (("left", 9e3), ("right", 7e3)):
         wheel = d.shaft(f"{side}_wheel", inertia=0.9, speed=turning)
         d.add(cw.SpringDamper(f"{side}_shaft", base=sides[side], follower=wheel, stiffness=stiffness, damping=6.0))

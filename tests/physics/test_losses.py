@@ -10,7 +10,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.results.flows import flows
-from support import random_contacts, random_large
+from support import random_contacts, random_large, samples
 
 # part of the turnover, at rtol 1e-9: Gauss points on the same steps as the work of the core
 CLOSED = 1e-8
@@ -56,6 +56,23 @@ def test_windows_add_up(seed: int) -> None:
     for joint, energy in whole.joints.items():
         assert sum(part.joints[joint] for part in parts) == pytest.approx(energy, abs=CLOSED * turnover)
     assert sum(part.balance.input for part in parts) == pytest.approx(whole.balance.input, abs=CLOSED * turnover)
+
+
+# its torque grows with the square of the speed, without end
+ENDLESS = ("QuadraticTorque",)
+ALL = [cls for cls in samples.declared(*samples.ELEMENT_ROLES) if cls.__name__ not in ENDLESS]
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_every_element_closes(cls) -> None:
+    """Whatever it is, what goes in comes out, is stored or is heat."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        d = samples.driveline(cls)
+        d.add(cw.Torque("push", shaft=d.nodes[0], torque=cw.Sine(amplitude=3.0, frequency=1.7, offset=4.0)))
+        run = d.simulate(0.3, rtol=1e-9, atol=1e-11)
+    assert run.finished, run.message
+    _closes(run, run.losses(), run.energy.turnover)
 
 
 def test_a_clutch_that_slips_at_a_constant_speed() -> None:

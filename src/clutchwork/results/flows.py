@@ -102,7 +102,8 @@ def _gauss(steps: Array, begin: float, end: float, row_size: int) -> Iterator[tu
 @kept
 def _steps(run: Recorded) -> Array:
     """Ends of the steps of the solver [s]; the run is repeated once for them."""
-    return run.repeat(None).time
+    times: Array = run.repeat(None).time
+    return times
 
 
 def _joints(wiring: Wiring) -> tuple[list[Joint], Array]:
