@@ -1,4 +1,4 @@
-"""A shaft that twists along its length: natural frequencies, damping, waves, statics, energy."""
+"""A shaft that twists along its length: natural frequencies, damping, waves, static twist, energy."""
 
 from __future__ import annotations
 

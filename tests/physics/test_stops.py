@@ -121,10 +121,10 @@ def test_what_presses_holds_until_its_force_changes_sign() -> None:
     assert np.all(run["ends.torque"][run.time > closed.time] <= 0.0)
 
 
-def test_a_backlash_driven_to_and_fro() -> None:
+def test_a_backlash_driven_back_and_forth() -> None:
     """Limit cycle: at each turn of the torque the gap is crossed, sqrt(2 b J/T); each impact makes T b of heat."""
     inertia, torque, gap, half = 0.05, 2.0, 0.03, 0.1
-    d = cw.Driveline("to and fro")
+    d = cw.Driveline("back and forth")
     shaft = d.shaft("j", inertia=inertia)
     d.add(cw.Backlash("lash", base=d.housing, follower=shaft, gap=gap, initial_twist=gap / 2))
     knots = [(k * half + side * 1e-12, torque * (-1) ** (k + side)) for k in range(8) for side in (0, 1)]

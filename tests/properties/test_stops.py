@@ -27,7 +27,7 @@ def test_random_stops(seed: int) -> None:
     largest = max(float(np.max(np.abs(torque))) for torque in torques)
     for stop in found:
         _keeps(run, stop, largest)
-    # what swings to and fro counts too
+    # what swings back and forth counts too
     kinetic = max(e.energy_before for e in run.events) if len(run.events) else 0.0
     assert abs(run.energy.residual) <= 1e-8 * (run.energy.turnover + kinetic)
     for event in run.events:

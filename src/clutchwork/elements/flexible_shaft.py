@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from math import inf, pi, sin, sqrt
+from typing import ClassVar
 
-from clutchwork.declare import Found, Node, Role, component, param, port
+from clutchwork.declare import Found, Node, Role, Way, component, param, port
 from clutchwork.declare.node import Part
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.bases.modal import Modal, frequencies
 from clutchwork.elements.gear import Gear
 from clutchwork.elements.spring_damper import SpringDamper
+
+
+class Coordinate(SpringDamper):
+    """Spring and damper on the amplitude of a mode, which reacts on no member."""
+
+    ways: ClassVar[tuple[Way, ...]] = (Way("amplitude", "rate of the amplitude"),)
+
+    def directions(self) -> Mapping[str, Mapping[str, float]]:
+        """Its own speed alone."""
+        return {"amplitude": {"follower": 1}}
+
 
 GEOMETRY = ("length", "outer_diameter")
 
@@ -108,7 +120,7 @@ class FlexibleShaft(Heating):
             raise OverflowError
         if self.modes is not None:
             domain = self.base.domain if self.follower.fixed else self.follower.domain
-            made = Modal(self.name, domain, self.whole_stiffness, self.whole_inertia, self.damping_time)
+            made = Modal(self.name, domain, self.whole_stiffness, self.whole_inertia, self.damping_time, Coordinate)
             yield from made.parts((self.base, self.follower), int(self.modes), self.heat, self.heat_share)
             return
         count, nodes = int(self.segments), list[Node]()

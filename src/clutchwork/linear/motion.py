@@ -46,7 +46,7 @@ class Motion:
         self.D = np.vstack([system.element_rate, system.contact_rate])
         self.delta = np.vstack([system.element_rate_prescribed, system.contact_rate_prescribed])
         self.held = np.flatnonzero(instant.modes == LOCKED)
-        self.ties = Ties(instant, self.local, self.D, self.delta)
+        self.ties = Ties(instant, self.local.ratio[:, -1], self.D, self.delta)
         # a change of a ratio moves speeds as a prescribed speed does
         B, beta = self.ties.beside(system.contact_rate[self.held], system.contact_rate_prescribed[self.held])
         self.free: Free = free_motion(B, beta, preference(instant))

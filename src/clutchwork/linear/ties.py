@@ -11,7 +11,6 @@ from clutchwork.assembly.wiring import HOUSING
 
 if TYPE_CHECKING:
     from clutchwork.linear.instant import Instant
-    from clutchwork.linear.motion import Local
 
 Array = NDArray[np.float64]
 
@@ -19,11 +18,11 @@ Array = NDArray[np.float64]
 class Ties:
     """Rows of the transmissions over speeds and prescribed speeds, and what is known of them at the instant."""
 
-    def __init__(self, instant: Instant, local: Local, D: Array, delta: Array) -> None:
+    def __init__(self, instant: Instant, ratio: Array, D: Array, delta: Array) -> None:
         first = self.first = np.asarray(instant.system.transmission_element, dtype=int)
         second = self.second = first + 1
         self.followers = np.asarray(instant.system.transmission_speed, dtype=int)
-        self.ratio = local.ratio[:, -1]
+        self.ratio = ratio
         self.row = D[first] - self.ratio[:, None] * D[second]
         self.shift = delta[first] - self.ratio[:, None] * delta[second]
         self.torque = instant.part("element_torque")[first]

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from math import inf, pi, sqrt
 from typing import Any, ClassVar
 
-from clutchwork.declare import HOUSING, Component, Node, Role, ThermalNode, Way, family, param, port
+from clutchwork.declare import HOUSING, Component, Node, Role, ThermalNode, family, param, port
 from clutchwork.declare.node import Domain, Part
-from clutchwork.elements.spring_damper import SpringDamper
 
 
 @family
@@ -28,16 +27,6 @@ class Sum(Component):
     def rows(self) -> list[dict[str, Fraction]]:
         """Coefficients of the speeds whose sum is zero."""
         return [{"total": Fraction(1), "first": Fraction(-1), "second": -Fraction(self.factor)}]
-
-
-class Coordinate(SpringDamper):
-    """Spring and damper on the amplitude of a mode, which reacts on no member."""
-
-    ways: ClassVar[tuple[Way, ...]] = (Way("amplitude", "rate of the amplitude"),)
-
-    def directions(self) -> Mapping[str, Mapping[str, float]]:
-        """Its own speed alone."""
-        return {"amplitude": {"follower": 1}}
 
 
 def compliances(stiffness: float, modes: int) -> tuple[float, float]:
@@ -74,8 +63,16 @@ def _zero(function: Callable[[float], float], low: float, high: float) -> float:
 class Modal:
     """The parts of a shaft by its modes."""
 
-    def __init__(self, name: str, domain: Domain, stiffness: float, inertia: float, damping_time: float) -> None:
-        self._name, self._domain = name, domain
+    def __init__(
+        self,
+        name: str,
+        domain: Domain,
+        stiffness: float,
+        inertia: float,
+        damping_time: float,
+        coordinate: Callable[..., Component],
+    ) -> None:
+        self._name, self._domain, self._coordinate = name, domain, coordinate
         self._stiffness, self._inertia, self._damping_time = stiffness, inertia, damping_time
 
     def parts(
@@ -117,6 +114,6 @@ class Modal:
     def _node(self, name: str, inertia: float) -> Node:
         return Node(f"{self._name}.{name}", self._domain, inertia)
 
-    def _spring(self, name: str, node: Node, stiffness: float) -> Coordinate:
+    def _spring(self, name: str, node: Node, stiffness: float) -> Component:
         springs: dict[str, Any] = {"stiffness": stiffness, "damping": self._damping_time * stiffness}
-        return Coordinate(f"{self._name}.{name}", base=HOUSING, follower=node, **springs, **self._heat)
+        return self._coordinate(f"{self._name}.{name}", base=HOUSING, follower=node, **springs, **self._heat)
