@@ -21,11 +21,11 @@ KEYS = {"group", "what", "use", "ours", "names", "alone", "missing", "amesim"} |
 INTRODUCTION = """# Part by part
 
 The parts of a driveline here, in the Modelica Standard Library 4.0, in Simscape Driveline and in Simcenter Amesim,
-where they mean the same. A number is that of the fields that the first of them needs at least, ports and initial values not
-counted: ours are counted in a use of it that is checked, a law of friction as one, those of the Modelica library in
-its source, those of Simscape in its public reference with the simplest options. The public pages of Amesim name its
-parts and not their fields, so that column says what a part is. Laws of friction, signals, sweeps, fits and export
-do not count as parts and are left out.
+where they mean the same. A number is that of the fields that the first of them needs at least, ports and initial
+values not counted: ours are counted in a use of it that is checked, a law of friction as one, those of the Modelica
+library in its source, those of Simscape in its public reference with the simplest options. The public pages of Amesim
+name its parts and not their fields, so that column says what a part is. Laws of friction, signals, sweeps, fits and
+export do not count as parts and are left out.
 """
 HEAD = """
 | part | here | | Modelica | | Simscape Driveline | | Amesim |

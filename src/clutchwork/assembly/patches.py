@@ -90,7 +90,7 @@ def patches(where: Numbered, old: Any, new: Any) -> list[Patch]:
         return list(_thermal(where, old, new))
     if not isinstance(old, Component) or role(old) not in PLAIN or type(old).parts is not Component.parts:
         raise Unpatched
-    if "ratio" in type(old).hooks and old.initial_ratio() != new.initial_ratio():
+    if "ratio" in type(old).hooks and old.start_ratio() != new.start_ratio():
         raise Unpatched
     if type(old).ways and old.directions() != new.directions():
         raise Unpatched

@@ -241,7 +241,7 @@ class Component(Element):
         named = {part.name: part for part in self.parts()}
         return named[f"{self.name}.{name}"]
 
-    def initial_ratio(self) -> float:
+    def start_ratio(self) -> float:
         """Of a transmission: its ratio at the start."""
         return 1.0
 

@@ -52,7 +52,7 @@ class CrankSlider(Component):
         """Angle at the start [rad]."""
         return (angle_of(self.shaft) - angle_of(self.support) + self.phase,)
 
-    def initial_ratio(self) -> float:
+    def start_ratio(self) -> float:
         """Speed of the mass over that of the shaft at the start [m]."""
         (angle,) = self.initial_states()
         x = self.radius * sin(angle)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from clutchwork.declare import Component, Found, Node, Role, component, option, param, port
 from clutchwork.elements.bases.heating import Heating
@@ -49,11 +50,16 @@ class Differential(Heating):
 
     def parts(self) -> Iterable[Component]:
         """The gear alone, or with its friction."""
-        ends = {"carrier": self.carrier, "left": self.left, "right": self.right}
+        ends: dict[str, Any] = {"carrier": self.carrier, "left": self.left, "right": self.right}
         drive, coast = self.shares()
         if self.preload == drive == coast == 0.0:
             return (OpenDifferential(self.name, **ends),)
-        own = {"tolerance": self.tolerance, "locked": self.locked, "heat": self.heat, "heat_share": self.heat_share}
+        own: dict[str, Any] = {
+            "tolerance": self.tolerance,
+            "locked": self.locked,
+            "heat": self.heat,
+            "heat_share": self.heat_share,
+        }
         return (LimitedSlip(self.name, preload=self.preload, drive=drive, coast=coast, **ends, **own),)
 
 

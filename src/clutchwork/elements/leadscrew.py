@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import atan, tau
+from typing import Any
 
 from clutchwork.declare import Component, Found, Node, Role, component, option, param, port
 from clutchwork.elements.bases.heating import Heating
@@ -41,6 +42,11 @@ class Leadscrew(Heating):
     def parts(self) -> Iterable[Component]:
         """The mesh of screw and nut with its friction."""
         ahead, back = screw_efficiencies(self.lead_angle, self.friction_coefficient, self.normal_angle)
-        ends = {"shaft": self.screw, "mass": self.mass, "support": self.support}
-        own = {"tolerance": self.tolerance, "locked": self.locked, "heat": self.heat, "heat_share": self.heat_share}
+        ends: dict[str, Any] = {"shaft": self.screw, "mass": self.mass, "support": self.support}
+        own: dict[str, Any] = {
+            "tolerance": self.tolerance,
+            "locked": self.locked,
+            "heat": self.heat,
+            "heat_share": self.heat_share,
+        }
         return (RackMesh(self.name, radius=self.lead / tau, loss_table=((0.0, ahead, back, 0.0, 0.0),), **ends, **own),)

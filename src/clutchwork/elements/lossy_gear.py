@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from clutchwork.declare import Component, Found, Node, Role, component, param, port
 from clutchwork.elements.bases.meshing import Lossy
@@ -44,5 +45,5 @@ class LossyGear(Lossy):
     def parts(self) -> Iterable[Component]:
         """The mesh with its friction."""
         ratio = self.ratio if self.ratio is not None else -(self.teeth_output or 0) / (self.teeth_input or 1)
-        ends = {"input": self.input, "output": self.output, "support": self.support}
+        ends: dict[str, Any] = {"input": self.input, "output": self.output, "support": self.support}
         return (Mesh(self.name, ratio=ratio, **ends, **self.mesh()),)

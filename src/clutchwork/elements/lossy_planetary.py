@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from clutchwork.declare import Component, Found, Node, Role, component, param, port
 from clutchwork.elements.bases.meshing import Lossy
@@ -43,5 +44,5 @@ class LossyPlanetary(Lossy):
     def parts(self) -> Iterable[Component]:
         """The mesh between sun and ring, carried by the carrier."""
         ratio = self.ratio if self.ratio is not None else (self.teeth_ring or 0) / (self.teeth_sun or 1)
-        ends = {"input": self.sun, "output": self.ring, "support": self.carrier}
+        ends: dict[str, Any] = {"input": self.sun, "output": self.ring, "support": self.carrier}
         return (Mesh(self.name, ratio=-ratio, **ends, **self.mesh()),)

@@ -52,6 +52,6 @@ class PolygonSprocket(Component):
         """Angle in the link at the start [rad]."""
         return (self.phase * pi / self.teeth,)
 
-    def initial_ratio(self) -> float:
+    def start_ratio(self) -> float:
         """Speed of the strand over that of the sprocket at the start [m]."""
         return self.radius * cos(*self.initial_states())

@@ -43,7 +43,7 @@ class UniversalJoint(Component):
         """Angle at the start [rad]."""
         return (angle_of(self.base) - angle_of(self.support) + self.phase,)
 
-    def initial_ratio(self) -> float:
+    def start_ratio(self) -> float:
         """Speed of the follower over that of the base at the start."""
         bend, (angle,) = self.bend_angle, self.initial_states()
         return cos(bend) / (1.0 - (sin(bend) * cos(angle)) ** 2)

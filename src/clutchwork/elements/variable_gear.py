@@ -36,6 +36,6 @@ class VariableGear(Component):
         """Both rates relative to the support."""
         return {"input": {"input": 1, "support": -1}, "output": {"output": 1, "support": -1}}
 
-    def initial_ratio(self) -> float:
+    def start_ratio(self) -> float:
         """Ratio at the start."""
         return at_start(self.ratio)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from clutchwork.declare import Component, Found, Node, Role, component, option, param, port
 from clutchwork.elements.bases.heating import Heating
@@ -38,6 +39,11 @@ class WormGear(Heating):
     def parts(self) -> Iterable[Component]:
         """The mesh with its friction."""
         ahead, back = screw_efficiencies(self.lead_angle, self.friction_coefficient, self.normal_angle)
-        ends = {"input": self.worm, "output": self.wheel, "support": self.support}
-        own = {"tolerance": self.tolerance, "locked": self.locked, "heat": self.heat, "heat_share": self.heat_share}
+        ends: dict[str, Any] = {"input": self.worm, "output": self.wheel, "support": self.support}
+        own: dict[str, Any] = {
+            "tolerance": self.tolerance,
+            "locked": self.locked,
+            "heat": self.heat,
+            "heat_share": self.heat_share,
+        }
         return (Mesh(self.name, ratio=self.ratio, loss_table=((0.0, ahead, back, 0.0, 0.0),), **ends, **own),)

@@ -90,7 +90,8 @@ class Motion:
         ties, (_, by_state, by_signal, now) = self.ties, self.local.split(self.local.ratio_slope)
         held = by_state @ self.s + by_signal @ self.i
         second = self.rates[ties.second]
-        return ties.acceleration[:, None] * self.ratios + now[:, None] * second + ties.rate[:, None] * held
+        slopes: Array = ties.acceleration[:, None] * self.ratios + now[:, None] * second + ties.rate[:, None] * held
+        return slopes
 
     def follow(self, part: Array) -> Array:
         """Derivatives of local quantities over the base columns."""

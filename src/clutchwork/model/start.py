@@ -120,7 +120,7 @@ def _follow_ratios(
             used[path_of(component)] = row
         elif abs(left.get(KNOWN, ZERO)) > slack:
             guilty = _guilty(used, row)
-            message = f"has the ratio {component.initial_ratio():.9g} at the start, which contradicts "
+            message = f"has the ratio {component.start_ratio():.9g} at the start, which contradicts "
             message += f"the initial speed of {' and '.join(guilty)}" if guilty else "the prescribed speeds"
             remedy = "correct one of them, or remove a speed: it then follows from the ratio"
             yield Problem(path_of(component), "ratio", message, remedy=remedy)

@@ -24,7 +24,7 @@ class Transmission(NamedTuple):
 
     def row(self) -> Row:
         """The rates at the start: first - ratio second."""
-        return plus(self.first, -exact(self.component.initial_ratio()), self.second)
+        return plus(self.first, -exact(self.component.start_ratio()), self.second)
 
 
 def is_transmission(component: Any) -> bool:

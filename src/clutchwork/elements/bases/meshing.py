@@ -23,7 +23,7 @@ class Meshing(Heating):
     """A gear row with friction: its capacity follows the torque of the row."""
 
     # slides with the capacity itself
-    friction: ClassVar[Law] = Coulomb(static=1.0, kinetic=1.0)  # type: ignore[assignment]
+    friction: ClassVar[Law] = Coulomb(static=1.0, kinetic=1.0)  # type: ignore[misc]
 
     tolerance: float = option(
         "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)

@@ -17,5 +17,5 @@ class Stop(Heating):
     """A contact that exists at the ends of a way alone; `initial_states` is its position at the start."""
 
     # it has no load, so its coefficient does not matter
-    friction: ClassVar[Law] = Coulomb(static=0.1, kinetic=0.1)
+    friction: ClassVar[Law] = Coulomb(static=0.1, kinetic=0.1)  # type: ignore[misc]
     tolerance: ClassVar[float] = 0.0

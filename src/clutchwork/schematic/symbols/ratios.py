@@ -38,11 +38,11 @@ def joint(pen: Pen, shown: Drawn) -> None:
     pen.line((0.0, -8.5), (0.0, 8.5), look=Look(width=1.2))
     pen.circle(0.0, 0.0, 2.4, look=BODY)
     for port in ("base", "follower"):
-        side = shown.sides.get(port)
-        if side is None:
+        end = shown.sides.get(port)
+        if end is None:
             wall(pen, LEFT if port == "base" else RIGHT, -9.0 if port == "base" else 9.0, shown)
         else:
-            pen.line((side * 9.0, 0.0), (side * shown.half, 0.0), look=shown.line)
+            pen.line((end * 9.0, 0.0), (end * shown.half, 0.0), look=shown.line)
     if "support" in shown.sides:
         y, side = shown.pins.get("support", 0.0), shown.sides["support"]
         pen.line((0.0, -8.5), (0.0, y), (side * shown.half, y), look=shown.line)
