@@ -272,7 +272,8 @@ class Model {
                                   half,
                                   half,
                                   nc,
-                                  nc});
+                                  nc,
+                                  0});
     put(basis), add(rates(all, given_of, np)), add(inertia_), put(inertias), add(none);
     add(Indices(nv));
     put(element_rate), add(rates(elements_, given_of, np));

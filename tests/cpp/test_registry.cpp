@@ -76,6 +76,8 @@ struct Fields {
 template <class F>
 void differentiate(F&& f, const double* x, int n, int outputs, const bool* fixed, bool lenient) {
   D dual[most], r[most];
+  // what a component leaves alone is zero
+  for (D& x : r) x = D(0.0);
   double moved[most], plain[most] = {}, up[most] = {}, down[most] = {};
   for (int i = 0; i < n; ++i) dual[i] = D::variable(x[i], i), moved[i] = x[i];
   f(static_cast<const D*>(dual), r), f(x, plain);
@@ -369,6 +371,7 @@ struct Probe {
   void compare(double rate) {
     const double turn = 0.3, h = 1e-6;
     const Partial<double> p = branch_partial(ws, b, rate, turn, state, rates, {f_state, g_rate, g_time, g_state});
+    if (!check::same_bits(torque(rate), p.torque)) printf("XX kind %d of %d law %d compl %d: %.17g %.17g\n", b.kind, torque_kinds, b.law, int(b.compliant), torque(rate), p.torque);
     CHECK(check::same_bits(torque(rate), p.torque));
     for (int i = 0; i < b.states; ++i) CHECK(check::same_bits(moved_rates[i], rates[i]));
     // central differences along `move`, which returns the rate: of the torque against `by`, of state rates against `g`
