@@ -15,8 +15,7 @@ TORQUES = "Engines, loads and other torques"
 MOTION = "Prescribed motion"
 PROCESSES = "Actuators, springs that press, and wear"
 HEAT = "Heat"
-SENSORS = "Sensors"
-ELEMENTS = (CLUTCHES, BRAKES, GEARS, SPRINGS, TORQUES, MOTION, PROCESSES, HEAT, SENSORS)
+ELEMENTS = (CLUTCHES, BRAKES, GEARS, SPRINGS, TORQUES, MOTION, PROCESSES, HEAT)
 STICKING = "Laws that stick: a contact locks and breaks away exactly"
 COMPLIANT = "Compliant laws: a function of slip and states of their own, they never lock"
 LAWS = (STICKING, COMPLIANT)
@@ -30,8 +29,6 @@ def purpose(cls: Any) -> str:
         return SIGNALS[0]
     if cls.role is Role.LAW:
         return STICKING if cls.sticks else COMPLIANT
-    if cls.kind.endswith("sensor"):
-        return SENSORS
     return _BY_ROLE.get(cls.role) or _of_element(cls)
 
 

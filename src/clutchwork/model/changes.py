@@ -18,7 +18,6 @@ from clutchwork.declare.node import (
     HeatFlow,
     Law,
     Node,
-    Part,
     Rate,
     Signal,
     ThermalNode,
@@ -306,7 +305,7 @@ class Renewed:
         return more
 
 
-def _inside(component: Component) -> Iterator[Part]:
+def _inside(component: Component) -> Iterator[Component | ThermalNode]:
     """Everything that an element is made of, parts of its parts included."""
     for part in component.parts():
         yield part

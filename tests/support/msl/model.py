@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -94,12 +93,11 @@ class Builder:
         inertia = dict.fromkeys(self.network.nodes(), 0.0)
         label: dict[str, str] = {}
         for name, e in self.elements.items():
-            if e["type"] in ("inertia", "mass", "mass_with_stop_and_friction"):
+            if e["type"] in ("inertia", "mass"):
                 node = self.network.node(f"{name}.flange_a")
                 if node != GROUND:
                     inertia[node] += float(e["J"] if e["type"] == "inertia" else e["m"])
-                    if e["type"] != "mass_with_stop_and_friction":
-                        label.setdefault(node, name)
+                    label.setdefault(node, name)
         nodes = {GROUND: self.driveline.housing}
         taken = (set(self.elements) - set(label.values())) | {"housing"}
         moving = self._translating()
@@ -161,15 +159,12 @@ class Builder:
 
     def model(self) -> Model:
         """Everything together."""
-        outputs = dict[str, Callable[[Any], np.ndarray]]()
+        outputs = {}
         for output in self.case["outputs"]:
-            what = output["signal"].rpartition(".")[2]
-            if what == "T":
-                outputs[output["csv"]] = itemgetter(f"{output['signal'][:-2]}.temperature")
-            elif what not in (*MODE_COLUMNS, "lossPower"):
+            if output["signal"].rpartition(".")[2] not in (*MODE_COLUMNS, "lossPower"):
                 outputs[output["csv"]] = self.kinematic(output["signal"])
         friction = {"clutch", "brake", "bearing_friction", "one_way_clutch", "lossy_gear"}
-        made = {e.name for e in self.driveline.elements if e.role is Role.CONTACT or isinstance(e, cw.LossyGear)}
+        made = {contact.name for contact in self.driveline.elements if contact.role is Role.CONTACT}
         contacts = tuple(name for name, e in self.elements.items() if e["type"] in friction and name in made)
         return Model(self.driveline, outputs, contacts)
 

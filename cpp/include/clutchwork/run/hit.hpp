@@ -6,23 +6,10 @@ namespace clutchwork {
 
 /// The first thing that happens inside a step.
 struct Hit {
-  enum What : int {
-    nothing,
-    line,
-    multiplier,
-    set,
-    parting,
-    load,
-    law,
-    fault,
-    exit,
-    process,
-    flip,
-    gap
-  } what = nothing;
-  int index = -1;  ///< guard, locked contact, dependent set, spare, contact, branch, or process
+  enum What : int { nothing, line, multiplier, set, parting, load, law, fault, exit } what = nothing;
+  int index = -1;  ///< guard, locked contact, dependent set, spare, contact, or branch
   double s = 1;    ///< where in the step, 0 to 1
-  int who = -1;    ///< what of a law leaves its piece; the end that a stop meets
+  int who = -1;    ///< what of a law leaves its piece
 };
 
 /// Round-off of a load over its largest size: a load that has passed zero passes it again only from farther away.
