@@ -18,6 +18,13 @@ INTRODUCTION = """# Elements
 The components of a driveline. Ports name the shafts that an element joins; `torque` is what it applies to its follower,
 or to its shaft, see [signs](../guide/signs.md). Each page has an example that runs."""
 
+# what the signals of shafts and masses inside of an element mean
+INSIDE = {
+    "speed": "speed of a shaft or mass inside",
+    "angle": "its angle",
+    "position": "its position",
+    "acceleration": "its acceleration",
+}
 # what the signals of a result mean that are not inputs or states
 MEANINGS = {
     "torque": "torque on its follower, or on its shaft",
@@ -99,7 +106,7 @@ def _shared(name: str) -> str:
 
 def _results(cls: Any, example: element_figures.Example) -> Iterator[str]:
     """The signals that the example reports of the element."""
-    docs = _meanings(PlateContact, *_elements()) | _meanings(cls) | MEANINGS
+    docs = INSIDE | _meanings(PlateContact, *_elements()) | _meanings(cls) | MEANINGS
     unused = {name for name, spec in _optional(cls) if name not in example.given}
     yield (
         f'## Results\n\n`run["{example.name}.torque"]` and so on, of the example:\n'

@@ -22,9 +22,9 @@
                                         double*);                                                                      \
   KEYWORD template Dual<double, 1> branch_heat(const Workspace<double>&, const Branch<double>&, double, const double*, \
                                                const Dual<double, 1>&);                                                \
-  KEYWORD template Dual<double, 1> law_margin(const Workspace<double>&, const Branch<double>&, double, double,         \
-                                              const double*, const double*, int&);                                     \
-  KEYWORD template int law_cross(const Workspace<double>&, const Branch<double>&, double, int, double*);               \
+  KEYWORD template Dual<double, 1> law_margin(const Workspace<double>&, const Branch<double>&, const double*,          \
+                                              const double*, const double*, const double*, int&);                      \
+  KEYWORD template int law_cross(const Workspace<double>&, const Branch<double>&, const double*, int, double*);        \
   KEYWORD template double contact_limit(const System&, int, const double*, const double*, const double*, int);         \
   KEYWORD template double table_room(const Workspace<double>&, int, double, double&);                                  \
   KEYWORD template double edge_at(const Workspace<double>&, int, int);                                                 \
@@ -45,5 +45,6 @@ CLUTCHWORK_SMALL_ROW(extern, 2)
 CLUTCHWORK_SMALL_ROW(extern, 3)
 CLUTCHWORK_SMALL_ROW(extern, 4)
 extern template Status run_phase<SparseForm<double>>(Workspace<double>&, double, Sink&);
+extern template Status run_phase<FullForm<double>>(Workspace<double>&, double, Sink&);
 #endif
 }  // namespace clutchwork

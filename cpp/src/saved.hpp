@@ -264,6 +264,8 @@ inline void resume(Workspace<double>& ws, const unsigned char* bytes) {
     ws.started = false;
     return;
   }
+  prepare_loads(ws);
+  list_processes(ws);
   for (int c = 0; c < sys.contacts; ++c) ws.contact.compliant[c] = is_compliant_law(sys.contact_law[c]);
   for (int d = 0; d < ws.n_directions; ++d) ws.branch_of[d] = -1;
   place_cursors(ws);

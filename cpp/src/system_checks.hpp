@@ -27,8 +27,8 @@ inline bool signal_fits(const System& s, std::int64_t i) {
   return end - start <= period && start > -1e8 * period && abs(end) < 1e12 * period;
 }
 
-/// Calls curve(place) and choice(place, words) for every parameter that says where numbers stand or which of a few
-/// words is meant: they never change.
+/// Calls curve(place) and choice(place, words) for every parameter that says where numbers stand, which of a few words
+/// is meant, or how many states there are (words = 0: any number): they never change.
 template <class Curve, class Choice>
 void visit_fixed(const System& s, Curve&& curve, Choice&& choice) {
   std::int64_t first = 0;
@@ -70,7 +70,7 @@ inline bool choices_fit(const System& s) {
       s, [](std::int64_t) {},
       [&](std::int64_t at, int n) {
         const double x = s.params[at];
-        good = good && x >= 0 && x < n && x == double(int(x));
+        good = good && (n == 0 || (x >= 0 && x < n && x == double(int(x))));
       });
   return good;
 }
@@ -86,10 +86,12 @@ inline bool tables_fit(const System& s, std::int64_t contact) {
   });
 }
 
-/// Whether n references from `first` on are to signals and shared states: torques know no rates of others.
+/// Whether n references from `first` on are to signals and shared states: torques know the rates of others, and those
+/// of elements alone, in the full form.
 inline bool plain_inputs(const System& s, std::int64_t first, int n) {
+  const std::int64_t most = s.inputs + s.shared + (s.full[0] != 0 ? s.elements : 0);
   for (int i = 0; i < n && first + n <= s.n_input_refs; ++i) {
-    if (s.input_refs[first + i] >= s.inputs + s.shared) return false;
+    if (s.input_refs[first + i] >= most) return false;
   }
   return true;
 }
@@ -126,6 +128,9 @@ inline bool shared_in_range(const System& s) {
   bool good = s.shared <= s.states;
   for (std::int64_t i = 0; good && i < s.flows; ++i) good = flow_fits(s, i);
   for (std::int64_t i = 0; good && i < s.processes; ++i) good = process_fits(s, i);
+  for (std::int64_t i = 0; good && i < s.supplies; ++i) {
+    good = s.supply_element[i] >= 0 && s.supply_element[i] < s.elements;
+  }
   for (std::int64_t h = 0; good && h < s.heats; ++h) {
     good = s.heat_direction[h] >= 0 && s.heat_direction[h] < s.elements + s.contacts && s.heat_to[h] >= 0 &&
            s.heat_to[h] < s.shared;
@@ -139,6 +144,16 @@ inline bool within(const std::int32_t* x, std::int64_t n, std::int64_t low, std:
     if (x[i] < low || x[i] > high) return false;
   }
   return true;
+}
+
+/// Whether the metered lines read nodes and directions that are there.
+inline bool meters_in_range(const System& s) {
+  bool good = within(s.meter_node, s.meters, 0, s.nodes - 1) &&
+              within(s.meter_column, s.meter_entries, 0, s.nodes + s.elements + s.contacts - 1);
+  for (std::int64_t m = 0; good && m < s.meters; ++m) {
+    good = s.meter_end[m] >= (m > 0 ? s.meter_end[m - 1] : 0) && s.meter_end[m] <= s.meter_entries;
+  }
+  return good;
 }
 
 /// Kinds are known, and offsets point into their pools.
@@ -156,17 +171,62 @@ inline bool offsets_in_range(const System& s) {
          within(s.input_refs, s.n_input_refs, 0, s.inputs + s.shared + 2 * (ne + nc) - 1);
 }
 
+/// Whether the ways of the elements follow each other, those of one with the same offsets.
+inline bool ways_fit(const System& s) {
+  const auto same = [&](std::int64_t i) {
+    return s.element_kind[i] == s.element_kind[i - 1] && s.element_param[i] == s.element_param[i - 1] &&
+           s.element_state[i] == s.element_state[i - 1] && s.element_input[i] == s.element_input[i - 1];
+  };
+  for (std::int64_t i = 0; i < s.elements;) {
+    const std::int64_t n = ways_of(s.element_kind[i]);
+    if (i + n > s.elements || (n > 1 && s.full[0] == 0)) return false;
+    for (std::int64_t w = 0; w < n; ++w) {
+      if (s.element_way[i + w] != w || (w > 0 && !same(i + w))) return false;
+    }
+    i += n;
+  }
+  return true;
+}
+
+/// Whether transmissions are elements of two ways with a ratio, and what follows from them are speeds.
+inline bool transmissions_fit(const System& s) {
+  if (s.transmissions > 0 && s.full[0] == 0) return false;
+  for (std::int64_t a = 0; a < s.transmissions; ++a) {
+    const std::int64_t d = s.transmission_element[a], i = s.transmission_speed[a];
+    if (d < 0 || d >= s.elements || s.element_way[d] != 0 || i < -1 || i >= s.speeds) return false;
+    const bool ties =
+        visit_torque(s.element_kind[d], [](auto tag) { return TransmissionElement<typename decltype(tag)::type>; });
+    if (!ties) return false;
+  }
+  return true;
+}
+
 /// Whether an element lies inside the pools; its states.
 inline bool element_fits(const System& s, std::int64_t i, std::int64_t& states) {
   bool good = true;
   visit_torque(s.element_kind[i], [&](auto tag) {
     using E = typename decltype(tag)::type;
     good = s.element_param[i] + param_count<E> <= s.n_params && s.element_input[i] + E::inputs <= s.n_input_refs &&
-           s.element_state[i] + E::states <= s.states - s.shared && plain_inputs(s, s.element_input[i], E::inputs);
+           plain_inputs(s, s.element_input[i], E::inputs);
     states = E::states;
+    if constexpr (Sized<E>) {
+      if (good) states = states_of(s.element_kind[i], -1, s.params + s.element_param[i]);
+    }
+    good = good && s.element_state[i] + states <= s.states - s.shared;
+    if (s.element_way[i] != 0) states = 0;
+    if constexpr (FittedLaw<E>) {
+      good =
+          good && E::fits(*reinterpret_cast<const typename E::template Params<double>*>(s.params + s.element_param[i]));
+    }
   });
   visit_torque_curves(s.element_kind[i], [&](int at) { good = good && curve_fits(s, s.element_param[i] + at); });
   return good;
+}
+
+/// Whether a torque element has the position of a stop.
+inline bool is_place(const System& s, std::int64_t i) {
+  return i >= 0 && i < s.elements &&
+         visit_torque(s.element_kind[i], [](auto tag) { return decltype(tag)::type::states > 0; });
 }
 
 /// Whether a contact and its law lie inside the pools; their states.
@@ -178,6 +238,11 @@ inline bool contact_fits(const System& s, std::int64_t i, std::int64_t& states) 
            plain_inputs(s, s.contact_input[i], E::inputs);
   });
   visit_contact_curves(s.contact_kind[i], [&](int at) { good = good && curve_fits(s, s.contact_param[i] + at); });
+  visit_contact(s.contact_kind[i], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    const auto& p = *reinterpret_cast<const typename E::template Params<double>*>(s.params + s.contact_param[i]);
+    if constexpr (FittedLaw<E>) good = good && E::fits(p);
+  });
   visit_law(s.contact_law[i], [&](auto tag) {
     using L = typename decltype(tag)::type;
     good = good && s.contact_law_param[i] + param_count<L> <= s.n_params &&
@@ -185,8 +250,23 @@ inline bool contact_fits(const System& s, std::int64_t i, std::int64_t& states) 
   });
   visit_law_curves(s.contact_law[i], [&](int at) { good = good && curve_fits(s, s.contact_law_param[i] + at); });
   if (!good || !tables_fit(s, i)) return false;
+  const bool stops =
+      visit_contact(s.contact_kind[i], [](auto tag) { return StopContact<typename decltype(tag)::type>; });
+  good = good && (stops ? is_place(s, s.contact_place[i]) : s.contact_place[i] == -1);
+  if (!good) return false;
   states = states_of(s.contact_kind[i], s.contact_law[i], s.params + s.contact_law_param[i]);
   return s.contact_state[i] + states <= s.states - s.shared;
+}
+
+/// Whether the contacts that follow loads are those that must, in order, in the full form.
+inline bool loads_fit(const System& s) {
+  std::int64_t found = 0;
+  for (std::int64_t c = 0; c < s.contacts; ++c) {
+    if (!is_loaded(s.contact_kind[c])) continue;
+    if (found >= s.loads || s.load_contact[found] != c) return false;
+    ++found;
+  }
+  return found == s.loads && (found == 0 || s.full[0] != 0);
 }
 
 /// Whether the rows of a matrix end in order, each with speeds in ascending order.
@@ -215,7 +295,8 @@ inline bool matrices_fit(const System& s) {
 
 /// Offsets and numbers inside the system that the core follows without looking.
 inline bool in_range(const System& s) {
-  bool good = offsets_in_range(s) && shared_in_range(s) && matrices_fit(s);
+  bool good = offsets_in_range(s) && ways_fit(s) && loads_fit(s) && transmissions_fit(s) && shared_in_range(s) &&
+              meters_in_range(s) && matrices_fit(s);
   for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
   std::int64_t all = 0, own = 0;
   for (std::int64_t i = 0; good && i < s.elements; ++i, all += own) good = element_fits(s, i, own);

@@ -2,6 +2,7 @@
 #include <clutchwork/c_api.h>
 #include <clutchwork/components/input.hpp>
 
+#include <array>
 #include <clutchwork/registry.gen.hpp>
 #include <initializer_list>
 #include <vector>
@@ -50,7 +51,7 @@ int law_kind() {
 /// Number of states that a law uses with these parameters.
 template <class L>
 int law_states(const Numbers& law) {
-  if constexpr (SizedLaw<L>) return L::count(*reinterpret_cast<const typename L::template Params<double>*>(law.data()));
+  if constexpr (Sized<L>) return L::count(*reinterpret_cast<const typename L::template Params<double>*>(law.data()));
   return int(L::states);
 }
 
@@ -125,9 +126,24 @@ class Model {
     element_param_.push_back(put(params_, params)), element_input_.push_back(put(refs_, signals));
     Numbers own = state;
     own.resize(E::states);
-    element_state_.push_back(put(state_, own));
+    element_state_.push_back(put(state_, own)), element_way_.push_back(0);
     return int(elements_.size()) - 1;
   }
+  /// An element of several ways, each from a base to a follower; returns the first.
+  template <class E>
+  int coupled(const std::vector<std::array<int, 2>>& ways, const Numbers& params, const Indices& signals = {},
+              const Numbers& state = {}) {
+    const int first = element<E>(ways[0][0], ways[0][1], params, signals, state);
+    for (int way = 1; way < int(ways.size()); ++way) {
+      elements_.push_back({ways[way][0], ways[way][1]});
+      for (Indices* numbers : {&element_kind_, &element_param_, &element_input_, &element_state_})
+        numbers->push_back(numbers->back());
+      element_way_.push_back(way);
+    }
+    full = true;
+    return first;
+  }
+  bool full = false;  ///< it runs in the full form
   /// `state`: where those of the law start, zero if left out; `tolerance`: slip below which it may lock.
   template <class E, class L>
   int contact(int base, int follower, const Numbers& params, const Indices& signals, const Numbers& law,
@@ -139,7 +155,7 @@ class Model {
     own.resize(std::size_t(law_states<L>(law)));
     contact_input_.push_back(put(refs_, signals)), contact_law_input_.push_back(put(refs_, law_signals));
     contact_state_.push_back(put(state_, own));
-    contact_tolerance_.push_back(tolerance), contact_initial_.push_back(locked);
+    contact_tolerance_.push_back(tolerance), contact_initial_.push_back(locked), contact_place_.push_back(-1);
     return int(contacts_.size()) - 1;
   }
   /// A state that any component may read as offset + scale * state.
@@ -230,11 +246,15 @@ class Model {
                                   np,
                                   count(elements_),
                                   count(contacts_),
+                                  0,
                                   count(states),
                                   nx,
                                   count(flow_kind_),
                                   count(process_kind_),
                                   count(heats_),
+                                  0,
+                                  0,
+                                  0,
                                   count(input_first_),
                                   count(segment_time_),
                                   count(params_),
@@ -252,14 +272,16 @@ class Model {
                                   half,
                                   half,
                                   nc,
-                                  nc});
+                                  nc,
+                                  0});
     put(basis), add(rates(all, given_of, np)), add(inertia_), put(inertias), add(none);
     add(Indices(nv));
     put(element_rate), add(rates(elements_, given_of, np));
-    add(element_kind_), add(element_param_), add(element_state_), add(element_input_);
+    add(Indices{full}), add(element_way_), add(element_kind_), add(element_param_), add(element_state_),
+        add(element_input_);
     put(contact_rate), add(rates(contacts_, given_of, np));
     add(contact_kind_), add(contact_param_), add(contact_input_), add(contact_law_), add(contact_law_param_);
-    add(contact_law_input_), add(contact_state_), add(contact_tolerance_), add(contact_initial_);
+    add(contact_law_input_), add(contact_state_), add(contact_tolerance_), add(contact_initial_), add(contact_place_);
     add(flow_kind_), add(flow_param_), add(flow_input_), add(flow_from_), add(flow_to_);
     add(process_kind_), add(process_param_), add(process_input_), add(process_state);
     add(heat_direction), add(heat_to_), add(heat_share_), add(shared_scale_), add(shared_offset_);
@@ -280,8 +302,9 @@ class Model {
   Numbers inertia_, speed_, params_, points_, state_, input_period_, input_value_, segment_time_, segment_coef_;
   Numbers contact_tolerance_, shared_, shared_scale_, shared_offset_, heat_share_;
   Indices source_, refs_, input_first_, input_count_, element_kind_, element_param_, element_state_, element_input_;
-  Indices contact_kind_, contact_law_, contact_param_, contact_law_param_, contact_input_, contact_state_;
-  Indices contact_law_input_, contact_initial_, flow_kind_, flow_param_, flow_input_, flow_from_, flow_to_, heat_to_;
+  Indices element_way_, contact_kind_, contact_law_, contact_param_, contact_law_param_, contact_input_, contact_state_;
+  Indices contact_law_input_, contact_initial_, contact_place_, flow_kind_, flow_param_, flow_input_, flow_from_,
+      flow_to_, heat_to_;
   Indices process_kind_, process_param_, process_input_, process_state_;
   std::vector<Pair> elements_, contacts_, heats_;
 };

@@ -12,7 +12,7 @@ using namespace clutchwork;
 namespace {
 
 // arguments of a function: rate, states, inputs, parameters
-constexpr int most = 24;
+constexpr int most = 40;
 using D = Dual<double, most>;
 constexpr int longest = 6;
 
@@ -50,7 +50,11 @@ struct Fields {
       f.start[k] = 1, f.start[k + 1] = longest;
       f.fixed[k] = f.fixed[k + 1] = true;
     };
-    auto word = [&](int k, int values) { f.words[k] = values, f.start[k] = 0, f.fixed[k] = true; };
+    auto word = [&](int k, int values) {
+      f.words[k] = values, f.fixed[k] = true;
+      // any number that says how many states there are: all of them
+      if (values > 0) f.start[k] = 0;
+    };
     visit(curve, word);
     P p{};
     // counts, whose derivatives nobody asks for
@@ -72,7 +76,9 @@ struct Fields {
 template <class F>
 void differentiate(F&& f, const double* x, int n, int outputs, const bool* fixed, bool lenient) {
   D dual[most], r[most];
-  double moved[most], plain[most], up[most], down[most];
+  // what a component leaves alone is zero
+  for (D& x : r) x = D(0.0);
+  double moved[most], plain[most] = {}, up[most] = {}, down[most] = {};
   for (int i = 0; i < n; ++i) dual[i] = D::variable(x[i], i), moved[i] = x[i];
   f(static_cast<const D*>(dual), r), f(x, plain);
   for (int o = 0; o < outputs; ++o) CHECK(plain[o] - plain[o] != 0 ? lenient : check::same_bits(r[o].v, plain[o]));
@@ -98,7 +104,7 @@ void over_pieces(const P& p, check::Random& g, F&& visit) {
     for (int piece = 0; piece <= E::edges(p); ++piece) visit(piece);
   } else if constexpr (SwitchingLaw<E>) {
     int count = 1;
-    if constexpr (SizedLaw<E>) count = E::count(p);
+    if constexpr (Sized<E>) count = E::count(p);
     const int all = (1 << count) - 1;
     visit(0), visit(all);
     // elements that slide, and some that are on their way back
@@ -111,11 +117,19 @@ void over_pieces(const P& p, check::Random& g, F&& visit) {
   }
 }
 
+/// Rates that a component sees.
+template <class E>
+constexpr int rates_of = [] {
+  if constexpr (requires { E::ways; }) return int(E::ways);
+  return 1;
+}();
+
 /// Run `call(params, at, out)` over rates, states, pieces and parameter sets, one parameter at a time also zero.
 template <class E, class F>
 void over_arguments(F&& call, Fields fields, int inputs, int states, int outputs) {
   using P = typename E::template Params<double>;
-  const int np = fields.count, n = 1 + states + inputs + np;
+  // of several ways all rates come first
+  const int np = fields.count, ways = rates_of<E>, n = ways + states + inputs + np;
   check::Random g{17};
   double x[most] = {};
   auto compare = [&](int zero) {
@@ -128,7 +142,7 @@ void over_arguments(F&& call, Fields fields, int inputs, int states, int outputs
       auto f = [&](const auto* v, auto* out) {
         using S = std::remove_cvref_t<decltype(*v)>;
         const auto& p = *reinterpret_cast<const typename E::template Params<S>*>(v + n - np);
-        call(p, At<S>{v[0], v + 1, v + 1 + states, piece, points}, out);
+        call(p, At<S>{v[0], v + ways, v + ways + states, piece, points, v}, out);
       };
       differentiate(f, x, n, outputs, fixed, zero >= 0);
     });
@@ -137,8 +151,10 @@ void over_arguments(F&& call, Fields fields, int inputs, int states, int outputs
     for (double rate : {-60.0, -3.1, -0.4, 0.7, 2.9, 60.0}) {
       for (int size = 0; size < (states > 0 ? 4 : 1); ++size) {
         x[0] = rate;
-        for (int i = 1; i <= states; ++i) x[i] = (g.below(2) * 2 - 1) * g.between(sizes[size][0], sizes[size][1]);
-        for (int i = 1 + states; i < 1 + states + inputs; ++i) x[i] = g.between(-2, longest + 2);
+        for (int i = 1; i < ways; ++i) x[i] = (g.below(2) * 2 - 1) * g.between(1, 90);
+        for (int i = ways; i < ways + states; ++i)
+          x[i] = (g.below(2) * 2 - 1) * g.between(sizes[size][0], sizes[size][1]);
+        for (int i = ways + states; i < ways + states + inputs; ++i) x[i] = g.between(-2, longest + 2);
         compare(-1);
         for (int zero = 0; zero < np && size == 0; ++zero) {
           if (!fields.fixed[zero]) compare(zero);
@@ -154,11 +170,16 @@ void torque_kinds_all() {
       using E = typename decltype(tag)::type;
       const Fields fields = Fields::of(tag, [kind](auto&&... f) { visit_torque_fixed(kind, f...); });
       auto call = [](const auto& p, const auto& at, auto* out) {
-        out[0] = E::torque(p, at);
-        E::state_rates(p, at, out + 1);
-        if constexpr (HeatingElement<E>) out[1 + E::states] = E::heat(p, at);
+        using S = std::remove_cvref_t<decltype(*out)>;
+        if constexpr (TorqueElement<E>) out[0] = E::torque(p, at);
+        if constexpr (CoupledElement<E>) E::torques(p, at, OwnTorques<S>(out));
+        if constexpr (TransmissionElement<E>) out[0] = out[1] = E::ratio(p, at);
+        // a state that is not in use has no rate
+        for (int i = 0; i < E::states; ++i) out[E::ways + i] = S(0);
+        E::state_rates(p, at, out + E::ways);
+        if constexpr (HeatingElement<E>) out[E::ways + E::states] = E::heat(p, at);
       };
-      over_arguments<E>(call, fields, E::inputs, E::states, 1 + E::states + HeatingElement<E>);
+      over_arguments<E>(call, fields, E::inputs, E::states, E::ways + E::states + HeatingElement<E>);
     });
   }
 }
@@ -230,7 +251,7 @@ int law_values(const P& p, const At<S>& at, S* out) {
 template <class L>
 int states_in_use(const Fields& fields) {
   using P = typename L::template Params<double>;
-  if constexpr (SizedLaw<L>) return L::count(*reinterpret_cast<const P*>(fields.start));
+  if constexpr (Sized<L>) return L::count(*reinterpret_cast<const P*>(fields.start));
   return L::states;
 }
 
@@ -296,7 +317,7 @@ void switching_laws() {
     visit_law(kind, [kind](auto tag) {
       using L = typename decltype(tag)::type;
       Branch<double> b{};
-      b.law = kind;
+      b.law = kind, b.ways = 1;
       CHECK(is_switching(b) == SwitchingLaw<L>);
       CHECK(is_compliant_law(kind) == CompliantLaw<L>);
       if constexpr (SwitchingLaw<L>) crosses<L>(Fields::of(tag, [kind](auto&&... f) { visit_law_fixed(kind, f...); }));
@@ -338,7 +359,7 @@ struct Probe {
     ws.sys.contact_param = ws.sys.contact_input = &zero, ws.sys.contact_law_input = &law_input;
     ws.sys.contact_kind = &contact_kind, ws.sys.contact_law = &contact_law, ws.sys.contact_law_param = &law_at;
     contact_kind = b.kind, contact_law = b.law;
-    b.states = states_of<double>(b.kind, b.law, law);
+    b.states = states_of<double>(b.kind, b.law, b.law < 0 ? params : law);
   }
   template <class E, class Visit>
   void fill(Tag<E> tag, double* out, Visit&& visit) {
@@ -409,6 +430,7 @@ void branches() {
   check::Random g{23};
   int compliant = 0, with_states = 0;
   for (int kind = 0; kind < torque_kinds + contact_kinds * law_kinds; ++kind) {
+    if (kind < torque_kinds && ways_of(kind) > 1) continue;
     Probe probe(kind, g);
     const bool sticks = kind >= torque_kinds && !probe.b.compliant;
     compliant += probe.b.compliant, with_states += probe.b.states > 0;
@@ -424,7 +446,7 @@ void one_element() {
   check::Random g{31};
   for (int law = 0; law < law_kinds; ++law) {
     visit_law(law, [&](auto tag) {
-      if constexpr (SizedLaw<typename decltype(tag)::type>) {
+      if constexpr (Sized<typename decltype(tag)::type>) {
         Probe probe(torque_kinds + law, g);
         visit_law_curves(law, [&](int k) { probe.law[k + 1] = 1; });
         probe.b.states = states_of<double>(probe.b.kind, law, probe.law);

@@ -24,7 +24,7 @@ CONTACTS = {
     "at most $4 n + 5$ rounds": "round <= 4 * ws.sys.contacts + 4",
     "while time does not advance, to $10^{-9}$ s": "forced_time <= 1e-9",
     r"0 \le \alpha \le 2": "ample = 2",
-    "at most $20 n + 50$": "round < 50 + 20 * set.n",
+    "at most $20 n + 50$": "raise(*this, 50 + 20 * set.n)",
     "A price below $10^{-9}$ of the largest": "> 1e-9 * most",
     "in at most 60 steps": "round < 60 && miss",
     r"|\sigma_c| \le 10^{-10} \left( 1 + \max |v| \right)": "return 1e-10 * (1 + largest)",

@@ -46,9 +46,9 @@ def _fields(*roles: Role) -> list[tuple[str, str, str]]:
 
 def _gears() -> None:
     """A rigid element has ports and constant numbers that make up its ratio, and no more."""
-    allowed = {"ratio", "radius", "teeth_input", "teeth_output", "teeth_sun", "teeth_ring"}
+    allowed = ("ratio", "radius", "teeth", "module")
     for cls in REGISTRY[Role.GEAR].values():
-        assert {item.name for item, spec in specs(cls) if spec.what != "port"} <= allowed, cls
+        assert all(item.name.startswith(allowed) for item, spec in specs(cls) if spec.what != "port"), cls
 
 
 def _backlash() -> None:

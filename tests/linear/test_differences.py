@@ -79,7 +79,12 @@ def moving(cls: Any) -> cw.Driveline:
     return d if turning.check() else turning
 
 
-@pytest.mark.parametrize("cls", samples.declared(*samples.ELEMENT_ROLES), ids=lambda cls: cls.__name__)
+# the slope of a road follows from its position and cannot be pushed; friction at its limit can be pushed one way alone
+NOT_SMOOTH = (cw.Road, cw.JenkinsElement)
+SMOOTH = [cls for cls in samples.declared(*samples.ELEMENT_ROLES) if cls not in NOT_SMOOTH]
+
+
+@pytest.mark.parametrize("cls", SMOOTH, ids=lambda cls: cls.__name__)
 def test_every_element(cls):
     # a torque that grows with the square of the speed is infinite after a millisecond
     end = 6e-4 if cls is cw.QuadraticTorque else 0.4

@@ -98,3 +98,13 @@ def test_no_value_is_beyond_the_extremes(signal):
         # at a jump either side counts
         near = [value(signal, max(t, 0.0)) for t in (time, math.nextafter(time, -math.inf))]
         assert any(math.isclose(extreme, v, abs_tol=1e-9) for v in near) or time < 0.0
+
+
+def test_a_table_that_falls_to_its_bound_keeps_it():
+    """Where 1.1 falls to 0 between 2.0 and 2.2 s, the end of the piece is below zero by round-off."""
+    d = cw.Driveline()
+    for number in range(50):
+        shaft = d.shaft(f"s{number}", inertia=1.0)
+        fall = cw.Table([(0.0, 0.37 + 0.0173 * number), (2.0, 0.91 - 0.0131 * number), (2.2, 0.0)])
+        d.add(cw.Retarder(f"r{number}", shaft=shaft, capacity=1.0, command=fall))
+    assert d.check() == []

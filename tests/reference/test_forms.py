@@ -15,7 +15,7 @@ from clutchwork.signals.bases.waveform import value
 from support.msl import compare
 from support.msl.elements import missing
 from support.msl.model import translate
-from support.msl.pieces import UnsupportedError, at, bessel_speed, integral
+from support.msl.pieces import UnsupportedError, at, integral
 from support.msl.signals import first_value, pieces, signal
 
 T_END = 3.0
@@ -182,16 +182,6 @@ def test_position(exact: bool) -> None:
     reference = solved(lambda t, y: [y[1], ((place(t) - y[0]) * wc - af * y[1]) * (wc / bf)], [place(0.0), 1.0])
     assert phi == pytest.approx(reference[0], abs=1e-7)
     assert w == pytest.approx(reference[1], abs=1e-6)
-
-
-def test_the_filter_of_a_position_that_goes_in_steps_and_ramps() -> None:
-    wanted = pieces(OTHERS, "ramp", T_END)
-    wc, af, bf = 2 * math.pi * 0.8, 1.3617, 0.6180
-    reference = solved(lambda t, y: [y[1], ((ramp(t) - y[0]) * wc - af * y[1]) * (wc / bf)], [0.2, -0.1])
-    made = bessel_speed(wanted, 0.8, 0.2, -0.1)
-    assert [at(made, t)(t) for t in TIMES] == pytest.approx(reference[1], abs=1e-7)
-    places = integral(made, 0.2)
-    assert [at(places, t)(t) for t in TIMES] == pytest.approx(reference[0], abs=1e-7)
 
 
 @pytest.mark.parametrize("form", ["sine", "ramp", "pulse"])

@@ -54,7 +54,11 @@ def test_what_is_no_finite_number_is_named(cls, name, wrong):
 @pytest.mark.parametrize(("cls", "name"), CASES, ids=_name)
 def test_bounds_are_kept(cls, name):
     spec = {item.name: spec for item, spec in specs(cls)}[name]
-    for limit, wrong in ((spec.above, spec.above), (spec.at_least, -1e-9), (spec.below, spec.below)):
+    for limit, wrong in (
+        (spec.above, spec.above),
+        (spec.at_least, (spec.at_least or 0.0) - 1e-9),
+        (spec.below, spec.below),
+    ):
         if limit is not None:
             element = replace(samples.driveline(cls).elements[0], **{name: wrong})
             found = [str(p) for p in component_problems(element) if p.quantity == name]

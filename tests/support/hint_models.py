@@ -109,6 +109,18 @@ def ringing(damping: float) -> cw.Driveline:
     return d
 
 
+def belted(preload: float) -> cw.Driveline:
+    """A belt drive at 30 m/s, whose belt needs 450 N to stay on its pulleys."""
+    d = cw.Driveline("belt")
+    motor, fan = d.shaft("motor", inertia=0.1, speed=300.0), d.shaft("fan", inertia=0.1, speed=300.0)
+    pulleys = {"radius_base": 0.1, "radius_follower": 0.1, "centre_distance": 0.5}
+    belt = cw.BeltDrive(
+        "belt", base=motor, follower=fan, friction_coefficient=0.3, preload=preload, mass_per_length=0.5, **pulleys
+    )
+    d.add(belt)
+    return d
+
+
 def warm(last: float, friction: cw.Law | None = None, capacity: float = 200.0) -> cw.Driveline:
     """A clutch that slips with 15 N m at 100 rad/s for 30 s into a mass [J/K]; its table ends at a temperature [K]."""
     d = cw.Driveline("warm")
@@ -187,8 +199,20 @@ def parallel(gears: int) -> cw.Driveline:
 
 CRITICAL = 2.0 * float(np.sqrt(1e6 / 15.0))  # N m s/rad, of the shaft of `ringing`
 
+
+def towed(speed: float) -> cw.Driveline:
+    """A converter whose wheels are pulled along."""
+    d = cw.Driveline("towed")
+    engine, turbine = d.shaft("engine", inertia=0.2, speed=speed), d.shaft("turbine", inertia=1.0, speed=0.5 * speed)
+    tables = {"speed_ratio": (0.0, 1.0), "torque_ratio": (2.0, 1.0), "capacity": (1e-3, 0.0)}
+    d.add(cw.TorqueConverter("converter", impeller=engine, turbine=turbine, **tables))
+    return d
+
+
 CASES: dict[str, Case] = {
+    "unknown there": Case(lambda: towed(-20.0), lambda: towed(20.0), 0.2),
     "never locks": Case(lambda: launch(60.0), lambda: launch(150.0), 2.0),
+    "lifts off": Case(lambda: belted(300.0), lambda: belted(900.0), 1.0),
     "full and slips": Case(lambda: hill(250.0), lambda: hill(500.0), 2.0),
     "tie-up": Case(lambda: shift(0.5), lambda: shift(0.87), 3.0),
     "breaks away at the start": Case(lambda: held(80.0), lambda: held(60.0), 1.0),

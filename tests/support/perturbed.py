@@ -120,6 +120,10 @@ def _at_kinks(standing: Standing) -> np.ndarray:
     return (linear.row[columns][empty][:, :count] != 0.0).any(axis=0)
 
 
+# of losses, which a linear system has not
+SUPPLIES = ("supply_power", "supply_energy")
+
+
 def mismatch(standing: Standing, step: float = 1e-5) -> float:
     """The largest difference between a linear system and differences, beside the size of its line in the row."""
     rates, rows, valid = differences(standing, step)
@@ -127,7 +131,7 @@ def mismatch(standing: Standing, step: float = 1e-5) -> float:
     sizes = push_sizes(standing, 1.0)
     columns = standing.instant.wiring.columns
     compared = np.ones(len(rows), dtype=bool)
-    for part in ("angle", "element_work", "contact_work", "prescribed_work", "contact_mode"):
+    for part in ("angle", "element_work", "contact_work", "prescribed_work", "meter_energy", "contact_mode", *SUPPLIES):
         compared[columns[part]] = False
     mine = np.vstack([np.hstack([linear.A, linear.B]), linear.row[compared, : n + len(standing.given)]])
     other = np.vstack([rates, rows[compared]])

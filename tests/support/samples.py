@@ -19,6 +19,11 @@ def declared(*roles: Role) -> list[Any]:
     return [cls for role in roles for cls in REGISTRY[role].values()]
 
 
+def acting(*roles: Role) -> list[Any]:
+    """Those of them that are no transmissions, whose torque follows from the motion of all else."""
+    return [cls for cls in declared(*roles) if "ratio" not in cls.hooks]
+
+
 def pressed_contacts() -> list[str]:
     """Kinds of contacts that any friction law fits and whose load is a torque, or in proportion to a gain."""
     known = {kind: {item.name for item, _ in specs(cls)} for kind, cls in REGISTRY[Role.CONTACT].items()}
@@ -136,13 +141,25 @@ def driveline(cls: type) -> cw.Driveline:
     nodes: dict[str, Any] = {"rotation": d.shaft("a", inertia=0.3), "other": d.shaft("b", inertia=0.7)}
     nodes |= {"plates": d.thermal("plates", capacity=800.0), "air": d.ambient("air", temperature=290.0)}
     third = d.shaft("c", inertia=0.2)
+    fourth = d.shaft("d", inertia=0.4) if "large_sun" in {item.name for item, _ in specs(cls, "port")} else None
     nodes["translation"] = d.mass("m", mass=2.0)
     values = fields(cls, nodes)
     # three members of a planetary gear are three shafts
     if "carrier" in values:
         values["carrier"] = third
+    if fourth is not None:
+        values["large_sun"] = fourth
+    # as are two wheels, and two sides
+    values |= {name: nodes["other"] for name in ("wheel", "right") if name in values}
     d.add(cls("x", **values))
     return d
+
+
+def bodies(d: cw.Driveline, cls: type, at: str = "") -> Any:
+    """What makes the bodies that a class joins, or one at a port: shafts, or masses where its ports say so."""
+    known = [(item.name, spec) for item, spec in specs(cls, "port")]
+    moves = any(spec.domain == "translation" for name, spec in known if at in ("", name))
+    return (lambda name, inertia=0.0, **more: d.mass(name, mass=inertia, **more)) if moves else d.shaft
 
 
 def nodes() -> dict[str, Any]:

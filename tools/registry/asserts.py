@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from clutchwork.declare.hooks import hooks_of
 from clutchwork.declare.schema import Role
-from registry.components import CONCEPT, Component, cpp_name
+from registry.components import Component, cpp_name
 
 
 def asserts(component: Component) -> Iterator[str]:
@@ -22,7 +22,7 @@ def says(condition: str, message: str) -> str:
 def functions(component: Component) -> Iterator[str]:
     """The functions that its role asks for."""
     name, header, source = component.name, component.header, component.source
-    concept = CONCEPT[component.role.value]
+    concept = component.concept
     yield says(f"{concept}<{name}>", f"{header}: {component.cls.__name__} lacks a function of {concept}")
     if component.role is Role.LAW:
         sort = "StickingLaw" if component.cls.sticks else "CompliantLaw"

@@ -103,6 +103,18 @@ class Component:
         return ends + [names[0] for names, _ in inputs(self.cls)]
 
     @property
+    def ways(self) -> list[str]:
+        """Names of its ways; none where it has one direction."""
+        return [way.name for way in self.cls.ways] if self.role is Role.TORQUE and len(self.cls.ways) > 1 else []
+
+    @property
+    def concept(self) -> str:
+        """The concept that its header fulfils."""
+        if "ratio" in self.cls.hooks:
+            return "TransmissionElement"
+        return "CoupledElement" if self.ways else CONCEPT[self.role.value]
+
+    @property
     def states(self) -> list[str]:
         """Names of its states."""
         return [state.name for state in self.cls.states]

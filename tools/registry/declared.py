@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from clutchwork.declare.schema import Role
 from registry.components import Component, components, cpp_name, enum_name
 
 FILE = "declared.gen.hpp"
@@ -43,6 +44,10 @@ def base(component: Component) -> Iterator[str]:
     yield f"  enum class Input : int {enumerators(component.inputs)};"
     yield f"  enum State : int {enumerators(component.states)};"
     yield f"  static constexpr int inputs = {len(component.inputs)}, states = {len(component.states)};"
+    if component.ways:
+        yield f"  enum class Way : int {enumerators(component.ways)};"
+    if component.role is Role.TORQUE:
+        yield f"  static constexpr int ways = {len(component.ways) or 1};"
     if component.states:
         span = ", ".join(repr(float(state.span)) for state in component.cls.states)
         yield f"  static constexpr double span[states] = {{{span}}};  ///< [s] of each state"

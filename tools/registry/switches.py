@@ -25,13 +25,14 @@ def lines() -> Iterator[str]:
             yield from asserts(component)
         yield from (*visitor(role), *fixed(role))
     yield f"inline constexpr int most_own_states = {max(len(one.states) for one in components())};"
+    yield f"inline constexpr int most_ways = {max(len(one.ways) or 1 for one in components())};"
     yield "}"
 
 
 def probes() -> Iterator[str]:
     """Whether a component has a member of a name, whatever its form: a second one beside it makes it ambiguous."""
     yield "template <class E, class Probe> struct Beside : E, Probe {};"
-    for name in ("state_rates", *(name for hook in HOOKS for name in hook.names)):
+    for name in ("state_rates", *dict.fromkeys(name for hook in HOOKS for name in hook.names)):
         yield f"struct Probe_{name} {{ int {name}; }};"
         yield f"template <class E> concept has_{name} = !requires(Beside<E, Probe_{name}>& b) {{ b.{name}; }};"
 
@@ -53,7 +54,7 @@ def fixed(role: Role) -> Iterator[str]:
     """Functions that say which parameters of a kind a run never changes.
 
     `curve` gets the place of each curve, `choice` that of a parameter that is one of a few words or a flag, and how
-    many there are.
+    many there are; 0: any number, which stays.
     """
     name = f"visit_{role.value}"
     yield "template <class Curve, class Choice>"
@@ -73,4 +74,4 @@ def fixed_call(field: Field) -> str:
     if field.size == 2:
         return f"curve({field.offset})"
     few = len(field.spec.choices) or 2 * field.spec.flag
-    return f"choice({field.offset}, {few})" if few else ""
+    return f"choice({field.offset}, {few})" if few or field.spec.fixed else ""

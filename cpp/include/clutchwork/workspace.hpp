@@ -1,6 +1,8 @@
 #pragma once
 #include <clutchwork/workspace/contacts.hpp>
+#include <clutchwork/workspace/loads.hpp>
 #include <clutchwork/workspace/motion.hpp>
+#include <clutchwork/workspace/ratios.hpp>
 #include <clutchwork/workspace/run.hpp>
 
 /// Everything that changes during a run, carved once from memory of the caller.
@@ -21,6 +23,8 @@ struct Workspace {
   bool started = false, fresh_phase = true;
   bool stiffened = false;  ///< the phase goes on with another method
   T *v = nullptr, *state = nullptr, *angle = nullptr, *work = nullptr, *prescribed_work = nullptr;
+  T* supplied = nullptr;                     ///< [J] that each supply has given
+  T* metered = nullptr;                      ///< [J] that has gone through each rigid line that is metered
   int *piece = nullptr, *heading = nullptr;  ///< of each direction: smooth piece; sign of its rate
 
   // active components, then open contacts, whose rates alone are followed
@@ -32,6 +36,8 @@ struct Workspace {
   Contacts<T> contact;
   Happened<T> happened;
   Held<T> held;
+  Loads<T> loads;
+  CoupledMemory<T> coupled;
   SetMemory<T> set;
   ProblemMemory<T> problem;
   Decision<T> decision;
@@ -41,6 +47,8 @@ struct Workspace {
   Jacobian<T> jacobian;
   Shared<T> shared;
   Stages<T> stages;
+  Full<T> full;
+  Ratios<T> ratios;
   Edge<T> here{}, there{};
   Guards guard;
   Seen<T> seen;
@@ -57,12 +65,13 @@ void lay_out(W& ws, A& a) {
   const Sizes n(ws.sys);
   a.take(ws.params, ws.sys.n_params);
   a.take(ws.v, n.speeds), a.take(ws.state, n.states), a.take(ws.angle, n.nodes), a.take(ws.work, n.directions);
-  a.take(ws.prescribed_work, n.prescribed);
+  a.take(ws.prescribed_work, n.prescribed), a.take(ws.supplied, n.supplies), a.take(ws.metered, n.meters);
   a.keep(ws.piece, n.directions, -(1ll << 31), (1ll << 31) - 1), a.keep(ws.heading, n.directions, backward, forward);
   a.take(ws.branch, n.directions), a.take(ws.branch_of, n.directions);
   auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
-  each(ws.in, ws.contact, ws.happened, ws.held, ws.set, ws.problem, ws.decision, ws.geometry, ws.reduced, ws.rows,
-       ws.jacobian, ws.shared, ws.stages, ws.here, ws.there, ws.guard, ws.seen, ws.out, ws.events);
+  each(ws.in, ws.contact, ws.happened, ws.held, ws.loads, ws.coupled, ws.set, ws.problem, ws.decision, ws.geometry,
+       ws.reduced, ws.rows, ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.here, ws.there, ws.guard, ws.seen,
+       ws.out, ws.events);
 }
 
 /// Lay the arrays of a workspace into memory; returns the size needed.
@@ -70,6 +79,7 @@ template <class T>
 std::int64_t carve(Workspace<T>& ws, unsigned char* memory) {
   ws.in.n_refs = int(ws.sys.n_input_refs + ws.sys.prescribed);
   ws.n_directions = int(ws.sys.elements + ws.sys.contacts);
+  ws.ratios.n = int(ws.sys.transmissions);
   Arena a(memory);
   lay_out(ws, a);
   ws.in.prescribed = ws.in.u + ws.sys.n_input_refs;

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.inputs import Wires
+from clutchwork.assembly.meters import meter_arrays
 from clutchwork.assembly.places import places
 from clutchwork.assembly.records import TYPES, Gearing, frozen
 from clutchwork.assembly.shared_states import Shared, flow_arrays, heat_arrays
@@ -16,18 +17,23 @@ from clutchwork.assembly.sparse import sparse
 from clutchwork.base.errors import ModelError
 from clutchwork.declare.core import number
 from clutchwork.declare.layout import FIELDS
+from clutchwork.declare.node import is_reference
 from clutchwork.declare.ports import ports
-from clutchwork.declare.rational import Row, plus
-from clutchwork.declare.schema import Role
+from clutchwork.declare.rational import ONE, Row, plus
+from clutchwork.declare.schema import Role, inputs
+from clutchwork.declare.speech import path_of
 from clutchwork.model.findings import Findings, Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
+from clutchwork.model.loads import load_arrays
 from clutchwork.model.model import Model
+from clutchwork.model.parts import Place, is_stop, place_of
 from clutchwork.model.pools import Pools
-from clutchwork.model.start import start
-from clutchwork.model.structure import Kinematics, Mechanism
+from clutchwork.model.start import initial_angles, start
+from clutchwork.model.structure import Kinematics, Mechanism, follows_load
+from clutchwork.model.transmissions import ordered
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from fractions import Fraction
 
 
@@ -54,7 +60,12 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     arrays |= _rates(model, rates, columns, Role.CONTACT, "contact")
     states = list[float]()
     arrays |= _elements(model, pools, wires, states)
+    arrays |= load_arrays(model)
     arrays |= _contacts(model, pools, wires, states)
+    arrays |= meter_arrays(model)
+    # torques that know the rates of others
+    arrays |= {"full": [wires.rates or any(_is_coupled(component) for component, _ in model.acting)]}
+    arrays |= _transmissions(model, made, columns)
     arrays |= flow_arrays(model, pools, wires)
     arrays |= heat_arrays(model, where)
     arrays |= shared.arrays(pools, wires, states)
@@ -69,6 +80,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
         "contacts": tuple(model.role(Role.CONTACT)),
         "motions": tuple(model.role(Role.MOTION)),
         "gears": tuple(_gears(model)),
+        "sensors": tuple(model.role(Role.SENSOR)),
         "thermal": parts.thermal,
         "flows": tuple(model.role(Role.FLOW)),
         "processes": shared.processes,
@@ -77,7 +89,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
         "sums": parts.sums,
         "independent": tuple(model.nodes[n].name for n in made.independent),
         "parameters": pools.places,
-        "notes": tuple(made.notes),
+        "notes": (*made.notes, *(f"{path_of(one)}: {note}" for one in whole.elements for note in one.notes())),
         "warnings": tuple(map(str, found.advice)),
     }
 
@@ -139,37 +151,71 @@ def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, 
     for inertia, speed in zip(model.inertia, made.speeds, strict=True):
         for node in speed.keys() & rows.keys() if inertia else ():
             rows[node] = plus(rows[node], inertia * speed[node], speed)
+    for node in made.followers.values():
+        # what follows from a transmission has no inertia; a unit keeps the matrix regular
+        rows[node] = {node: ONE}
     arrays = columns.split("basis", made.speeds) | columns.split("mass", list(rows.values()))
     return arrays | {
         "inertia": [float(inertia) for inertia in model.inertia],
         "massless": [node in made.massless for node in made.independent],
-        "initial_angle": [node.angle for node in model.nodes],
+        "initial_angle": initial_angles(model),
     }
 
 
 def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role, prefix: str) -> dict[str, Any]:
     own = [row for row, (component, _) in zip(found, model.acting, strict=True) if component.role is role]
     return columns.split(f"{prefix}_rate", own) | {
-        f"{prefix}_kind": [number(type(component)) for component in model.role(role)],
+        f"{prefix}_kind": [number(type(component)) for component, _ in model.acting if component.role is role],
     }
 
 
-def _elements(model: Mechanism, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
-    params, offsets, refs = list[int](), list[int](), list[int]()
+def _is_coupled(component: Any) -> bool:
+    """Whether it has several ways, follows a load, or own states that others act on, or that make its heat."""
+    if len(type(component).ways) > 1 or follows_load(component) or (component.supply and component.heat_path()):
+        return True
+    given = (getattr(component, name) for names, _ in inputs(type(component)) for name in names)
+    return component.role is Role.TORQUE and bool(component.own_states()) and any(map(is_reference, given))
+
+
+def _first_ways(model: Mechanism, which: Callable[[Any], bool]) -> list[int]:
+    """Numbers of the first directions of some torque elements."""
+    found, number = list[int](), 0
     for element in model.role(Role.TORQUE):
-        params.append(pools.add(element, element.name))
-        offsets.append(len(states))
-        refs.append(wires.connect(element))
+        found += [number] if which(element) else []
+        number += max(1, len(type(element).ways))
+    return found
+
+
+def _elements(model: Mechanism, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
+    params, offsets, refs, ways = list[int](), list[int](), list[int](), list[int]()
+    for element in model.role(Role.TORQUE):
+        own = range(max(1, len(type(element).ways)))
+        ways += own
+        params += [pools.add(element, element.name)] * len(own)
+        offsets += [len(states)] * len(own)
+        refs += [wires.connect(element)] * len(own)
         states += element.initial_states() if element.states else ()
     return {
+        "supply_element": _first_ways(model, lambda element: bool(element.supply)),
+        "element_way": ways,
         "element_param": params,
         "element_state": offsets,
         "element_input": refs,
     }
 
 
+def _transmissions(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, Any]:
+    ties = list(ordered(model, made))
+    ways = [component for component, _ in model.acting]
+    return {
+        "transmission_element": [next(n for n, way in enumerate(ways) if way is tie.component) for tie, _ in ties],
+        "transmission_speed": [-1 if node is None else columns.speeds[node] for _, node in ties],
+    }
+
+
 def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
     contacts = model.role(Role.CONTACT)
+    places = {part.name: place for place, (part, _) in enumerate(model.acting) if isinstance(part, Place)}
     offsets = list[int]()
     for contact in contacts:
         # bristles start without deflection
@@ -184,6 +230,7 @@ def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
         "contact_state": offsets,
         "contact_tolerance": [_tolerance(contact) for contact in contacts],
         "contact_initial": [int(contact.locked) for contact in contacts],
+        "contact_place": [places[place_of(contact)] if is_stop(contact) else -1 for contact in contacts],
     }
 
 
@@ -193,15 +240,16 @@ def _tolerance(contact: Any) -> float:
 
 
 def _gears(model: Mechanism) -> Iterable[Gearing]:
-    for gear in model.role(Role.GEAR):
+    for gear in model.geared:
         joined = ports(gear)
         for row in gear.rows():
-            yield Gearing(gear, {port: (model.index.get(id(joined[port]), -1), float(c)) for port, c in row.items()})
+            yield Gearing(gear, {port: (model.places.of(joined[port]), float(c)) for port, c in row.items()})
 
 
 def _shaped(arrays: Mapping[str, Any], model: Mechanism, made: Kinematics) -> dict[str, Array]:
     """The arrays with the type and shape that the layout says."""
     sizes = {"nodes": len(model.nodes), "speeds": len(made.independent), "prescribed": len(model.role(Role.MOTION))}
+    sizes |= {"elements": len(arrays["element_kind"]), "contacts": len(arrays["contact_kind"])}
     shaped = {}
     for name, kind, shape, _ in FIELDS:
         lengths = [size if isinstance(size, int) else sizes.get(size, len(arrays[name])) for size in shape]

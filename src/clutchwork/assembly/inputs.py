@@ -10,9 +10,9 @@ import numpy as np
 
 from clutchwork.assembly.records import Input, Link
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import Segment, Signal, ThermalNode, is_reference
+from clutchwork.declare.node import Node, Segment, Signal, ThermalNode, is_reference
 from clutchwork.declare.ports import ports, thermal_ports
-from clutchwork.declare.schema import Role, inputs
+from clutchwork.declare.schema import Role, Spec, inputs
 from clutchwork.model.parts import role
 from clutchwork.signals.bases import waveform
 from clutchwork.signals.constant import Constant
@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 
     from clutchwork.assembly.places import Places
     from clutchwork.declare.node import Component
-    from clutchwork.declare.schema import Spec
 
+# what a prescribed motion is in the core
+SPEED = Spec("signal", "rad/s", "speed")
 # what an input may be, in the order of the numbers of its references
 SORTS = ("input", "shared", "rate", "heat")
 
@@ -37,6 +38,7 @@ class Wires:
     links: list[Link] = field(default_factory=list)
     refs: list[tuple[str, int]] = field(default_factory=list)
     ambients: dict[str, int] = field(default_factory=dict)
+    rates: bool = False  # a torque element or a contact reads the speed of a shaft
 
     def surround(self, thermal: Sequence[ThermalNode]) -> None:
         """Number the temperatures of ambients."""
@@ -63,11 +65,12 @@ class Wires:
         for names, spec in inputs(type(thing)):
             name = next((name for name in names if getattr(thing, name) is not None), names[0])
             value = getattr(thing, name)
-            if value is None and spec.unit == "K" and thing is not component:
+            if value is None and spec.unit == "K":
                 value = _warming(component)
             unit = _unit(component, type(thing).__dataclass_fields__[name].metadata["spec"])
             if is_reference(value):
                 self.refs.append(self._reference(value))
+                self.rates = self.rates or (isinstance(value, Node) and role(component) in (Role.TORQUE, Role.CONTACT))
                 self._link(f"{path}.{name}", unit, *self.refs[-1])
             else:
                 plain = spec.otherwise if value is None else value
@@ -85,7 +88,7 @@ class Wires:
 
     def prescribe(self, motions: Sequence[tuple[Component, Signal]]) -> list[int]:
         """Number the prescribed speeds, which no reference leads to."""
-        units = [_unit(motion, type(motion).__dataclass_fields__["speed"].metadata["spec"]) for motion, _ in motions]
+        units = [_unit(motion, SPEED) for motion, _ in motions]
         return [self._add(f"{m.name}.speed", unit, s) for (m, s), unit in zip(motions, units, strict=True)]
 
     def _add(self, name: str, unit: str, signal: Signal, given: bool = True) -> int:

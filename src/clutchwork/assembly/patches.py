@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.inputs import plain_signal
-from clutchwork.declare.node import Component, HeatFlow, Rate, ThermalNode, is_reference
+from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode, is_reference
 from clutchwork.declare.schema import Role, inputs, specs
 from clutchwork.model.parts import role
 from clutchwork.model.pools import Pools
@@ -53,16 +53,20 @@ def numbered(
     groups: Mapping[Role, tuple[Component, ...]],
     given: tuple[Input, ...],
     thermal: tuple[ThermalNode, ...],
+    nodes: tuple[Node, ...],
     source: Model,
 ) -> Numbered:
     """The places of everything in a System."""
+    # an element of several ways has as many places, of which the first counts
+    first = np.flatnonzero(arrays["element_way"] == 0).tolist()
+    numbers = {kind: first if kind is Role.TORQUE else range(len(parts)) for kind, parts in groups.items()}
     return Numbered(
         arrays,
-        {part.name: (kind, number) for kind, parts in groups.items() for number, part in enumerate(parts)},
+        {part.name: (kind, n) for kind, parts in groups.items() for n, part in zip(numbers[kind], parts, strict=True)},
         {item.name: number for number, item in enumerate(given)},
         {node.name: number for number, node in enumerate(thermal)},
         {int(direction): number for number, direction in enumerate(arrays["heat_direction"])},
-        any(not node.inertia for node in source.nodes),
+        any(not node.inertia for node in nodes),
         frozenset(name for element in source.elements for name in _referred(element)),
     )
 
@@ -85,6 +89,10 @@ def patches(where: Numbered, old: Any, new: Any) -> list[Patch]:
     if isinstance(old, ThermalNode):
         return list(_thermal(where, old, new))
     if not isinstance(old, Component) or role(old) not in PLAIN or type(old).parts is not Component.parts:
+        raise Unpatched
+    if "ratio" in type(old).hooks and old.start_ratio() != new.start_ratio():
+        raise Unpatched
+    if type(old).ways and old.directions() != new.directions():
         raise Unpatched
     if where.massless and type(old).passive is not Component.passive:
         raise Unpatched
@@ -109,6 +117,8 @@ def _parameters(where: Numbered, old: Component, new: Component) -> Iterator[Pat
     kind, number = where.places[old.name]
     prefix = "element" if kind is Role.TORQUE else kind.value
     yield from _pool(where, int(where.arrays[f"{prefix}_param"][number]), old, new)
+    if len(old.own_states()) != len(new.own_states()):
+        raise Unpatched
     if kind is not Role.CONTACT:
         return
     before, after = old.friction, new.friction

@@ -30,7 +30,8 @@ def places(thermal: Sequence[ThermalNode], processes: Sequence[Any], acting: Seq
     """Shared states: thermal nodes, then those of processes; directions: torque elements, then contacts."""
     names = [node.name for node in thermal]
     names += [f"{process.name}.{state.name}" for process in processes for state in type(process).states]
-    return Places(
-        {name: number for number, name in enumerate(names)},
-        {component.name: number for number, component in enumerate(acting)},
-    )
+    directions = dict[str, int]()
+    for number, component in enumerate(acting):
+        # of several ways the first one
+        directions.setdefault(component.name, number)
+    return Places({name: number for number, name in enumerate(names)}, directions)

@@ -73,7 +73,9 @@ def flow_arrays(model: Mechanism, pools: Pools, wires: Wires) -> dict[str, Any]:
 
 def heat_arrays(model: Mechanism, where: Places) -> dict[str, Any]:
     """Paths of heat from elements and contacts to thermal nodes."""
-    paths = [(number, path) for number, (component, _) in enumerate(model.acting) if (path := component.heat_path())]
+    # of several ways the first one has the heat of all
+    acting = (*model.role(Role.TORQUE), *model.role(Role.CONTACT))
+    paths = [(where.directions[component.name], path) for component in acting if (path := component.heat_path())]
     return {
         "heat_direction": [number for number, _ in paths],
         "heat_to": [where.shared[path.node.name] for _, path in paths],

@@ -62,6 +62,7 @@ class System:
     contacts: tuple[Component, ...] = ()
     motions: tuple[Component, ...] = ()
     gears: tuple[Gearing, ...] = ()
+    sensors: tuple[Component, ...] = ()
     thermal: tuple[ThermalNode, ...] = ()
     flows: tuple[Component, ...] = ()
     processes: tuple[Component, ...] = ()
@@ -172,7 +173,7 @@ class System:
             Role.FLOW: self.flows,
             Role.PROCESS: self.processes,
         }
-        return numbered(self.arrays, groups, self.inputs, self.thermal, self.source or Model())
+        return numbered(self.arrays, groups, self.inputs, self.thermal, self.nodes, self.source or Model())
 
     def _with(self, found: Quick) -> System:
         """The same structure with other elements."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,9 +13,10 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.kept import kept
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.node import Component, Domain, Node
-from clutchwork.declare.ports import ends, ports
-from clutchwork.declare.schema import State
-from clutchwork.model.parts import Sensor
+from clutchwork.declare.ports import Direction, directions, port_domains, ports
+from clutchwork.declare.schema import Role, State
+from clutchwork.model.parts import Place, Sensor, is_stop, place_of
+from clutchwork.model.structure import Places
 
 if TYPE_CHECKING:
     from clutchwork.assembly.records import Link
@@ -28,18 +29,21 @@ HOUSING = -1  # index that stands for the housing, which is no node of the syste
 
 @dataclass(frozen=True)
 class Branch:
-    """A torque element, a contact or a prescribed speed: name, component and direction over the nodes."""
+    """A way of a torque element, a contact or a prescribed speed: name, component and direction over the nodes."""
 
     name: str
     component: Any
     direction: Mapping[int, float]  # node index or HOUSING -> coefficient of its speed in the rate
     domain: Domain
-    states: tuple[tuple[str, str, int], ...] = ()  # (name, unit, index among all states)
+    states: tuple[tuple[str, str, int], ...] = ()  # (name, unit, index among all states), at its first way
+    grounded: Mapping[Domain, float] = field(default_factory=dict)  # coefficient of the housing by kind of motion
+    number: int = 0  # of the way
+    watched: bool = False  # a way without torque
 
     @property
     def hidden(self) -> bool:
-        """Whether it only measures a speed."""
-        return isinstance(self.component, Sensor)
+        """Whether it only measures."""
+        return self.watched or isinstance(self.component, Sensor | Place)
 
 
 @dataclass(frozen=True)
@@ -59,6 +63,11 @@ class GearRow:
     ports: Mapping[str, tuple[int, float]]  # port -> (node index or HOUSING, coefficient)
     domains: Mapping[str, Domain]  # port -> rotation or translation
 
+    @property
+    def is_line(self) -> bool:
+        """Whether it is a rigid line between two nodes, which has a torque and a power of its own."""
+        return set(self.ports) == {"base", "follower"}
+
 
 @dataclass(frozen=True)
 class Wiring:
@@ -73,8 +82,10 @@ class Wiring:
     columns: Mapping[str, slice]
     thermal: tuple[Source, ...] = ()
     processes: tuple[Source, ...] = ()
+    supplies: tuple[Branch, ...] = ()  # elements that draw work and heat from a supply
     flows: tuple[str, ...] = ()
     links: tuple[Link, ...] = ()
+    sensors: tuple[Branch, ...] = ()
     sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     unused: frozenset[str] = frozenset()  # inputs of features that nobody asked for
 
@@ -82,6 +93,11 @@ class Wiring:
     def row_size(self) -> int:
         """Numbers in one output row."""
         return max((part.stop for part in self.columns.values()), default=0)
+
+    @property
+    def lines(self) -> tuple[GearRow, ...]:
+        """Rigid lines, whose energy is integrated, in the order of their column."""
+        return tuple(row for row in self.gears if row.is_line)
 
     def spread(self, branches: tuple[Branch, ...]) -> NDArray[np.float64]:
         """Torque on every node per torque of every branch, shape (nodes, branches)."""
@@ -96,22 +112,24 @@ class Wiring:
 @kept
 def wiring(system: System) -> Wiring:
     """The connections of a System, found once."""
-    places = {id(node): index for index, node in enumerate(system.nodes)}
+    places = Places(system.nodes)
     gears = [GearRow(row.gear.name, dict(row.ports), _domains(row.gear)) for row in system.gears]
-    branches = [_branch(component, places) for component in (*system.elements, *system.contacts)]
+    branches = [_branch(component, way, places) for component, way in _ways((*system.elements, *system.contacts))]
     branches = _with_states(branches)
     return Wiring(
         nodes=system.nodes,
-        elements=tuple(branches[: len(system.elements)]),
-        contacts=tuple(branches[len(system.elements) :]),
-        motions=tuple(_branch(component, places) for component in system.motions),
+        elements=tuple(branches[: system.counts["elements"]]),
+        contacts=tuple(branches[system.counts["elements"] :]),
+        motions=tuple(_branch(component, way, places) for component, way in _ways(system.motions)),
         gears=tuple(gears),
         inputs=tuple((item.name, item.unit) for item in system.inputs),
         columns=row_columns(system.counts),
         thermal=tuple(_shared(system, system.thermal)),
         processes=tuple(_shared(system, system.processes)),
+        supplies=tuple(branches[place] for place in system.supply_element),
         flows=tuple(flow.name for flow in system.flows),
         links=system.links,
+        sensors=tuple(_branch(component, way, places) for component, way in _ways(system.sensors)),
         sums=system.sums,
         unused=frozenset(item.name for item in system.inputs if not item.given),
     )
@@ -137,14 +155,26 @@ def row_columns(sizes: Mapping[str, int]) -> dict[str, slice]:
     return columns
 
 
-def _branch(component: Component, places: Mapping[int, int]) -> Branch:
-    """Direction follower - base or shaft - base, over the nodes and the housing."""
-    moving, base = ends(component)
+def _ways(components: Iterable[Component]) -> Iterator[tuple[Component, Direction]]:
+    return ((component, way) for component in components for way in directions(component))
+
+
+def _branch(component: Component, way: Direction, places: Places) -> Branch:
+    """A direction over the nodes and the housing."""
     direction: dict[int, float] = {}
-    for node, factor in ((moving, 1.0), (base, -1.0)):
-        index = places.get(id(node), HOUSING)
+    grounded: dict[Domain, float] = {}
+    joined, domains = ports(component), port_domains(component)
+    for port, coefficient in way.coefficients.items():
+        index, factor = places.of(joined[port], HOUSING), float(coefficient)
         direction[index] = direction.get(index, 0.0) + factor
-    return Branch(component.name, component, direction, base.domain if moving.fixed else moving.domain)
+        if index == HOUSING:
+            grounded[domains[port]] = grounded.get(domains[port], 0.0) + factor
+    if not type(component).ways and "base" not in joined:
+        # what brakes a shaft alone rests on the housing
+        direction[HOUSING] = direction.get(HOUSING, 0.0) - 1.0
+        grounded[way.domain] = grounded.get(way.domain, 0.0) - 1.0
+    watched = way.way is not None and way.way.watched
+    return Branch(way.name, component, direction, way.domain, grounded=grounded, number=way.number, watched=watched)
 
 
 def _with_states(branches: list[Branch]) -> list[Branch]:
@@ -152,10 +182,25 @@ def _with_states(branches: list[Branch]) -> list[Branch]:
     made, first = list[Branch](), 0
     for branch in branches:
         law = branch.component.friction
-        own = tuple(branch.component.states if law is None else law.own_states())
+        own = () if branch.number else tuple((branch.component if law is None else law).own_states())
         states = tuple((state.name, state.unit, first + k) for k, state in enumerate(own))
         made.append(replace(branch, states=states))
         first += len(own)
+    return _with_places(made)
+
+
+def _with_places(branches: list[Branch]) -> list[Branch]:
+    """The same with the positions of stops among the states of these, in the unit of their motion."""
+    named = {branch.name: branch for branch in branches}
+    made = list[Branch]()
+    for branch in branches:
+        if isinstance(branch.component, Place):
+            branch = replace(branch, states=())
+        elif branch.component.role is Role.CONTACT and is_stop(branch.component):
+            ((name, _, index),) = named[place_of(branch.component)].states
+            unit = "rad" if branch.domain is Domain.ROTATION else "m"
+            branch = replace(branch, states=((name, unit, index),))
+        made.append(branch)
     return made
 
 

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 # what is shown -> the function that makes its parts, as module:function below clutchwork
 SHOWN_BY = {
+    "losses": "results.plot.sankey:parts",
     "law": "face.laws:parts",
     "signal": "results.plot.signals:parts",
     "system": "results.overview:parts",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from clutchwork.codegen.text import literal
-from clutchwork.results.forms import LOCKED, Affine, Column, Form, Linear, Mode, Power, Slip, Total
+from clutchwork.results.forms import LOCKED, Affine, Column, Form, Linear, Mode, Power, Powers, Slip, Total
 
 
 def expression(form: Form, columns: list[str]) -> str:
@@ -23,6 +23,8 @@ def expression(form: Form, columns: list[str]) -> str:
             return f"{_number(columns[mode])} == {literal(LOCKED)} ? 0.0 : {expression(rate, columns)}"
         case Power(torque, rate):
             return f"({expression(torque, columns)}) * ({expression(rate, columns)})"
+        case Powers(parts):
+            return " + ".join(expression(part, columns) for part in parts)
 
 
 def _number(column: str) -> str:

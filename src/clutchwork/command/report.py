@@ -131,6 +131,8 @@ def model_text(system: System, shafts: tuple[str, str] | None) -> str:
         sets = [f"  {' '.join(names)}" for names in system.dependent]
         head = "depend on each other when locked together, and share their load by capacity:"
         parts.append("\n".join([head, *_first(sets)]))
+    # hints tell of redundant gears
+    parts += [paragraphs(note, width()) for note in system.notes if "redundant" not in note]
     advice = hint_text(of_model(system))
     if shafts is None:
         return "\n\n".join([*parts, *advice])
@@ -188,6 +190,7 @@ def model_data(system: System, shafts: tuple[str, str] | None) -> dict[str, Any]
         "gears": [{"closed": list(closed), "ratio": value} for closed, value in found.ratios],
         "gears_untried_from": found.untried,
         "dependent": [list(names) for names in system.dependent],
+        "notes": list(system.notes),
         "hints": [_hint_data(hint) for hint in of_model(system)],
     }
 

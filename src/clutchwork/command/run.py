@@ -41,6 +41,7 @@ DEMO = Path("examples", "six_speed", "model.toml")
 EXAMPLES = (
     ("clutchwork run model.toml", "events, gears, energy"),
     ("clutchwork run model.toml --plot out.png --csv out.csv", "with a picture, and all signals in a table"),
+    ("clutchwork run model.toml --losses --sankey out.svg", "what each element loses, as a table and as a picture"),
     ('clutchwork run model.toml --set c1.gain=6e-4 --set "c1.pressure=2 bar"', "with other values than the file has"),
     ('clutchwork run model.toml --signals "c1.*" --signals "*.speed" --csv out.csv', "only some of the signals"),
     ('clutchwork run model.toml --units "*.speed=rpm" --csv out.csv --plot out.png', "speeds in rpm in both files"),
@@ -75,6 +76,8 @@ def add_commands(commands: Any) -> None:
     run.add_argument("--ratio", metavar="A/B", help="shafts whose speed ratio is reported; default: drive and load")
     run.add_argument("--out", type=Path, metavar="DIR", help="folder for picture.png, trajectory.csv, events.csv")
     run.add_argument("--plot", type=Path, metavar="FILE", help="write the picture (png, svg or pdf)")
+    run.add_argument("--losses", action="store_true", help="report what each element loses")
+    run.add_argument("--sankey", type=Path, metavar="FILE", help="write the energy of all elements as a Sankey picture")
     run.add_argument("--csv", type=Path, metavar="FILE", help="write the signals")
     run.add_argument("--events", type=Path, metavar="FILE", help="write the events")
     run.add_argument(
@@ -108,7 +111,7 @@ def add_commands(commands: Any) -> None:
     add_json(demo)
     # what a demonstration shares with a run
     demo.set_defaults(set=[], signals=None, units=[], ratio=None, plot=None, csv=None, events=None, write=[], save=None)
-    demo.set_defaults(start=None, save_state=None)
+    demo.set_defaults(start=None, save_state=None, losses=False, sankey=None)
     demo.set_defaults(quiet=False)
 
 
@@ -140,9 +143,11 @@ def run_command(asked: argparse.Namespace) -> int:
     written = _write(run, chosen, wanted) if len(run) else []
     if asked.json:
         data = report.run_data(run, found, shafts, names if asked.signals else ())
-        tell_json(data | {"files": [str(path) for path in written]})
+        more = {"losses": run.losses().to_dict()} if asked.losses and len(run) else {}
+        tell_json(data | more | {"files": [str(path) for path in written]})
     elif not asked.quiet:
-        tell("\n".join([report.run_text(run, found, shafts), *(["", *wrote(written)] if written else [])]))
+        losses = ["", str(run.losses())] if asked.losses and len(run) else []
+        tell("\n".join([report.run_text(run, found, shafts), *losses, *(["", *wrote(written)] if written else [])]))
     if not run.finished:
         sys.stderr.write(f"clutchwork: {run.message}\n")
     return code
@@ -194,6 +199,7 @@ def _wanted(asked: argparse.Namespace) -> dict[Path, Writer]:
             fitting(option, path, f"{option[2:]}.csv", [".csv"])
     named: list[tuple[Path | None, Writer]] = [
         (asked.plot or (folder and folder / "picture.png"), _plot),
+        (asked.sankey, _sankey),
         (asked.csv or (folder and folder / "trajectory.csv"), _csv),
         (asked.events or (folder and folder / "events.csv"), _events),
         *((path, _writer(path)) for path in asked.write),
@@ -206,6 +212,10 @@ def _wanted(asked: argparse.Namespace) -> dict[Path, Writer]:
 def _plot(run: Trajectory, path: Path, chosen: Chosen) -> None:
     # what only tables have
     run.plot(path, units={name: unit for name, unit in chosen.units.items() if name != "time"})
+
+
+def _sankey(run: Trajectory, path: Path, _chosen: Chosen) -> None:
+    run.sankey(path)
 
 
 def _csv(run: Trajectory, path: Path, chosen: Chosen) -> None:

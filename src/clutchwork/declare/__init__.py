@@ -24,6 +24,7 @@ from clutchwork.declare.node import Work as Work
 from clutchwork.declare.rational import exact as exact
 from clutchwork.declare.schema import Role as Role
 from clutchwork.declare.schema import State as State
+from clutchwork.declare.schema import Way as Way
 from clutchwork.declare.schema import choice as choice
 from clutchwork.declare.schema import component as component
 from clutchwork.declare.schema import curve as curve

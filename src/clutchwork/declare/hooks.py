@@ -20,17 +20,23 @@ class Hook:
 
 
 HOOKS = (
-    Hook(("edges", "edge"), "Kinked", ("torque", "law"), "kinks over the rate or the slip"),
+    Hook(("edges", "edge"), "Kinked", ("torque", "law", "contact"), "kinks over the rate or the slip"),
     Hook(("margin", "cross", "turns"), "SwitchingLaw", ("torque", "law"), "smooth pieces that its own states switch"),
+    Hook(("margin", "cross"), "SwitchingProcess", ("process",), "smooth pieces that its states and inputs switch"),
+    Hook(("settle",), "Settling", ("torque",), "pieces that follow from where it is, after a jump too"),
+    Hook(("pace",), "Paced", ("torque",), "an oscillation of its own that steps resolve, and pieces"),
     Hook(("runs_on",), "RunningOn", ("law",), "pieces that may be left on the way back"),
+    Hook(("ratio",), "TransmissionElement", ("torque",), "a varying ratio that ties its two ways, in place of torques"),
     Hook(("heat",), "HeatingElement", ("torque",), "heat that is not -torque rate"),
     Hook(("outside",), "BoundedLaw", ("law",), "tables that can be left"),
-    Hook(("fits",), "FittedLaw", ("law",), "tables whose sizes belong together"),
-    Hook(("count",), "SizedLaw", ("law",), "fewer states in use by its parameters"),
+    Hook(("fits",), "FittedLaw", ("law", "torque", "contact"), "tables whose sizes belong together"),
+    Hook(("count",), "Sized", ("torque", "law"), "fewer states in use by its parameters"),
     Hook(("chatters",), "ChatteringLaw", ("law",), "a jump with the sign of the slip, without rest"),
     Hook(("gain",), "ShapedContact", ("contact",), "a torque per load that is not the coefficient"),
     Hook(("limit",), "LimitedContact", ("contact",), "a static torque of its own"),
+    Hook(("bound",), "LoadedContact", ("contact",), "a capacity that follows the torque of its own gear row"),
     Hook(("holding",), "YieldingContact", ("contact",), "a freewheel that gives way"),
+    Hook(("end", "restitution", "rest_speed"), "StopContact", ("contact",), "a stop, which holds at its ends alone"),
     Hook(("fault", "fault_kind", "fault_report"), "FaultyContact", ("contact",), "a contact that can fail"),
 )
 

@@ -12,8 +12,9 @@ from clutchwork.declare import given
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
+    from fractions import Fraction
 
-    from clutchwork.declare.schema import Role, State
+    from clutchwork.declare.schema import Role, State, Way
 
 # what is wrong, as (quantity, what is so, remedy)
 Found: TypeAlias = "list[tuple[str, str, str]]"
@@ -192,9 +193,14 @@ class Component(Element):
     kind: ClassVar[str]
     role: ClassVar[Role]
     states: ClassVar[tuple[State, ...]] = ()
+    ways: ClassVar[tuple[Way, ...]] = ()
+    hooks: ClassVar[tuple[str, ...]] = ()
 
     one_way: ClassVar[bool] = False  # a freewheel, which locks by itself
+    # of a contact: why it has lost its load where a run finds so, and the remedy
+    lifts: ClassVar[tuple[str, str] | None] = None
     work: ClassVar[Work] = Work.SOURCE  # of a torque element; the work of a contact is always heat
+    supply: ClassVar[str] = ""  # of a source with the hook `heat`: what it draws work and heat from, such as "electric"
     elastic: ClassVar[bool] = False  # joins its ends as a shaft does: counts as rigid in ratios of speeds
     jumps: ClassVar[bool] = False  # a torque element whose torque jumps: its shafts need inertia, as at a contact
 
@@ -210,25 +216,45 @@ class Component(Element):
         """What it cannot do with its friction law, as `problems`; asked once both make sense."""
         return []
 
-    def parts(self) -> Iterable[Component | ThermalNode]:
+    def parts(self) -> Iterable[Part]:
         """What it is made of, named `{self.name}.{part}`; nothing: it is one piece.
 
         One part may have the name of the component itself and stands for it in events and results. Parts refer to
-        each other by name, so `HeatFlow(self)` is that of this part.
+        each other by name, so `HeatFlow(self)` is that of this part. A shaft or mass among them starts at the speed
+        that its springs in here give it, unless it has one of its own.
         """
         return ()
 
-    def part(self, name: str) -> Element | ThermalNode:
+    def directions(self) -> Mapping[str, Mapping[str, float | Fraction]]:
+        """Of an element with `ways`: the rate of each over the speeds at its ports, way -> port -> coefficient.
+
+        A float counts by its decimal digits.
+        """
+        return {}
+
+    def notes(self) -> Sequence[str]:
+        """What is worth knowing of it and follows from its numbers, such as natural frequencies; `check` shows it."""
+        return ()
+
+    def part(self, name: str) -> Element | ThermalNode | Node:
         """A part by its name within this component; KeyError when there is none."""
         named = {part.name: part for part in self.parts()}
         return named[f"{self.name}.{name}"]
+
+    def start_ratio(self) -> float:
+        """Of a transmission: its ratio at the start."""
+        return 1.0
 
     def sums(self) -> tuple[str, ...]:
         """Names of parts, within it, whose torque, power, work and heat count as those of its own name."""
         return ()
 
+    def own_states(self) -> tuple[State, ...]:
+        """The states in use, by its parameters; the hook `count` says how many."""
+        return self.states
+
     def initial_states(self) -> tuple[float, ...]:
-        """Its states at the start, each in its unit."""
+        """Its states in use at the start, each in its unit."""
         return ()
 
     def state_scales(self) -> tuple[float, ...]:
@@ -405,6 +431,8 @@ class HeatFlow:
     of: Element
 
 
+# what a composite is made of
+Part: TypeAlias = "Component | Node | ThermalNode"
 # what an input accepts
 SignalLike: TypeAlias = "float | Signal | ThermalNode | Element | tuple[Element, str] | Node | Rate | HeatFlow"
 # (x, y) pairs of a curve

@@ -5,7 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 # base units of pint, the place of each among the powers of `declare.units`, and its factor to SI
-BASES = {"gram": (0, 1e-3), "meter": (1, 1.0), "second": (2, 1.0), "radian": (3, 1.0), "kelvin": (4, 1.0)}
+BASES = {
+    "gram": (0, 1e-3),
+    "meter": (1, 1.0),
+    "second": (2, 1.0),
+    "radian": (3, 1.0),
+    "kelvin": (4, 1.0),
+    "ampere": (5, 1.0),
+}
 
 
 class Foreign(Exception):  # noqa: N818, it is caught where a message is made of it
@@ -24,8 +31,8 @@ def is_list(quantity: Any) -> bool:
 
 
 def powers_of(quantity: Any) -> tuple[float, ...]:
-    """Powers of kg, m, s, rad and K; Foreign where it is made of something else."""
-    powers = [0.0, 0.0, 0.0, 0.0, 0.0]
+    """Powers of kg, m, s, rad, K and A; Foreign where it is made of something else."""
+    powers = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     for name, power in _root(quantity).unit_items():
         if name not in BASES:
             raise Foreign

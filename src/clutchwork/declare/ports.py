@@ -1,9 +1,17 @@
-"""What is attached to the ports of an element."""
+"""What is attached to the ports of an element, and the directions along which it acts."""
 
 from __future__ import annotations
 
-from clutchwork.declare.node import HOUSING, Component, Node, ThermalNode
-from clutchwork.declare.schema import specs
+from typing import TYPE_CHECKING
+
+from clutchwork.base.classes import dataclass
+from clutchwork.declare.node import HOUSING, Component, Domain, Node, ThermalNode
+from clutchwork.declare.rational import MINUS, ONE, exact
+from clutchwork.declare.schema import Way, specs
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from fractions import Fraction
 
 
 def ports(component: Component) -> dict[str, Node]:
@@ -11,10 +19,61 @@ def ports(component: Component) -> dict[str, Node]:
     return {item.name: getattr(component, item.name) or HOUSING for item, _ in specs(type(component), "port")}
 
 
-def ends(component: Component) -> tuple[Node, Node]:
-    """What the rate of an element is counted of and from: follower and base, or shaft and base."""
+@dataclass(frozen=True)
+class Direction:
+    """One direction of an element: its name in results, its coefficients by port, its kind of motion."""
+
+    name: str  # "tc", or "tc.turbine" where the element acts along several ways
+    coefficients: Mapping[str, Fraction]
+    domain: Domain
+    way: Way | None = None
+    number: int = 0  # among those of the element
+
+
+def directions(component: Component) -> tuple[Direction, ...]:
+    """The directions of an element: follower - base, shaft - base, or what its ways say."""
+    ways = type(component).ways
+    if not ways:
+        moving, base = _moving(component)
+        rows = {moving: ONE, **({base: MINUS} if base else {})}
+        return (Direction(component.name, rows, _domain(component)),)
+    rows_of = component.directions()
+    several = sum(not way.watched for way in ways) > 1
+    return tuple(
+        Direction(
+            f"{component.name}.{way.name}" if several or way.watched else component.name,
+            {port: exact(coefficient) for port, coefficient in rows_of[way.name].items()},
+            Domain(way.domain) if way.domain else _domain(component),
+            way,
+            number,
+        )
+        for number, way in enumerate(ways)
+    )
+
+
+def _moving(component: Component) -> tuple[str, str]:
+    """Names of the ports that the rate is counted of and from; the second is empty where there is none."""
+    names = ports(component)
+    return "follower" if "follower" in names else "shaft", "base" if "base" in names else ""
+
+
+def _domain(component: Component) -> Domain:
+    """Kind of motion of the first port that is not the housing, of those that are free in this."""
     joined = ports(component)
-    return joined["follower"] if "follower" in joined else joined["shaft"], joined.get("base", HOUSING)
+    free = [item.name for item, spec in specs(type(component), "port") if not spec.domain]
+    order = [*reversed(free), *joined]
+    return next((joined[name].domain for name in order if not joined[name].fixed), Domain.ROTATION)
+
+
+def port_domains(component: Component) -> dict[str, Domain]:
+    """Kind of motion at every port; the housing takes what is declared, else that of its fellow ports."""
+    joined = ports(component)
+    own = {item.name: spec.domain for item, spec in specs(type(component), "port")}
+    other = _domain(component)
+    return {
+        name: node.domain if not node.fixed else Domain(own[name]) if own[name] else other
+        for name, node in joined.items()
+    }
 
 
 def thermal_ports(component: Component) -> dict[str, ThermalNode]:

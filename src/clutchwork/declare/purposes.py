@@ -15,7 +15,8 @@ TORQUES = "Engines, loads and other torques"
 MOTION = "Prescribed motion"
 PROCESSES = "Actuators, springs that press, and wear"
 HEAT = "Heat"
-ELEMENTS = (CLUTCHES, BRAKES, GEARS, SPRINGS, TORQUES, MOTION, PROCESSES, HEAT)
+SENSORS = "Sensors"
+ELEMENTS = (CLUTCHES, BRAKES, GEARS, SPRINGS, TORQUES, MOTION, PROCESSES, HEAT, SENSORS)
 STICKING = "Laws that stick: a contact locks and breaks away exactly"
 COMPLIANT = "Compliant laws: a function of slip and states of their own, they never lock"
 LAWS = (STICKING, COMPLIANT)
@@ -29,6 +30,8 @@ def purpose(cls: Any) -> str:
         return SIGNALS[0]
     if cls.role is Role.LAW:
         return STICKING if cls.sticks else COMPLIANT
+    if cls.kind.endswith("sensor"):
+        return SENSORS
     return _BY_ROLE.get(cls.role) or _of_element(cls)
 
 

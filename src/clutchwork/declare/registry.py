@@ -23,6 +23,7 @@ class Role(Enum):
     MOTION = "motion"  # prescribed speed
     FLOW = "flow"  # heat flow between two thermal nodes
     PROCESS = "process"  # states of its own that signals, rates and heats drive: an actuator, wear
+    SENSOR = "sensor"  # quantities of a result between two nodes, nothing of its own
     COMPOSITE = "composite"  # made of other elements, nothing of its own
     LAW = "law"  # friction coefficient over slip
     SIGNAL = "signal"  # value over time that drives an input

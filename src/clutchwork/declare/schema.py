@@ -35,6 +35,20 @@ class State:
 
 
 @dataclass(frozen=True)
+class Way:
+    """A direction along which an element acts: name, meaning.
+
+    An element of several ways sees the rates of all and gives a torque along each; a `watched` one gets none. The
+    domain is that of its rate and torque, "rotation" or "translation"; empty: that of its ports. docs/theory/coupled.md
+    """
+
+    name: str
+    doc: str
+    watched: bool = False
+    domain: str = ""
+
+
+@dataclass(frozen=True)
 class Spec:
     """Metadata of one declared field."""
 
@@ -57,6 +71,7 @@ class Spec:
     otherwise: float | None = None  # of a signal: its value when neither it nor its alternative is given
     presses: bool = False  # of a signal: below zero it counts as zero, so that a constant below zero never acts
     flag: bool = False  # true or false in Python, 1 or 0 in the core
+    fixed: bool = False  # says how many states there are: it stays while a run goes on
     whole: bool = False  # a whole number
     rising: str = ""  # of a curve: "strictly", or "weakly" where equal x mean a jump
     constant: bool = False  # of a curve: a number stands for the same value everywhere
@@ -113,14 +128,16 @@ def param(
     whole: bool = False,
     example: float | None = None,
     difference: bool = False,
+    fixed: bool = False,
     kw_only: bool = True,
 ) -> Any:
     """A constant number in SI units: one scalar of the C++ `Params`, in order of declaration.
 
-    A `difference` of temperatures is never in degrees Celsius.
+    A `difference` of temperatures is never in degrees Celsius. What is `fixed` says how many states there are.
     """
     bounds = (above, at_least, below, at_most)
     more: dict[str, Any] = {"units": units, "whole": whole, "example": example, "difference": difference}
+    more["fixed"] = fixed
     spec = Spec("param", unit, doc, default is None, *bounds, **more)
     return _field(spec, default, kw_only)
 
@@ -145,22 +162,24 @@ def curve(
     rising: str = "strictly",
     at_least: float | None = None,
     constant: bool = False,
+    default: None = MISSING,  # type: ignore[assignment]
     example: tuple[tuple[float, float], ...] | None = None,
     kw_only: bool = True,
 ) -> Any:
     """A piecewise linear function as (x, y) points with x increasing: a `Curve` of the C++ `Params`.
 
-    `at_least` bounds y; with `constant` a number may stand for one point.
+    `at_least` bounds y; with `constant` a number may stand for one point. A composite may have one with default None.
     """
     ranges: dict[str, Any] = {"unit_x": unit_x, "units": units, "units_x": units_x, "at_least": at_least}
-    spec = Spec("curve", unit_y, doc, **ranges, rising=rising, constant=constant, example=example)
-    return _field(spec, MISSING, kw_only)
+    spec = Spec("curve", unit_y, doc, default is None, **ranges, rising=rising, constant=constant, example=example)
+    return _field(spec, default, kw_only)
 
 
 def numbers(
     unit: str,
     doc: str,
     *,
+    default: None = MISSING,  # type: ignore[assignment]
     units: tuple[str, ...] = (),
     rising: str = "",
     above: float | None = None,
@@ -169,10 +188,12 @@ def numbers(
 ) -> Any:
     """A list of numbers, or of rows of equally many: a `Curve` of the C++ `Params` whose points hold one number each.
 
-    Rows stand one after another. With `rising` "strictly" each number must be above the one before.
+    Rows stand one after another. With `rising` "strictly" each number must be above the one before. Left out, where it
+    may be, a single zero stands for it there.
     """
-    spec = Spec("numbers", unit, doc, above=above, at_least=at_least, units=units, rising=rising, example=example)
-    return _field(spec, MISSING)
+    bounds: dict[str, Any] = {"above": above, "at_least": at_least, "rising": rising}
+    spec = Spec("numbers", unit, doc, default is None, **bounds, units=units, example=example)
+    return _field(spec, default)
 
 
 def signal(
@@ -193,7 +214,7 @@ def signal(
 ) -> Any:
     """An input: a number, a Signal, a thermal node (its temperature), a process (its first state), or (process, state).
 
-    The inputs of flows and processes may also be `Rate` and `HeatFlow` of an element, and a shaft (its speed).
+    It may be a shaft (its speed), and that of flows and processes `Rate` and `HeatFlow` of an element.
     The C++ functions get them by name, as `at.input[Input::pressure]`.
 
     Bounds hold for what the model knows in advance: a number, and every value that a Signal takes at or after 0 s. What
@@ -225,10 +246,11 @@ def option(
     units: tuple[str, ...] = (),
     flag: bool = False,
     last: bool = False,
+    example: float | None = None,
 ) -> Any:
     """A setting that the assembly reads and the equations do not: no part of the C++ `Params`."""
     bounds = (above, at_least, None, at_most)
-    spec = Spec("option", unit, doc, default is None, *bounds, units=units, flag=flag, last=last)
+    spec = Spec("option", unit, doc, default is None, *bounds, units=units, flag=flag, last=last, example=example)
     return _field(spec, default)
 
 
@@ -282,8 +304,13 @@ def _check_ports(cls: type) -> None:
     frozen_default=True,
     field_specifiers=(port, param, flag, choice, curve, numbers, signal, law, option, text, function),
 )
-def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, ...] = ()) -> Callable[[C], C]:
-    """Freeze a declaration, register it under its kind, the stem of its module; `hooks`: clutchwork.declare.hooks."""
+def component(
+    role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, ...] = (), ways: tuple[Way, ...] = ()
+) -> Callable[[C], C]:
+    """Freeze a declaration, register it under its kind, the stem of its module; `hooks`: clutchwork.declare.hooks.
+
+    Parameters: ways, where its `directions` are others than follower - base, or shaft - base.
+    """
 
     def register(cls: C) -> C:
         frozen: Any = dataclass(frozen=True, repr=False)(cls)
@@ -291,10 +318,10 @@ def component(role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, .
         wrong = hook_problems(role.value, hooks)
         if wrong:
             raise ValueError(f"{cls.__module__.replace('.', '/')}.py: {'; '.join(wrong)}")
-        if role in RATES:
+        if role in RATES and not ways:
             _check_ports(cls)
         _check_work(cls)
-        frozen.kind, frozen.role, frozen.states, frozen.hooks = kind, role, states, hooks
+        frozen.kind, frozen.role, frozen.states, frozen.hooks, frozen.ways = kind, role, states, hooks, ways
         REGISTRY[role].add(kind, frozen)
         PLAIN.add(frozen)
         schema_hash.cache_clear()
@@ -351,7 +378,8 @@ def compiled_text(cls: Any) -> str:
     """What the compiled core must agree on of one declaration."""
     names = ",".join(_field_text(f.name, s) for f, s in specs(cls, "param", "curve", "numbers", "signal"))
     sort = "" if cls.role is not Role.LAW else " sticks" if cls.sticks else " compliant"
-    return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}"
+    ways = "".join(f" {way.name}" for way in cls.ways) if len(cls.ways) > 1 else ""
+    return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}{ways}"
 
 
 def _field_text(name: str, spec: Spec) -> str:

@@ -22,12 +22,12 @@ _SIGNS = {"·": " ", "⋅": " ", "*": " ", "°": "deg", "µ": "u", "μ": "u", "�
 _POWERS = str.maketrans(_SIGNS | dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", strict=True)))
 # per minute, of what turns
 _TURNS = re.compile(r"1\s*/\s*min|min\s*\^?\s*-1")
-NONE: Powers = (0, 0, 0, 0, 0)
-KELVIN: Powers = (0, 0, 0, 0, 1)
+NONE: Powers = (0, 0, 0, 0, 0, 0)
+KELVIN: Powers = (0, 0, 0, 0, 1, 0)
 
 
 class Unit(NamedTuple):
-    """Factor to SI, and powers of kg, m, s, rad and K."""
+    """Factor to SI, and powers of kg, m, s, rad, K and A."""
 
     factor: float
     powers: tuple[int, ...]
@@ -64,7 +64,7 @@ def _parsed(text: str) -> Unit:
     # factors are put together without round-off: a cm3 is 1e-6 m3 to the last bit
     from fractions import Fraction
 
-    factor, powers = Fraction(1), [0, 0, 0, 0, 0]
+    factor, powers = Fraction(1), [0, 0, 0, 0, 0, 0]
     # what follows a slash divides, up to the end: N m/rad, m/s2
     for side, part in enumerate(text.split("/")):
         sign = -1 if side else 1

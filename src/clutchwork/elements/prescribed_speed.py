@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from clutchwork.declare import Component, Node, Role, SignalLike, component, option, port, signal
+from clutchwork.declare import Role, Signal, SignalLike, component, option, signal
+from clutchwork.elements.bases.motion import Motion, MotionError, as_signal
+from clutchwork.signals.bases.waveform import low_pass
 
 
 @component(Role.MOTION)
-class PrescribedSpeed(Component):
+class PrescribedSpeed(Motion):
     """Source that gives a shaft exactly the wanted speed, whatever torque that takes.
 
     Use it for a speed-controlled test bench or a shaft whose speed was measured; its torque is part of the result.
@@ -14,7 +16,16 @@ class PrescribedSpeed(Component):
     low pass, d(speed)/dt = 2 pi cutoff (signal - speed), solved exactly; pulses and functions cannot pass it.
     """
 
-    shaft: Node = port("shaft whose speed is given")
-    base: Node | None = port("member that takes the reaction and that the speed is measured from", default=None)
     speed: SignalLike = signal("rad/s", "wanted speed", units=("m/s",))
     cutoff: float | None = option("Hz", "corner frequency of the low pass, none by default", default=None, above=0.0)
+
+    def speed_signal(self) -> Signal:
+        """The wanted speed, or what passes the filter."""
+        wanted = as_signal(self.speed)
+        if self.cutoff is None:
+            return wanted
+        try:
+            return low_pass(wanted, self.cutoff)
+        except ValueError as error:
+            remedy = "remove cutoff, or give the speed as a table"
+            raise MotionError("cutoff", str(error), f"{self.cutoff:g} Hz", remedy) from None

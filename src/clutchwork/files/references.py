@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from typing import Any
 
-from clutchwork.declare.node import Component, HeatFlow, Rate, ThermalNode
+from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode
 from clutchwork.model.components import component_problems
-from clutchwork.model.parts import take_apart
+from clutchwork.model.parts import Parts, take_apart
 
 Entry = Mapping[str, Any]
 REFERENCES = {"rate": Rate, "heat_flow": HeatFlow}
@@ -43,10 +43,11 @@ class References(Container[str]):
         """An element, None where it has mistakes, is being made, or is not there."""
         return self._at(self._places[name]) if name in self._places else None
 
-    def thermal_part(self, name: object) -> ThermalNode | None:
-        """A thermal node that is part of an element: "disc.surface"."""
+    def part(self, name: object) -> Node | ThermalNode | None:
+        """A node that is part of an element: "disc.surface"."""
         whole = self.get(name.rpartition(".")[0]) if isinstance(name, str) else None
-        nodes = take_apart([whole]).thermal if whole is not None and not any(component_problems(whole)) else ()
+        parts = take_apart([whole]) if whole is not None and not any(component_problems(whole)) else Parts()
+        nodes: list[Node | ThermalNode] = [*parts.nodes, *parts.thermal]
         return next((node for node in nodes if node.name == name), None)
 
     def broken(self, name: str) -> bool:

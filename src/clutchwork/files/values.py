@@ -74,7 +74,7 @@ class Values:
         if spec.what == "law":
             return self._typed(value, Role.LAW, at)
         if spec.what in ("signal", "alternative"):
-            if is_named(value, self.thermal, self.elements, self.nodes) or self.elements.thermal_part(value):
+            if is_named(value, self.thermal, self.elements, self.nodes) or self.elements.part(value):
                 return self._other(value, at)
             is_signal = isinstance(value, Mapping) and "type" in value
             return self._signal(value, spec, at) if is_signal else self._number(value, spec, at)
@@ -126,14 +126,14 @@ class Values:
 
     def _node_of(self, name: Any) -> Any:
         """The shaft or mass of a name; nothing where there is none."""
-        return self.nodes.get(name) if isinstance(name, str) else None
+        return (self.nodes.get(name) or self.elements.part(name)) if isinstance(name, str) else None
 
     def _port(self, value: Any, spec: Spec, at: At) -> Any:
         known: Mapping[str, Any] = self.nodes if spec.what == "port" else self.thermal
         if isinstance(value, str) and value in known:
             return known[value]
-        part = self.elements.thermal_part(value) if spec.what == "thermal" else None
-        if part is not None:
+        part = self.elements.part(value)
+        if isinstance(part, ThermalNode if spec.what == "thermal" else Node):
             return part
         moving = any(node.domain is Domain.TRANSLATION for node in self.nodes.values())
         what = PORTS[spec.domain if moving else spec.domain or "rotation"] if spec.what == "port" else "thermal node"
@@ -148,7 +148,7 @@ class Values:
     def _other(self, value: Any, at: At) -> Any:
         """An input that a thermal node, an element or a shaft gives."""
         name = value["of"] if isinstance(value, Mapping) else value
-        found: Any = self.thermal.get(name) or self.elements.thermal_part(name)
+        found: Any = self.thermal.get(name) or self.elements.part(name)
         found = found or self.elements.get(name) or self.nodes.get(name)
         if name in self.elements and found is None:
             # its own mistakes are reported where it stands

@@ -1,4 +1,4 @@
-"""Parameters of a friction law from measured slip and torque, with what the samples do not determine.
+"""Parameters of a friction law from measured slip and torque, or numbers of a driveline from a measured response.
 
     import clutchwork as cw
     from clutchwork.fit import fit_csv
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from clutchwork.fit.failure import FitError as FitError
     from clutchwork.fit.law import fit_csv as fit_csv
     from clutchwork.fit.law import fit_law as fit_law
+    from clutchwork.fit.response import ResponseFit as ResponseFit
+    from clutchwork.fit.response import fit_response as fit_response
     from clutchwork.fit.result import FitResult as FitResult
     from clutchwork.fit.result import Parameter as Parameter
     from clutchwork.fit.result import UndeterminedError as UndeterminedError
@@ -30,11 +32,13 @@ _LAZY = {
     "FitError": "failure",
     "FitResult": "result",
     "Parameter": "result",
+    "ResponseFit": "response",
     "UndeterminedError": "result",
     "fit_csv": "law",
     "fit_law": "law",
+    "fit_response": "response",
 }
-__all__ = ["FitError", "FitResult", "Parameter", "UndeterminedError", "fit_csv", "fit_law"]
+__all__ = sorted(_LAZY)
 
 
 if not TYPE_CHECKING:
@@ -46,4 +50,4 @@ if not TYPE_CHECKING:
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return list(__all__)

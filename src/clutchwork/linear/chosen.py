@@ -80,11 +80,12 @@ def chosen_outputs(system: System, wanted: Any, default: Iterable[str], problems
     """The outputs that were asked for; by default those given."""
     if wanted is None:
         return list(dict.fromkeys(default))
-    known = channels(system, True, True)
+    known, columns = channels(system, True, True), wiring(system).columns["supply_power"]
+    drawn = range(columns.start, columns.stop)
     names = _matching("outputs", wanted, list(known), problems)
     usable, integrals = [], _integrals(system)
     for name in names:
-        reason = _unusable(name, known[name].evaluate, integrals)
+        reason = _unusable(name, known[name].evaluate, integrals, drawn)
         plain = wanted == name or (not isinstance(wanted, str) and name in list(wanted))
         if not reason:
             usable.append(name)
@@ -93,10 +94,12 @@ def chosen_outputs(system: System, wanted: Any, default: Iterable[str], problems
     return usable
 
 
-def _unusable(name: str, form: Any, integrals: Collection[int]) -> str:
+def _unusable(name: str, form: Any, integrals: Collection[int], drawn: Collection[int]) -> str:
     """Why a signal cannot be an output, empty where it can."""
     if isinstance(form, Mode):
         return "does not change with a state; ask for the torque or the slip of the contact"
+    if any(column in drawn for column in columns_of(form)):
+        return f"holds losses, which a linear system does not have; ask for '{name.rpartition('.')[0]}.power'"
     if any(column in integrals for column in columns_of(form)):
         return f"is an integral over the run; ask for '{name.rpartition('.')[0]}.power'"
     return ""
@@ -105,7 +108,7 @@ def _unusable(name: str, form: Any, integrals: Collection[int]) -> str:
 def _integrals(system: System) -> set[int]:
     """Columns of the row that are integrals over the run."""
     columns = wiring(system).columns
-    parts = ("element_work", "contact_work", "prescribed_work")
+    parts = ("element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy")
     return {column for part in parts for column in range(columns[part].start, columns[part].stop)}
 
 

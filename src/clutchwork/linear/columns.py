@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.linear.own_states import followers, own_states, wound_up
+from clutchwork.linear.own_states import apart, followers, own_states, wound_up
 from clutchwork.results.channels import ANGLE, PLACE, SPEED
 
 if TYPE_CHECKING:
@@ -90,7 +90,8 @@ def _turned(
     moving = sorted({one.motion for one in given if one.motion >= 0})
     used = [*range(motion.nx), *(motion.nx + motion.ns + place for place in moving)]
     rates = np.vstack([by_rate[wound] @ motion.rates, motion.node_speeds[np.asarray(angles, dtype=int)]])[:, used]
-    found = followers(rates)
+    # what turns with others at this ratio does so at no other
+    found = followers(rates) if not len(motion.ties.first) else apart(len(rates))
     return rates, wound, found.kept, found.over_kept
 
 

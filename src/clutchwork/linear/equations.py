@@ -65,6 +65,9 @@ def _rates(motion: Motion, made: Columns, over: Array) -> tuple[Array, Array]:
     directions = (motion.D @ motion.free.Z)[:, kept]
     push = directions.T @ (motion.follow(local.torque) @ over)
     now = directions.T @ local.torque[:, -1]
+    if len(motion.ties.first):
+        pushed, pulled = _of_ties(motion)
+        push, now = push + pushed[kept] @ over, now + pulled[kept]
     for place in made.driven:
         pull = motion.mass_p[kept, made.given[place].motion]
         push[:, made.n + place] -= pull
@@ -87,18 +90,35 @@ def _rates(motion: Motion, made: Columns, over: Array) -> tuple[Array, Array]:
     return np.vstack(rates), np.concatenate(drift)
 
 
+def _of_ties(motion: Motion) -> tuple[Array, Array]:
+    """What ratios that vary add to the torques of the speeds that stay, over the base columns, and its value."""
+    ties, local, free = motion.ties, motion.local, motion.free
+    inertia = free.Z.T @ (motion.M @ motion.tied)
+    by_state = local.split(local.ratio)[1] @ motion.follow(local.rate)
+    slopes = motion.tied_slopes() + ties.rate[:, None] * by_state
+    turned = (motion.D[ties.second] @ free.Z).T @ (ties.torque[:, None] * motion.ratios)
+    return -turned - inertia @ slopes, -inertia @ (local.ratio_slope[:, -1] * ties.rate)
+
+
 def _row(motion: Motion, made: Columns, over: Array, rates: Array) -> Array:
     """Derivatives of the output row over states, inputs and slopes of inputs: docs/theory/linearisation.md (9)."""
     system, local, n = motion.system, motion.local, made.n
     count = len(made.given)
     base = np.hstack([over, np.zeros((len(over), count))])
     slopes = np.hstack([over[:, :n] @ rates, over[:, n:]])
-    speed, acceleration = motion.speeds @ base, motion.speeds @ slopes
+    ties = motion.ties
+    speed = motion.speeds @ base
+    acceleration = motion.speeds @ slopes + motion.tied @ (motion.tied_slopes() @ base)
     torque = motion.follow(local.torque) @ base
-    load = system.mass @ acceleration + system.mass_prescribed @ (motion.p @ slopes) - motion.D.T @ torque
+    # what the change of a ratio makes of the torque along its second way
+    torque[ties.second] -= ties.torque[:, None] * (motion.ratios @ base)
+    load = motion.M @ acceleration + system.mass_prescribed @ (motion.p @ slopes) - motion.D.T @ torque
     elements = system.counts["elements"]
     contact = torque[elements:]
-    contact[motion.held] += torque_change(_holding(motion, base), load)
+    held, tied = np.split(torque_change(_holding(motion, base), load), [len(motion.held)])
+    contact[motion.held] += held
+    torque[ties.first] += tied
+    torque[ties.second] -= ties.ratio[:, None] * tied
     given = motion.p @ base, motion.p @ slopes
     parts = {
         "speed": system.basis @ speed + system.basis_prescribed @ given[0],
@@ -122,11 +142,14 @@ def _holding(motion: Motion, base: Array) -> Holding:
     instant, held = motion.instant, motion.held
     branches = motion.local.torque[motion.system.counts["elements"] :, -1]
     most, least = motion.local.most[held], motion.local.least[held]
+    # transmissions hold any torque
+    ties = len(motion.ties.first)
+    endless, still = np.full((2, ties), np.inf), np.zeros((2, ties, base.shape[1]))
     return Holding(
-        motion.system.contact_rate[held],
-        (instant.part("contact_torque") - branches)[held],
-        np.stack([most[:, -1], -least[:, -1]]),
-        np.stack([motion.follow(most) @ base, -(motion.follow(least) @ base)]),
+        np.vstack([motion.system.contact_rate[held], motion.ties.row]),
+        np.concatenate([(instant.part("contact_torque") - branches)[held], motion.ties.torque]),
+        np.hstack([np.stack([most[:, -1], -least[:, -1]]), endless]),
+        np.concatenate([np.stack([motion.follow(most) @ base, -(motion.follow(least) @ base)]), still], axis=1),
     )
 
 

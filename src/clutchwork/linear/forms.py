@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.results.forms import LOCKED, Affine, Column, Form, Linear, Power, Slip, Total
+from clutchwork.results.forms import LOCKED, Affine, Column, Form, Linear, Power, Powers, Slip, Total
 
 Array = NDArray[np.float64]
 
@@ -24,6 +24,8 @@ def columns_of(form: Any) -> tuple[int, ...]:
         return columns_of(form.rate)
     if isinstance(form, Power):
         return columns_of(form.torque) + columns_of(form.rate)
+    if isinstance(form, Powers):
+        return tuple(column for part in form.parts for column in columns_of(part))
     return ()
 
 
@@ -47,4 +49,7 @@ def derivative(form: Form, row: Array, change: Array) -> Array:
     if isinstance(form, Power):
         torque, rate = (float(part(row[None, :])[0]) for part in (form.torque, form.rate))
         return rate * derivative(form.torque, row, change) + torque * derivative(form.rate, row, change)
+    if isinstance(form, Powers):
+        powers: Array = np.sum([derivative(part, row, change) for part in form.parts], axis=0)
+        return powers
     raise TypeError(f"{form} has no derivative")

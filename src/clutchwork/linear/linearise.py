@@ -106,8 +106,14 @@ def _free_inputs(
 ) -> list[Given]:
     """Inputs without prescribed speeds that locked contacts hold."""
     tied = {int(k) for k in np.flatnonzero(np.abs(motion.free.ties).max(axis=0, initial=0.0) > ROUND_OFF)}
-    kept = [one for one in given if one.motion not in tied]
+    # a ratio that moves acts by its slope too
+    turning = np.abs(motion.local.split(motion.local.ratio)[2][motion.ties.rate != 0.0]).max(axis=0, initial=0.0)
+    ratios = {int(k) for k in np.flatnonzero(turning)}
+    kept = [one for one in given if one.motion not in tied and one.signal not in ratios]
     for one in given:
+        if one.signal in ratios:
+            reason = f"{one.name} acts by its slope too: give the ratio by a RatioActuator and take its command"
+            left_out.append(f"{reason}; it is left out") if default else problems.append(f"inputs: {reason}")
         if one.motion in tied:
             reason = f"{one.name} cannot change by itself: locked contacts hold that motion"
             left_out.append(f"{reason}; it is left out") if default else problems.append(f"inputs: {reason}")

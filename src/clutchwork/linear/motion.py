@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.wiring import HOUSING
 from clutchwork.linear.locked import Free, free_motion
 from clutchwork.linear.own_states import preference
+from clutchwork.linear.ties import Ties
 from clutchwork.results.forms import LOCKED
 
 if TYPE_CHECKING:
@@ -26,8 +27,9 @@ class Local:
         counts, matrix = instant.system.counts, instant.local
         nd, ns, nc = counts["elements"] + counts["contacts"], counts["states"], counts["contacts"]
         self.directions, self.states = nd, ns
-        ends = np.cumsum([nd, ns, nc, nc, nc])
-        self.torque, self.rate, self.capacity, self.most, self.least, self.flow = np.split(matrix, ends, axis=0)
+        ends = np.cumsum([nd, ns, nc, nc, nc, counts["flows"], counts["transmissions"]])
+        parts = np.split(matrix, ends, axis=0)
+        self.torque, self.rate, self.capacity, self.most, self.least, self.flow, self.ratio, self.ratio_slope = parts
 
     def split(self, part: Array) -> tuple[Array, Array, Array, Array]:
         """Derivatives by rates, by states, by signals, and the value."""
@@ -44,19 +46,24 @@ class Motion:
         self.D = np.vstack([system.element_rate, system.contact_rate])
         self.delta = np.vstack([system.element_rate_prescribed, system.contact_rate_prescribed])
         self.held = np.flatnonzero(instant.modes == LOCKED)
-        B, beta = system.contact_rate[self.held], system.contact_rate_prescribed[self.held]
+        self.ties = Ties(instant, self.local.ratio[:, -1], self.D, self.delta)
+        # a change of a ratio moves speeds as a prescribed speed does
+        B, beta = self.ties.beside(system.contact_rate[self.held], system.contact_rate_prescribed[self.held])
         self.free: Free = free_motion(B, beta, preference(instant))
-        Z, Zp = self.free.Z, self.free.Zp
+        self.M = self.ties.mass(system.mass)
+        Z, Zp, Zt = self.free.Z, *np.split(self.free.Zp, [self.delta.shape[1]], axis=1)
         self.nx, self.np = Z.shape[1], Zp.shape[1]
         self.ns, self.ni = self.local.states, len(system.inputs)
-        self.mass = Z.T @ system.mass @ Z
-        self.mass_p = Z.T @ (system.mass @ Zp + system.mass_prescribed)
+        self.mass = Z.T @ self.M @ Z
+        self.mass_p = Z.T @ (self.M @ Zp + system.mass_prescribed)
         self.algebraic = system.massless[self.free.kept] != 0
         self.inertial = ~self.algebraic
         self.x, self.s, self.p, self.i = np.split(
             np.eye(self.nx + self.ns + self.np + self.ni), np.cumsum([self.nx, self.ns, self.np])
         )
-        self.speeds = Z @ self.x + Zp @ self.p
+        self.ratios = self.local.split(self.local.ratio)[1] @ self.s + self.local.split(self.local.ratio)[2] @ self.i
+        self.speeds = Z @ self.x + Zp @ self.p + Zt @ (self.ties.rate[:, None] * self.ratios)
+        self.tied = Zt
         self.rates = self.D @ self.speeds + self.delta @ self.p
         self.node_speeds = system.basis @ self.speeds + system.basis_prescribed @ self.p
 
@@ -74,6 +81,17 @@ class Motion:
             for motion in self.instant.wiring.motions
         ]
         return np.array(made, dtype=float)
+
+    def tied_slopes(self) -> Array:
+        """What a change of the base columns makes of the accelerations of the ties, the slopes of all else apart.
+
+        docs/theory/linearisation.md (12)
+        """
+        ties, (_, by_state, by_signal, now) = self.ties, self.local.split(self.local.ratio_slope)
+        held = by_state @ self.s + by_signal @ self.i
+        second = self.rates[ties.second]
+        slopes: Array = ties.acceleration[:, None] * self.ratios + now[:, None] * second + ties.rate[:, None] * held
+        return slopes
 
     def follow(self, part: Array) -> Array:
         """Derivatives of local quantities over the base columns."""

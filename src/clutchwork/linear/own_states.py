@@ -39,9 +39,11 @@ def own_states(wiring: Wiring) -> list[OwnState]:
     for branch in (*wiring.elements, *wiring.contacts):
         passive = branch.component.passive()
         for number, (name, unit, index) in enumerate(branch.states):
-            made[index] = OwnState(f"{branch.name}.{name}", unit)
+            made[index] = OwnState(f"{branch.component.name}.{name}", unit)
             if number == 0 and passive is not None and passive.stiffness:
-                made[index] = OwnState(f"{branch.name}.twist", ANGLE[branch.domain], 1.0 / float(passive.stiffness))
+                made[index] = OwnState(
+                    f"{branch.component.name}.twist", ANGLE[branch.domain], 1.0 / float(passive.stiffness)
+                )
     for node in wiring.thermal:
         index, capacity = node.states[0][2], node.component.capacity
         if capacity is None:
@@ -59,10 +61,9 @@ def wound_up(instant: Instant, S_r: Array, S_s: Array, S_i: Array) -> NDArray[np
     """States that only count how far something has turned: their rates are multiples of one rate, or nothing."""
     branches = (*instant.wiring.elements, *instant.wiring.contacts)
     found = []
-    for direction, branch in enumerate(branches):
+    for branch in branches:
         for _, _, index in branch.states:
-            others = np.delete(S_r[index], direction)
-            if not (S_s[index].any() or S_i[index].any() or others.any()):
+            if not (S_s[index].any() or S_i[index].any() or np.count_nonzero(S_r[index]) > 1):
                 found.append(index)
     return np.array(found, dtype=int)
 
@@ -73,6 +74,11 @@ class Followers:
 
     kept: NDArray[np.intp]
     over_kept: Array  # one row for each
+
+
+def apart(count: int) -> Followers:
+    """All of them stay."""
+    return Followers(np.arange(count), np.eye(count))
 
 
 def followers(rates: Array) -> Followers:
@@ -101,4 +107,6 @@ def preference(instant: Instant) -> Sequence[int]:
     """Independent speeds in the order in which the model names their shafts: the first ones stay."""
     names = [node.name for node in instant.system.nodes]
     places = [names.index(name) for name in instant.system.independent]
-    return [int(i) for i in np.argsort(places, kind="stable")]
+    # those without inertia that follow from transmissions go first
+    following = {int(i) for i in instant.system.transmission_speed}
+    return sorted(range(len(places)), key=lambda i: (i in following, places[i]))

@@ -18,6 +18,7 @@ from clutchwork.declare.node import (
     HeatFlow,
     Law,
     Node,
+    Part,
     Rate,
     Signal,
     ThermalNode,
@@ -305,7 +306,7 @@ class Renewed:
         return more
 
 
-def _inside(component: Component) -> Iterator[Component | ThermalNode]:
+def _inside(component: Component) -> Iterator[Part]:
     """Everything that an element is made of, parts of its parts included."""
     for part in component.parts():
         yield part

@@ -9,12 +9,13 @@ from typing import Any
 
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import shown
-from clutchwork.declare.node import Component, Law, Node
+from clutchwork.declare.node import Component, Law, Node, ThermalNode
 from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.declare.speech import path_of
 from clutchwork.model.fields import object_problems
 from clutchwork.model.numbers import At, as_float
+from clutchwork.model.thermal import Within
 from clutchwork.signals.constant import Constant
 
 
@@ -36,7 +37,7 @@ def _beyond_numbers(component: Component, at: At) -> Iterator[Problem]:
         for part in component.parts():
             if isinstance(part, Component):
                 yield from _beyond_numbers(part, at) if part.name != component.name else ()
-            elif part.capacity is not None and not 0.0 < part.capacity < inf:
+            elif not _sensible(part):
                 raise OverflowError
         starts, scales = component.initial_states(), component.state_scales()
         if not all(map(isfinite, (*starts, *scales))) or 0.0 in scales:
@@ -45,6 +46,13 @@ def _beyond_numbers(component: Component, at: At) -> Iterator[Problem]:
         yield at.problem(
             "has values too large or too small to compute with", remedy="correct the values of unusual magnitude"
         )
+
+
+def _sensible(node: Node | ThermalNode) -> bool:
+    """Whether the numbers of a node inside of a composite can be computed with."""
+    if isinstance(node, ThermalNode):
+        return node.capacity is None or 0.0 < node.capacity < inf
+    return 0.0 <= node.inertia < inf and isfinite(node.speed or 0.0) and isfinite(node.angle)
 
 
 def locked_problems(contact: Any, at: At) -> Iterator[Problem]:
@@ -94,7 +102,7 @@ def _law_advice(component: Component) -> Iterator[Problem]:
         yield place.inner(name).problem(message, value=value, remedy=remedy)
 
 
-def connection_problems(component: Component, nodes: Mapping[int, Node]) -> Iterator[Problem]:
+def connection_problems(component: Component, nodes: Mapping[int, Node], within: Within) -> Iterator[Problem]:
     """Ports that are on foreign nodes, on one and the same node, or of two kinds of motion; `nodes` by identity."""
     joined = ports(component)
     if not joined or not all(isinstance(node, Node) for node in joined.values()):
@@ -102,12 +110,13 @@ def connection_problems(component: Component, nodes: Mapping[int, Node]) -> Iter
     moving = {name: node for name, node in joined.items() if not node.fixed}
     at = At(path_of(component), "")
     for name, node in moving.items():
-        if id(node) not in nodes:
+        own = any(node.name == other.name for other in nodes.values())
+        if id(node) not in nodes and (own or not within.holds(node)):
             found = near(node.name, [n.name for n in nodes.values() if n.name != node.name])
             yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
     if not moving:
         yield at.problem("is attached to the housing alone", remedy="attach a port to a shaft")
-    elif len(joined) == 2 and len({id(node) for node in joined.values()}) == 1:
+    elif len(joined) == 2 and len({node.name if within.holds(node) else id(node) for node in joined.values()}) == 1:
         names = " and ".join(joined)
         yield at.problem(
             f"{names} are both attached to {shown(next(iter(joined.values())).name)}",

@@ -167,9 +167,12 @@ def _is_measured(value: Any) -> bool:
 
 
 def _beyond_bounds(signal: Signal, spec: Spec, at: At) -> Iterator[Problem]:
-    """The first extreme of a signal that is out of bounds."""
-    for time, value in extremes(signal) if spec.bound else ():
-        if not spec.allows(value):
+    """The first extreme of a signal that is out of bounds by more than the round-off of its pieces."""
+    found = tuple(extremes(signal)) if spec.bound else ()
+    slack = 1e-14 * max((abs(value) for _, value in found), default=0.0)
+    for time, value in found:
+        ends = (end for end in (spec.at_least, spec.at_most) if end is not None and abs(value - end) <= slack)
+        if not spec.allows(next(ends, value)):
             given = f"{value:g} {at.unit}".removesuffix(" 1")
             message = f"must be {spec.bound} {at.unit}".removesuffix(" 1")
             yield at.problem(message, value=f"{given} at {time:g} s", remedy=instead(value, spec))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.speech import of_files
 from clutchwork.model.kinematics import kinematics
+from clutchwork.model.loads import load_problems
 from clutchwork.model.parts import Parts, Sensor
 from clutchwork.model.problems import TOO_FAR_APART, model_advice, no_shaft, part_problems
 from clutchwork.model.settings import settings_problems
@@ -119,16 +120,17 @@ def _values(value: Any) -> Any:
 def _find(model: Model, incomplete: Sequence[str]) -> Findings:
     problems, sound, touched = part_problems(model, incomplete)
     advice = model_advice(model)
-    if not model.nodes:
+    if not model.nodes and not sound.nodes:
         return Findings([*problems, no_shaft()], advice, None)
     # a sensor may be on a shaft that is not there, and moves nothing
     components = [part for part in sound.components if not problems or not isinstance(part, Sensor)]
-    mechanism = Mechanism(tuple(model.nodes), tuple(components))
+    mechanism = Mechanism((*model.nodes, *sound.nodes), tuple(components), len(sound.nodes))
     try:
         made, wrong = kinematics(mechanism, incomplete=frozenset((*incomplete, *touched)))
         if made is None:
             return Findings(problems + wrong, advice, None)
         speeds, motions, wrong = start(mechanism, made)
+        wrong += load_problems(mechanism)
     except ArithmeticError:
         return Findings([*problems, TOO_FAR_APART], advice, None)
     problems += wrong

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import listed, shown
 from clutchwork.declare.rational import MINUS, ONE, Echelon, Row, eliminate, plus, smallest
-from clutchwork.model import massless
+from clutchwork.model import massless, transmissions
 from clutchwork.model.structure import Kinematics, Mechanism, RigidRow
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ def kinematics(
         made.loose = loose
     problems += [*unbalanced, *(_choice_problems(model, made, wanted) if sound else ())]
     problems += massless.problems(model, made, incomplete)
+    problems += transmissions.problems(model, made)
     made.notes += _redundant(rows, order, echelon) + [
         f"{row.owner}: its springs act in series" for row in series.values()
     ]
@@ -75,7 +76,10 @@ def _solve(model: Mechanism, echelon: Echelon) -> Kinematics:
         speeds.append({node: ONE} if row is None else plus({node: ONE}, MINUS, row))
     free = [node for node in range(len(model.nodes)) if node not in echelon.solved]
     heavy = {column for row, inertia in zip(speeds, model.inertia, strict=True) if inertia for column in row}
-    return Kinematics(speeds, free, set(free) - heavy)
+    made = Kinematics(speeds, free, set(free) - heavy)
+    made.followers = transmissions.followers(model, made)
+    made.massless -= set(made.followers.values())
+    return made
 
 
 def _contradictions(model: Mechanism, rows: list[RigidRow], echelon: Echelon) -> Iterator[Problem]:

@@ -95,6 +95,8 @@ def _for(remedy: str, spec: Spec) -> str:
 
 def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """A list of numbers, or of equally long lists of them."""
+    if value is None and spec.optional:
+        return
     if has_unit(value) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:
         yield at.problem("must be a list of numbers", value=shown(value), remedy=f"write [x, y, ...]: {spec.doc}")
         return

@@ -1,31 +1,40 @@
-"""Composites taken apart into the elements and thermal nodes that the assembly works on."""
+"""Composites taken apart into the elements, shafts and thermal nodes that the assembly works on."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field
 from typing import Any
 
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import HOUSING, Component, Node, Rate, ThermalNode
+from clutchwork.declare.node import HOUSING, Component, Node, Part, Rate, ThermalNode
+from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import Role, inputs
 from clutchwork.elements.damper import Damper
+from clutchwork.elements.displacement import Displacement
 
 
 class Sensor(Damper):
     """Gives the speed of a shaft to flows and processes; it has no torque and no signals of its own."""
 
 
+class Place(Displacement):
+    """The position of a stop, which stands among the signals of that."""
+
+
 @dataclass(frozen=True)
 class Parts:
     """What a driveline is made of in the end."""
 
-    components: tuple[Component, ...]
-    thermal: tuple[ThermalNode, ...]
-    sums: Mapping[str, tuple[str, ...]]  # "c1" -> parts whose torque, power, work and heat count as those of "c1"
+    components: tuple[Component, ...] = ()
+    thermal: tuple[ThermalNode, ...] = ()
+    nodes: tuple[Node, ...] = ()  # shafts and masses inside of composites
+    # "c1" -> parts whose torque, power, work and heat count as those of "c1"
+    sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def take_apart(components: Sequence[Component], thermal: Sequence[ThermalNode] = ()) -> Parts:
-    """All elements and thermal nodes, those of composites in their place, and a sensor per shaft that is asked."""
+    """All elements and nodes, those of composites in their place, and a sensor per shaft that is asked."""
     pieces = [piece for component in components for piece in _pieces(component)]
     elements = [piece for piece in pieces if isinstance(piece, Component)]
     nodes = [*thermal, *(piece for piece in pieces if isinstance(piece, ThermalNode))]
@@ -35,7 +44,8 @@ def take_apart(components: Sequence[Component], thermal: Sequence[ThermalNode] =
     sensors = [Sensor(sensor_name(node), base=HOUSING, follower=node, damping=0.0) for node in asked.values()]
     there = {element.name for element in elements}
     sums = {whole.name: tuple(there.intersection(_full(whole))) for whole in components if whole.name in there}
-    return Parts((*elements, *sensors), tuple(nodes), {name: names for name, names in sums.items() if names})
+    shafts = tuple(piece for piece in pieces if isinstance(piece, Node))
+    return Parts((*elements, *sensors), tuple(nodes), shafts, {name: names for name, names in sums.items() if names})
 
 
 def _full(whole: Component) -> list[str]:
@@ -47,23 +57,28 @@ def sensor_name(node: Node) -> str:
     return f"{node.name}.speed_sensor"
 
 
-def _pieces(component: Component) -> Iterator[Component | ThermalNode]:
+def _pieces(component: Component) -> Iterator[Part]:
     parts = list(component.parts())
     if not parts and role(component) is not Role.COMPOSITE:
         yield component
+    if is_stop(component):
+        joined = ports(component)
+        (start,) = component.initial_states()
+        yield Place(place_of(component), base=joined["base"], follower=joined["follower"], initial_position=start)
     for part in parts:
         # the part with the name of the whole is one piece
-        if isinstance(part, ThermalNode) or part.name == component.name:
+        if isinstance(part, Node | ThermalNode) or part.name == component.name:
             yield part
         else:
             yield from _pieces(part)
 
 
 def _asked(element: Component) -> Iterator[Node]:
-    """Shafts whose speed is an input of a flow or a process."""
-    if role(element) in (Role.FLOW, Role.PROCESS):
-        for names, _ in inputs(type(element)):
-            for value in (getattr(element, name) for name in names):
+    """Shafts whose speed is an input of a flow, a process, a torque element or a contact."""
+    things = (element, element.friction) if role(element) not in (Role.GEAR, Role.MOTION) else ()
+    for thing in things:
+        for names, _ in inputs(type(thing)) if thing is not None else ():
+            for value in (getattr(thing, name) for name in names):
                 node = value.of if isinstance(value, Rate) else value
                 if isinstance(node, Node):
                     yield node
@@ -73,6 +88,16 @@ def role(component: Any) -> Role:
     """What a component is to the engine."""
     found: Role = type(component).role
     return found
+
+
+def is_stop(component: Component) -> bool:
+    """Whether it is a contact that exists at the ends of a gap alone."""
+    return "end" in type(component).hooks
+
+
+def place_of(stop: Component) -> str:
+    """Name of the position of a stop."""
+    return f"{stop.name}.place"
 
 
 def state_name(value: Any) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import field
 from itertools import pairwise
+from math import nan
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from clutchwork.declare.schema import specs
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Law
+    from clutchwork.declare.schema import Spec
 
 
 @dataclass
@@ -32,12 +34,19 @@ class Pools:
             value = getattr(component, item.name)
             if spec.what == "param":
                 self.places[f"{path}.{item.name}"] = len(self.params)
-                self.params.append(float(spec.choices.index(value) if spec.choices else value))
+                self.params.append(_number(spec, value))
             else:
-                points = _points(value) if spec.what == "curve" else _plain(value)
+                points = _points(value) if spec.what == "curve" else _plain((0.0,) if value is None else value)
                 self.params += [float(len(self.points)), float(len(points))]
                 self.points += points
         return offset
+
+
+def _number(spec: Spec, value: Any) -> float:
+    """A parameter as a number; one that is left out is none."""
+    if value is None:
+        return nan
+    return float(spec.choices.index(value) if spec.choices else value)
 
 
 def _points(value: Any) -> list[tuple[float, float, float]]:

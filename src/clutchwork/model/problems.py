@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from clutchwork.base.errors import Problem
 from clutchwork.base.shown import shown
 from clutchwork.declare.node import HOUSING, Component, Domain, Node, ThermalNode
+from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.speech import path_of, say
 from clutchwork.model.components import component_advice, component_problems, connection_problems
@@ -30,13 +31,14 @@ def part_problems(model: Model, incomplete: Sequence[str] = ()) -> tuple[list[Pr
     problems += [problem for node in nodes for problem in node_problems(node)]
     problems += [problem for node in thermal for problem in thermal_problems(node)]
     parts, found = _parts(elements, thermal)
-    within = Within({node.name for node in parts.thermal}, {e.name for e in elements if found[id(e)]})
+    inner = {*(node.name for node in parts.nodes), *(node.name for node in parts.thermal)}
+    within = Within(inner, {e.name for e in elements if found[id(e)]})
     own = {id(node): node for node in nodes}
     for element in elements:
-        found[id(element)] += [*connection_problems(element, own), *port_problems(element, thermal, within)]
+        found[id(element)] += [*connection_problems(element, own, within), *port_problems(element, thermal, within)]
         problems += found[id(element)]
     broken = [element for element in elements if found[id(element)]]
-    sound = take_apart([element for element in elements if not found[id(element)]], thermal) if broken else parts
+    sound = _sound([element for element in elements if not found[id(element)]], model) if broken else parts
     problems += name_problems(nodes, elements, sound)
     # what refers to an element with mistakes is looked at once those are mended
     if not broken and not incomplete:
@@ -49,6 +51,14 @@ def _parts(elements: Sequence[Component], thermal: Sequence[ThermalNode]) -> tup
     """The parts of all elements whose values make sense, and the mistakes of the others."""
     found = {id(element): list(component_problems(element)) for element in elements}
     return take_apart([element for element in elements if not found[id(element)]], thermal), found
+
+
+def _sound(elements: Sequence[Component], model: Model) -> Parts:
+    """The parts of elements without mistakes; those on shafts inside of others are left out."""
+    made = take_apart(elements, model.thermal)
+    known = {HOUSING.name, *(node.name for node in (*model.nodes, *made.nodes))}
+    there = [element for element in elements if all(node.name in known for node in ports(element).values())]
+    return made if len(there) == len(elements) else _sound(there, model)
 
 
 def model_advice(model: Model) -> list[Problem]:
@@ -81,9 +91,13 @@ def node_path(kind: str, name: object) -> str:
     return f'{kind} "{name}"'
 
 
+def _sort(node: Node) -> str:
+    return "shaft" if node.domain is Domain.ROTATION else "mass"
+
+
 def node_problems(node: Node) -> list[Problem]:
     """Mistakes of one shaft or mass."""
-    path = node_path("shaft" if node.domain is Domain.ROTATION else "mass", node.name)
+    path = node_path(_sort(node), node.name)
     values = (node.inertia, node.speed, node.angle)
     problems: list[Problem] = []
     for (name, spec), value in zip(NODE_FIELDS[node.domain].items(), values, strict=True):
@@ -115,6 +129,7 @@ def name_problems(nodes: Sequence[Node], elements: Sequence[Component], parts: P
     """Names that are not printable strings, reserved or given twice, those of parts included."""
     problems, seen = [], {HOUSING.name: "the housing"}
     things = [(f'shaft "{node.name}"', node.name) for node in nodes]
+    things += [(node_path(_sort(node), node.name), node.name) for node in parts.nodes]
     things += [(f'{node_kind(node)} "{node.name}"', node.name) for node in parts.thermal]
     things += [(path_of(element), element.name) for element in elements]
     added = {id(element) for element in elements}

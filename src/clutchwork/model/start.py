@@ -5,18 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import Problem
-from clutchwork.declare.node import Domain, Signal
-from clutchwork.declare.rational import ONE, ZERO, Echelon, Row, exact, smallest
+from clutchwork.declare.node import Domain
+from clutchwork.declare.rational import ONE, ZERO, Echelon, Row, exact, plus, smallest
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
-from clutchwork.signals.bases.waveform import low_pass, value
+from clutchwork.elements.bases.motion import MotionError
+from clutchwork.model.transmissions import start_grips, start_rows
+from clutchwork.signals.bases.waveform import value
 from clutchwork.signals.constant import Constant
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
-    from clutchwork.declare.node import Component
+    from clutchwork.declare.node import Component, Node, Signal
     from clutchwork.model.structure import Kinematics, Mechanism
 
 # speeds that were rounded when they were written may differ by this share
@@ -30,16 +32,32 @@ def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], list[tupl
     motions: list[tuple[Component, Signal]] = []
     problems: list[Problem] = []
     for motion in model.role(Role.MOTION):
-        signal = motion.speed if isinstance(motion.speed, Signal) else Constant(float(motion.speed))
-        if motion.cutoff is not None:
-            try:
-                signal = low_pass(signal, motion.cutoff)
-            except ValueError as error:
-                remedy = "remove cutoff, or give the speed as a table"
-                problems.append(Problem(path_of(motion), "cutoff", str(error), f"{motion.cutoff:g} Hz", remedy))
-        motions.append((motion, signal))
+        try:
+            motions.append((motion, motion.speed_signal()))
+        except MotionError as bad:
+            problems.append(Problem(path_of(motion), bad.quantity, bad.message, bad.value, bad.remedy))
+            motions.append((motion, Constant(0.0)))
+    if problems:
+        return [ZERO] * len(made.independent), motions, problems
     speeds, wrong = initial_speeds(model, made, [value(signal, 0.0) for _, signal in motions])
     return speeds, motions, problems + wrong
+
+
+def initial_angles(model: Mechanism) -> list[float]:
+    """Angle [rad] or position [m] of each node at the start, prescribed ones from their bases on."""
+    angles = [float(node.angle) for node in model.nodes]
+    motions = [(motion, motion.start_angle()) for motion in model.role(Role.MOTION)]
+    # a base may be prescribed itself
+    for _ in motions:
+        for motion, angle in motions:
+            base = 0.0 if _fixed(motion.base) else angles[model.places.of(motion.base)]
+            if angle is not None and not _fixed(motion.shaft):
+                angles[model.places.of(motion.shaft)] = base + angle
+    return angles
+
+
+def _fixed(node: Node | None) -> bool:
+    return node is None or node.fixed
 
 
 def initial_speeds(
@@ -48,26 +66,83 @@ def initial_speeds(
     """Speeds of the independent nodes, and given speeds that contradict each other.
 
     A shaft without a given speed takes the one that follows from the others; what is free starts at rest, in the
-    order in which the shafts were added.
+    order in which the shafts were added. A shaft inside of a composite turns so that its springs stay in balance.
     """
     inputs = {len(model.nodes) + number: exact(speed) for number, speed in enumerate(prescribed)}
     given = {node: speed for node, speed in enumerate(model.speed) if speed is not None and node not in made.loose}
     slack = ROUNDING * max([ONE, *map(abs, given.values())])
-    echelon, used, problems = Echelon(made.independent, traced=False), dict[int, Row](), list[Problem]()
-    # shafts between springs follow from all others, so they come last
-    rest = sorted(set(range(len(model.nodes))) - given.keys(), key=lambda node: (node in made.loose, node))
-    for node in (*given, *rest):
-        # all speeds are known: those that nobody gave follow
-        if node not in given and len(used) == len(made.independent):
-            break
-        row = _row(made.speeds[node], inputs, given.get(node, ZERO))
+    echelon, used, problems = Echelon(made.independent, traced=False), dict[str, Row](), list[Problem]()
+    # shafts between springs follow from all others and come last, after those inside of composites
+    own = len(model.nodes) - model.inner
+    free = set(range(len(model.nodes))) - given.keys()
+    rest = sorted(free, key=lambda node: (node in made.loose, node >= own, node))
+    for node in given:
+        row = _row(made.speeds[node], inputs, given[node])
         left = echelon.rest(row)
         if left.keys() - {KNOWN}:
             echelon.add(row)
-            used[node] = row
-        elif node in given and abs(left.get(KNOWN, ZERO)) > slack:
+            used[model.node_label(node)] = row
+        elif abs(left.get(KNOWN, ZERO)) > slack:
             problems.append(_problem(model, used, node, row, left[KNOWN]))
+    problems += _follow_ratios(model, made, inputs, echelon, used, slack)
+    for component, tie in start_grips(model, made):
+        row = _row(tie, inputs, ZERO)
+        if echelon.rest(row).keys() - {KNOWN}:
+            echelon.add(row)
+            used[path_of(component)] = row
+    for node in rest:
+        # all speeds are known: those that nobody gave follow
+        if len(used) == len(made.independent):
+            break
+        row = _row(made.speeds[node], inputs, ZERO)
+        if echelon.rest(row).keys() - {KNOWN}:
+            balance = _row(_balance(model, made, node), inputs, ZERO) if node >= own else {}
+            row = balance if echelon.rest(balance).keys() - {KNOWN} else row
+            echelon.add(row)
+            used[model.node_label(node)] = row
     return [echelon.solved[node].get(KNOWN, ZERO) for node in made.independent], problems
+
+
+def _follow_ratios(
+    model: Mechanism,
+    made: Kinematics,
+    inputs: dict[int, Fraction],
+    echelon: Echelon,
+    used: dict[str, Row],
+    slack: Fraction,
+) -> Iterator[Problem]:
+    """Rates that the ratios tie together at the start, and given speeds that contradict them."""
+    for component, tie in start_rows(model, made):
+        row = _row(tie, inputs, ZERO)
+        left = echelon.rest(row)
+        if left.keys() - {KNOWN}:
+            echelon.add(row)
+            used[path_of(component)] = row
+        elif abs(left.get(KNOWN, ZERO)) > slack:
+            guilty = _guilty(used, row)
+            message = f"has the ratio {component.start_ratio():.9g} at the start, which contradicts "
+            message += f"the initial speed of {' and '.join(guilty)}" if guilty else "the prescribed speeds"
+            remedy = "correct one of them, or remove a speed: it then follows from the ratio"
+            yield Problem(path_of(component), "ratio", message, remedy=remedy)
+
+
+def _guilty(used: dict[str, Row], row: Row) -> list[str]:
+    """Whose rows together make another one."""
+    kinematic = [{column: value for column, value in other.items() if column != KNOWN} for other in used.values()]
+    target = {column: value for column, value in row.items() if column != KNOWN}
+    return [list(used)[place] for place in smallest(kinematic, target)]
+
+
+def _balance(model: Mechanism, made: Kinematics, node: int) -> Row:
+    """Sum of stiffness times rate over the springs that a node inside of a composite moves: they stay in balance."""
+    row: Row = {}
+    whole = model.nodes[node].name.rpartition(".")[0]
+    for component, direction in model.acting:
+        passive = component.passive() if component.name.startswith(f"{whole}.") else None
+        if passive is not None and passive.stiffness:
+            rate = made.over(direction)
+            row = plus(row, exact(passive.stiffness) * rate[node], rate) if node in rate else row
+    return row
 
 
 def _row(speed: Row, inputs: dict[int, Fraction], wanted: Fraction) -> Row:
@@ -77,11 +152,9 @@ def _row(speed: Row, inputs: dict[int, Fraction], wanted: Fraction) -> Row:
     return {**row, KNOWN: known} if known else row
 
 
-def _problem(model: Mechanism, used: dict[int, Row], node: int, row: Row, excess: Fraction) -> Problem:
+def _problem(model: Mechanism, used: dict[str, Row], node: int, row: Row, excess: Fraction) -> Problem:
     unit = "m/s" if model.nodes[node].domain is Domain.TRANSLATION else "rad/s"
-    kinematic = [{column: value for column, value in other.items() if column != KNOWN} for other in used.values()]
-    target = {column: value for column, value in row.items() if column != KNOWN}
-    guilty = [model.node_label(list(used)[place]) for place in smallest(kinematic, target)]
+    guilty = _guilty(used, row)
     speed = model.speed[node] or ZERO
     message = (
         f"contradicts the initial speed of {' and '.join(guilty)}, which gives {float(speed - excess):.9g} {unit}"

@@ -10,15 +10,30 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Component, Domain, Node
-from clutchwork.declare.ports import ends, ports
+from clutchwork.declare.ports import directions, ports
 from clutchwork.declare.rational import MINUS, ONE, Row, exact, plus
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
 from clutchwork.model.numbers import as_float
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
     from fractions import Fraction
+
+
+class Places:
+    """Place of each node by identity; by name where it is inside of a composite, which makes it anew when asked."""
+
+    def __init__(self, nodes: Sequence[Node]) -> None:
+        self._by_identity = {id(node): place for place, node in enumerate(nodes)}
+        self._by_name = {node.name: place for place, node in enumerate(nodes)}
+
+    def of(self, node: Node, housing: int = -1) -> int:
+        """Place of a node."""
+        if node.fixed:
+            return housing
+        found = self._by_identity.get(id(node))
+        return self._by_name[node.name] if found is None else found
 
 
 @dataclass(frozen=True)
@@ -30,20 +45,26 @@ class Mechanism:
 
     nodes: tuple[Node, ...]
     components: tuple[Component, ...]
+    inner: int = 0  # of the nodes the last ones, which are inside of composites
 
     def role(self, role: Role) -> list[Any]:
         """The elements of one role, in order."""
         return [component for component in self.components if component.role is role]
 
     @cached_property
-    def acting(self) -> list[tuple[Any, Row]]:
-        """Torque elements and contacts with their rate over the nodes."""
-        return [(c, self.direction(c)) for role in (Role.TORQUE, Role.CONTACT) for c in self.role(role)]
+    def geared(self) -> list[Any]:
+        """Gears, and contacts that are gears with friction."""
+        return [*self.role(Role.GEAR), *(contact for contact in self.role(Role.CONTACT) if follows_load(contact))]
 
     @cached_property
-    def index(self) -> dict[int, int]:
-        """Place of each node by identity; the housing has none."""
-        return {id(node): place for place, node in enumerate(self.nodes)}
+    def acting(self) -> list[tuple[Any, Row]]:
+        """Torque elements and contacts with their rate over the nodes, one entry for each of their ways."""
+        return [(c, row) for role in (Role.TORQUE, Role.CONTACT) for c in self.role(role) for row in self.directions(c)]
+
+    @cached_property
+    def places(self) -> Places:
+        """Place of each node."""
+        return Places(self.nodes)
 
     @cached_property
     def inertia(self) -> list[Fraction]:
@@ -56,29 +77,44 @@ class Mechanism:
         return [exact(node.speed or 0.0) if _sensible(node.speed) else None for node in self.nodes]
 
     def direction(self, component: Component) -> Row:
-        """Rate of an element over the nodes: follower - base, or shaft - base."""
-        moving, base = ends(component)
-        return plus(self._at(moving, ONE), ONE, self._at(base, MINUS))
+        """Rate of an element over the nodes, of its first way where it has several."""
+        return self.directions(component)[0]
+
+    def directions(self, component: Component) -> list[Row]:
+        """Rate of each way of an element over the nodes."""
+        joined = ports(component)
+        return [self._over(joined, way.coefficients) for way in directions(component)]
+
+    def _over(self, joined: Mapping[str, Node], coefficients: Mapping[str, Fraction]) -> Row:
+        row: Row = {}
+        for port, coefficient in coefficients.items():
+            row = plus(row, ONE, self._at(joined[port], coefficient))
+        return row
 
     def _at(self, node: Node, factor: Fraction) -> Row:
-        return {} if node.fixed else {self.index[id(node)]: factor}
+        return {} if node.fixed else {self.places.of(node): factor}
 
     def rigid_rows(self) -> Iterator[RigidRow]:
-        """Rows of all gears, then of all prescribed speeds."""
-        for gear in self.role(Role.GEAR):
+        """Rows of all gears, then of contacts that have some, then of all prescribed speeds."""
+        for gear in self.geared:
             joined = ports(gear)
             for coefficients in gear.rows():
                 row: Row = {}
                 for port, coefficient in coefficients.items():
                     row = plus(row, coefficient, self._at(joined[port], ONE))
-                yield RigidRow(path_of(gear), row)
+                yield RigidRow(path_of(gear), row, gear)
         for number, motion in enumerate(self.role(Role.MOTION), len(self.nodes)):
-            yield RigidRow(path_of(motion), {**self.direction(motion), number: MINUS})
+            yield RigidRow(path_of(motion), {**self.direction(motion), number: MINUS}, motion)
 
     def node_label(self, place: int) -> str:
         """Path of a node in messages."""
         node = self.nodes[place]
         return f'{"mass" if node.domain is Domain.TRANSLATION else "shaft"} "{node.name}"'
+
+
+def follows_load(component: Component) -> bool:
+    """Whether the capacity of a contact follows the torque of its own gear row."""
+    return "bound" in component.hooks
 
 
 def _sensible(value: Any, least: float = -inf) -> bool:
@@ -91,6 +127,7 @@ class RigidRow:
 
     owner: str  # 'element "g1" (gear)'
     coefficients: Row
+    component: Any = None
 
 
 @dataclass
@@ -100,6 +137,7 @@ class Kinematics:
     speeds: list[Row]
     independent: list[int]  # nodes, in the order of the reduced coordinates
     massless: set[int]  # of these
+    followers: dict[int, int] = field(default_factory=dict)  # transmission -> massless node that follows from it
     loose: frozenset[int] = frozenset()  # nodes whose initial speed follows from springs in series
     notes: list[str] = field(default_factory=list)
 

@@ -9,7 +9,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.shown import listed, shown
 from clutchwork.declare import units
-from clutchwork.declare.node import Component, Domain, HeatFlow, Node, Rate, ThermalNode, is_reference
+from clutchwork.declare.node import Component, Domain, HeatFlow, Node, Part, Rate, ThermalNode, is_reference
 from clutchwork.declare.ports import thermal_ports
 from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Role, Spec, specs
@@ -50,12 +50,12 @@ def thermal_problems(node: ThermalNode) -> Iterator[Problem]:
 
 @dataclass(frozen=True)
 class Within:
-    """Thermal nodes that are parts of elements, which are made anew each time they are asked for."""
+    """Nodes that are parts of elements, which are made anew each time they are asked for."""
 
     names: Collection[str]
     broken: Collection[str]  # elements with mistakes, whose parts are not known
 
-    def holds(self, node: ThermalNode) -> bool:
+    def holds(self, node: Node | ThermalNode) -> bool:
         """Whether a node is such a part, or may be."""
         return node.name in self.names or any(node.name.startswith(f"{name}.") for name in self.broken)
 
@@ -107,7 +107,7 @@ class Known:
         return id(target) in self.added or target in self.parts.get(target.name, ())
 
 
-def _inside(component: Component) -> Iterator[Component | ThermalNode]:
+def _inside(component: Component) -> Iterator[Part]:
     """Everything that an element is made of, parts of its parts included."""
     for part in component.parts():
         yield part
@@ -135,8 +135,7 @@ def _temperature(component: Component, at: At) -> Iterator[Problem]:
 
 
 def _reference(value: Any, spec: Spec, at: At, component: Component, known: Known) -> Iterator[Problem]:
-    direct = isinstance(value, Rate | HeatFlow | Node)
-    if role(component) is Role.MOTION or (direct and role(component) not in (Role.FLOW, Role.PROCESS, Role.COMPOSITE)):
+    if not _may_refer(value, role(component)):
         yield at.problem(f"must be a number{within(at.unit)} or a signal", _words(value), "give one of them")
         return
     missing = _missing(value, known)
@@ -146,6 +145,13 @@ def _reference(value: Any, spec: Spec, at: At, component: Component, known: Know
     given = _unit(value, known)
     if all(units.parse(given).powers != units.parse(unit).powers for unit in (spec.unit, *spec.units)):
         yield at.problem(f"must be in [{at.unit}], but {_words(value)} gives [{given}]", remedy=spec.doc)
+
+
+def _may_refer(value: Any, to: Role) -> bool:
+    """Whether a component may have such an input: torques know speeds of shafts, but no rates of other torques."""
+    if isinstance(value, Rate | HeatFlow):
+        return to in (Role.FLOW, Role.PROCESS, Role.COMPOSITE)
+    return to is not Role.MOTION
 
 
 def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:

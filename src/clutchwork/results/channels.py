@@ -15,16 +15,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.wiring import HOUSING, Branch, Wiring, wiring
+from clutchwork.assembly.wiring import HOUSING, Branch, GearRow, Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.kept import kept
 from clutchwork.base.shown import shown
 from clutchwork.declare.node import Domain
+from clutchwork.declare.ports import directions
 from clutchwork.declare.speech import where_signals
+from clutchwork.model.transmissions import is_transmission
 from clutchwork.results import heat_channels, reactions
 from clutchwork.results.forms import LOCKED as LOCKED
-from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Slip, Total
+from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Powers, Slip, Total
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -63,7 +65,7 @@ class Channels(Mapping[str, Channel]):
 
     def __init__(self, wiring: Wiring, *, angles: bool = True, work: bool = True) -> None:
         self._wiring = wiring
-        self._left_out = _left_out(angles, work)
+        self._left_out = _left_out(angles, work, wiring)
         self._channels: dict[str, Channel] = {}
         # heat of a thermal node is a state, no work integral
         known = {f"{node.name}.heat" for node in wiring.thermal}
@@ -99,9 +101,13 @@ class Channels(Mapping[str, Channel]):
         for branch in self._wiring.elements:
             if not branch.hidden:
                 yield from self._element(branch)
+            if not branch.number and branch.name != branch.component.name:
+                yield from self._whole(branch)
         for index, branch in enumerate(self._wiring.contacts):
             yield from self._contact(branch, index)
         yield from self._rigid()
+        for branch in self._wiring.sensors:
+            yield from self._sensor(branch)
         yield from self._thermal()
         start = self._start("input")
         for index, (name, unit) in enumerate(self._wiring.inputs):
@@ -124,15 +130,38 @@ class Channels(Mapping[str, Channel]):
         yield f"{branch.name}.rate", Channel(SPEED[branch.domain], rate)
         yield f"{branch.name}.power", Channel("W", Power(torque, rate))
         yield f"{branch.name}.work", Channel("J", self._total("work", branch))
+        if branch.component.supply:
+            yield from self._supply(branch)
         yield from self._states(branch)
+
+    def _supply(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
+        number = [part.name for part in self._wiring.supplies].index(branch.name)
+        name = f"{branch.name}.{branch.component.supply}"
+        yield f"{name}_power", _column(self._start("supply_power") + number, "W")
+        yield f"{name}_energy", _column(self._start("supply_energy") + number, "J")
+
+    def _whole(self, first: Branch) -> Iterator[tuple[str, Channel]]:
+        """Power and work of an element that acts along several ways: the sums of all."""
+        name = first.component.name
+        ways = [branch for branch in self._wiring.elements if branch.component is first.component]
+        acting = [branch for branch in ways if not branch.hidden]
+        powers = tuple(Power(self._total("torque", branch), self._rate(branch)) for branch in acting)
+        work = Total(tuple(index for branch in acting for index in self._total("work", branch).indices))
+        yield f"{name}.power", Channel("W", Powers(powers))
+        yield f"{name}.work", Channel("J", work)
+        if is_transmission(first.component):
+            yield f"{name}.torque", Channel(TORQUE[first.domain], self._total("torque", first))
 
     def _states(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
         passive = branch.component.passive()
         for number, (name, unit, index) in enumerate(branch.states):
             column = self._start("state") + index
-            yield f"{branch.name}.{name}", _column(column, unit)
+            yield f"{branch.component.name}.{name}", _column(column, unit)
             if number == 0 and passive is not None and passive.stiffness:
-                yield f"{branch.name}.twist", Channel(ANGLE[branch.domain], Affine(column, 1.0 / passive.stiffness))
+                yield (
+                    f"{branch.component.name}.twist",
+                    Channel(ANGLE[branch.domain], Affine(column, 1.0 / passive.stiffness)),
+                )
 
     def _contact(self, branch: Branch, index: int) -> Iterator[tuple[str, Channel]]:
         mode = self._start("contact_mode") + index
@@ -176,12 +205,23 @@ class Channels(Mapping[str, Channel]):
             if domain is Domain.ROTATION or any(node.domain is domain for node in wiring.nodes):
                 yield REACTION[domain], Channel(TORQUE[domain], Linear.of(reactions.on_housing(wiring, made, domain)))
 
+    def _sensor(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
+        """Motion of the follower against the base."""
+        domain = branch.domain
+        yield f"{branch.name}.{PLACE[domain]}", Channel(ANGLE[domain], self._along(branch, "angle"))
+        yield f"{branch.name}.speed", Channel(SPEED[domain], self._along(branch, "speed"))
+        yield f"{branch.name}.acceleration", Channel(ACCELERATION[domain], self._along(branch, "acceleration"))
+
     def _rate(self, branch: Branch) -> Linear:
         """Rate of a branch."""
+        return self._along(branch, "speed")
+
+    def _along(self, branch: Branch, part: str) -> Linear:
+        """Speed, angle or acceleration along the direction of a branch."""
         vector = np.zeros(self._wiring.row_size)
         for node, coefficient in branch.direction.items():
             if node != HOUSING:
-                vector[self._start("speed") + node] += coefficient
+                vector[self._start(part) + node] += coefficient
         return Linear.of(vector)
 
 
@@ -191,22 +231,57 @@ def channels(system: System, angles: bool = True, work: bool = True) -> Channels
     return Channels(wiring(system), angles=angles, work=work)
 
 
-def _left_out(angles: bool, work: bool) -> dict[str, str]:
+def _left_out(angles: bool, work: bool, wiring: Wiring) -> dict[str, str]:
     """Endings of the signals that a run did not integrate, with the option that turns them on."""
     endings = {} if angles else {".angle": "angles", ".position": "angles"}
-    return endings if work else endings | {".work": "work", ".heat": "work"}
+    if work:
+        return endings
+    drawn = {f".{branch.component.supply}_energy": "work" for branch in wiring.supplies}
+    metered = {f"{line.name}.energy": "work" for line in wiring.lines}
+    return endings | {".work": "work", ".heat": "work"} | drawn | metered
 
 
 def _gear_torques(wiring: Wiring, made: Array) -> Iterator[tuple[str, Channel]]:
-    """Torque that a gear puts on the member at each port; several rows of one gear add up."""
-    totals: dict[str, tuple[Array, Domain]] = {}
+    """Torque that a gear puts on the member at each port; several rows of one gear add up, and its friction."""
+    totals = _mesh_friction(wiring)
     for index, row in enumerate(wiring.gears):
+        if row.is_line:
+            yield from _line(wiring, row, made[index])
+            place = wiring.columns["meter_energy"].start + wiring.lines.index(row)
+            yield f"{row.name}.energy", _column(place, "J")
+            continue
         for port, (_, coefficient) in row.ports.items():
             name = f"{row.name}.torque_{port}"
             before = totals[name][0] if name in totals else np.zeros(wiring.row_size)
             totals[name] = (before + coefficient * made[index], row.domains[port])
     for name, (vector, domain) in totals.items():
         yield name, Channel(TORQUE[domain], Linear.of(vector))
+
+
+def _line(wiring: Wiring, row: GearRow, made: Array) -> Iterator[tuple[str, Channel]]:
+    """What goes through a rigid line from its base to its follower: torque on the follower, speed, power."""
+    node, factor = row.ports["follower"]
+    speed = np.zeros(wiring.row_size)
+    if node != HOUSING:
+        speed[wiring.columns["speed"].start + node] = 1.0
+    torque, rate, domain = Linear.of(factor * made), Linear.of(speed), row.domains["follower"]
+    yield f"{row.name}.torque", Channel(TORQUE[domain], torque)
+    yield f"{row.name}.speed", Channel(SPEED[domain], rate)
+    yield f"{row.name}.power", Channel("W", Power(torque, rate))
+
+
+def _mesh_friction(wiring: Wiring) -> dict[str, tuple[Array, Domain]]:
+    """Torque at each port of the contacts that have gear rows, by their friction alone."""
+    totals: dict[str, tuple[Array, Domain]] = {}
+    geared = {row.name: row for row in wiring.gears}
+    for index, branch in enumerate(wiring.contacts):
+        if branch.name in geared:
+            (way,) = directions(branch.component)
+            for port, domain in geared[branch.name].domains.items():
+                vector = np.zeros(wiring.row_size)
+                vector[wiring.columns["contact_torque"].start + index] = float(way.coefficients.get(port, 0))
+                totals[f"{branch.name}.torque_{port}"] = vector, domain
+    return totals
 
 
 def _column(column: int, unit: str) -> Channel:

@@ -43,6 +43,7 @@ class EnergyBalance:
     impulses: float  # part of the heat: lost where speeds jumped
     thermal: Mapping[str, float] = field(default_factory=dict)  # change of the heat of each thermal node and ambient
     shares: Mapping[str, float] = field(default_factory=dict)  # share of the heat of each that goes to a thermal node
+    stored: Mapping[str, float] = field(default_factory=dict)  # change of the elastic energy of each spring
 
     @property
     def input(self) -> float:
@@ -123,17 +124,24 @@ class EnergyBalance:
 def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> EnergyBalance:
     """Balance between the first and the last output row."""
     ends = rows[[0, -1]]
-    sources, heat, elastic = {}, {}, 0.0
+    sources, heat, springs = dict[str, float](), dict[str, float](), dict[str, float]()
+    drawn = {branch.name: energy for branch, energy in _works(wiring, ends, "supply_energy", wiring.supplies)}
     for number, (branch, work) in enumerate(_works(wiring, ends, "element_work", wiring.elements)):
         if branch.hidden:
             continue
-        stored = _stored(wiring, ends, branch, number)
-        elastic += stored
+        name = branch.component.name
+        stored = 0.0 if branch.number else _stored(wiring, ends, branch, number)
+        if Work.STORE in branch.component.work and not branch.number:
+            springs[name] = stored
         lost = _lost(branch.component) * (0.0 - work - stored)
+        if name in drawn:
+            sources[name], heat[name] = drawn[name], drawn[name] - work - stored
+            continue
+        # the ways of one element add up
         if Work.SOURCE in branch.component.work:
-            sources[branch.name] = work + stored + lost
+            sources[name] = sources.get(name, 0.0) + work + stored + lost
         if _lost(branch.component):
-            heat[branch.name] = lost
+            heat[name] = heat.get(name, 0.0) + lost
     sources |= {branch.name: work for branch, work in _works(wiring, ends, "prescribed_work", wiring.motions)}
     heat |= {branch.name: 0.0 - work for branch, work in _works(wiring, ends, "contact_work", wiring.contacts)}
     # a row at time zero lies behind the impulses of the start, whose work it holds already
@@ -146,10 +154,11 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
         sources[branch.name] += float(work)
     # where sources prescribe speeds, the change of kinetic energy is not what the contacts lost
     named = 0.0 if wiring.motions else _impulses(events)
-    shares = {branch.name: share for branch in wiring.elements if (share := _followed(branch.component))}
+    shares = {branch.component.name: share for branch in wiring.elements if (share := _followed(branch.component))}
     shares |= {branch.name: share for branch in wiring.contacts if (share := _share(branch.component))}
     thermal = _thermal(wiring, ends, lost)
-    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, named, thermal, shares)
+    elastic = sum(springs.values())
+    return EnergyBalance(sources, _kinetic(wiring, ends) - lost, elastic, heat, named, thermal, shares, springs)
 
 
 def _share(component: Component) -> float:
@@ -165,6 +174,8 @@ def _lost(component: Component) -> float:
 
 def _followed(component: Component) -> float:
     """Share of that heat that goes to a thermal node."""
+    if component.supply:
+        return _share(component)
     return _share(component) / (_lost(component) or 1.0)
 
 

@@ -102,6 +102,18 @@ class Power:
 
 
 @dataclass(frozen=True)
+class Powers:
+    """Sum of powers."""
+
+    parts: tuple[Power, ...]
+
+    def __call__(self, rows: Rows) -> Array:
+        """Values on a matrix of rows."""
+        powers = [part(rows) for part in self.parts]
+        return sum(powers[1:], powers[0])
+
+
+@dataclass(frozen=True)
 class Mode:
     """Mode of a contact, a number of layout.MODES, or its name."""
 
@@ -114,4 +126,4 @@ class Mode:
         return STATE_NAMES[numbers - FIRST_MODE] if self.named else numbers
 
 
-Form = Column | Affine | Total | Linear | Slip | Power | Mode
+Form = Column | Affine | Total | Linear | Slip | Power | Powers | Mode

@@ -30,8 +30,8 @@ def affine(wiring: Wiring) -> Iterator[tuple[str, str, Affine]]:
             yield f"{flow}.heat_flow", "W", (wiring.columns["flow"].start + number, 1.0, 0.0)
     for branch in (*wiring.elements, *wiring.contacts):
         path = branch.component.heat_path()
-        if path is not None:
-            yield f"{branch.name}.temperature", "K", _temperature(wiring, path.node.name)
+        if path is not None and not branch.number:
+            yield f"{branch.component.name}.temperature", "K", _temperature(wiring, path.node.name)
     yield from _links(wiring)
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly import meters
 from clutchwork.assembly.wiring import HOUSING, GearRow, Wiring
 from clutchwork.declare.node import Domain
 
@@ -19,13 +20,17 @@ Matrix = NDArray[np.float64]
 def multipliers(wiring: Wiring) -> Matrix:
     """Matrix that turns an output row into the multipliers of gear rows, then of prescribed speeds [N m]."""
     rigid = np.hstack([_gear_directions(wiring), wiring.spread(wiring.motions)])
+    acting = np.hstack([wiring.spread(wiring.elements), wiring.spread(wiring.contacts)])
+    inertia = np.array([node.inertia for node in wiring.nodes])
+    found = meters.multipliers(rigid, inertia, acting)
+    matrix, columns = np.zeros((len(found), wiring.row_size)), wiring.columns
     # also where nothing has a name, in a System of bytes
-    if not rigid.shape[1]:
-        return np.zeros((0, wiring.row_size))
-    matrix = np.linalg.pinv(rigid, rcond=1e-12) @ _missing_torque(wiring)
-    # what is only rounding becomes zero, so that a torque depends on what it physically depends on
-    noise = 1e-14 * np.max(np.abs(matrix), axis=1, keepdims=True, initial=0.0)
-    return np.where(np.abs(matrix) > noise, matrix, 0.0)
+    if len(found):
+        parts = np.cumsum([len(wiring.nodes), len(wiring.elements)])
+        by = np.split(found, parts, axis=1)
+        matrix[:, columns["acceleration"]], matrix[:, columns["element_torque"]] = by[0], by[1]
+        matrix[:, columns["contact_torque"]] = by[2]
+    return matrix
 
 
 def on_housing(wiring: Wiring, rows_to_multipliers: Matrix, domain: Domain) -> Matrix:
@@ -34,11 +39,11 @@ def on_housing(wiring: Wiring, rows_to_multipliers: Matrix, domain: Domain) -> M
     for part, branches in (("element_torque", wiring.elements), ("contact_torque", wiring.contacts)):
         start = wiring.columns[part].start
         for index, branch in enumerate(branches):
-            total[start + index] += branch.direction.get(HOUSING, 0.0) * (branch.domain is domain)
+            total[start + index] += branch.grounded.get(domain, 0.0)
     for index, row in enumerate(wiring.gears):
         total += _on_housing(row, domain) * rows_to_multipliers[index]
     for index, branch in enumerate(wiring.motions, start=len(wiring.gears)):
-        total += branch.direction.get(HOUSING, 0.0) * (branch.domain is domain) * rows_to_multipliers[index]
+        total += branch.grounded.get(domain, 0.0) * rows_to_multipliers[index]
     return total
 
 
@@ -52,14 +57,4 @@ def _gear_directions(wiring: Wiring) -> Matrix:
         for node, coefficient in row.ports.values():
             if node != HOUSING:
                 matrix[node, column] += coefficient
-    return matrix
-
-
-def _missing_torque(wiring: Wiring) -> Matrix:
-    """Inertia times acceleration less the torques of elements and contacts, per node, from an output row."""
-    columns = wiring.columns
-    matrix = np.zeros((len(wiring.nodes), wiring.row_size))
-    matrix[:, columns["acceleration"]] = np.diag([node.inertia for node in wiring.nodes])
-    matrix[:, columns["element_torque"]] = -wiring.spread(wiring.elements)
-    matrix[:, columns["contact_torque"]] = -wiring.spread(wiring.contacts)
     return matrix

@@ -27,6 +27,9 @@ def numbers(wiring: Wiring) -> list[Named]:
         "contact_capacity": [(f"{part.name}.capacity", TORQUE[part.domain]) for part in wiring.contacts],
         "flow": [(f"{flow}.heat_flow", "W") for flow in wiring.flows],
         "prescribed_work": [(f"{part.name}.work", "J") for part in wiring.motions],
+        "supply_power": [(f"{part.name}.{part.component.supply}_power", "W") for part in wiring.supplies],
+        "meter_energy": [(f"{line.name}.energy", "J") for line in wiring.lines],
+        "supply_energy": [(f"{part.name}.{part.component.supply}_energy", "J") for part in wiring.supplies],
     }
     known = {name for named in parts.values() for name, _ in named}
     # the torque of a load and the signal that sets its size would have the same name
@@ -37,8 +40,8 @@ def numbers(wiring: Wiring) -> list[Named]:
 def _states(wiring: Wiring) -> Iterator[Named]:
     """States of elements and contacts, then the shared ones: heat of thermal nodes, processes."""
     owners: list[Branch | Source] = [*wiring.elements, *wiring.contacts, *wiring.thermal]
-    for branch in owners:
-        yield from ((f"{branch.name}.{name}", unit) for name, unit, _ in branch.states)
+    own = [(index, f"{owner.component.name}.{name}", unit) for owner in owners for name, unit, index in owner.states]
+    yield from ((name, unit) for _, name, unit in sorted(own))
     for process in wiring.processes:
         for (name, unit, _), scale in zip(process.states, state_scales(process.component), strict=True):
             yield f"{process.name}.{name}", unit if scale == 1.0 else f"{scale:g} {unit}"

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from clutchwork.results.energy import EnergyBalance
     from clutchwork.results.events import Event
     from clutchwork.results.hints.hint import Hints
+    from clutchwork.results.losses import Losses
     from clutchwork.results.plot.canvas import Picture
     from clutchwork.results.state import State
 
@@ -157,6 +158,37 @@ class Trajectory(Exports):
 
         window = [e for e in self.events if self.time[0] <= e.time <= self.time[-1]]
         return balance(self.wiring, self.rows, Events(window))
+
+    @explained("run.losses", start="1.0", end="2.0")
+    def losses(self, start: Number | None = None, end: Number | None = None, *, power: bool = False) -> Losses:
+        """What each element takes, gives on, stores and loses between two instants, by default over the whole run.
+
+        Parameters: start and end [s, or with a unit]; power, mean powers in W in place of energies in J.
+
+        The run is repeated for it, at the points at which the solver sums up work. At an event an instant is its left
+        limit. Print the table to read it; `.sankey()` draws it.
+        """
+        from clutchwork.results.flows import flows, window
+        from clutchwork.results.losses import losses
+
+        return losses(self, flows(self, *window(self, start, end, "run.losses")), power)
+
+    @explained("run.sankey", start="1.0", end="2.0", path="'sankey.svg'")
+    def sankey(
+        self,
+        path: str | Path | None = None,
+        *,
+        start: Number | None = None,
+        end: Number | None = None,
+        power: bool = False,
+    ) -> Picture:
+        """Sankey picture of the energy between two instants, by default over the whole run. Needs matplotlib.
+
+        Parameters: path, where it is written: png, svg or pdf by its ending; the others are those of `losses`.
+
+        Sources are on the left, loads on the right; heat goes down, what is stored goes up.
+        """
+        return self.losses(start, end, power=power).sankey(path)
 
     @cached_property
     def dependent(self) -> tuple[DependentPhase, ...]:

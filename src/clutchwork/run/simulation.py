@@ -66,7 +66,13 @@ class Job:
         return self.options.t_start
 
     def again(self, times: Any) -> Trajectory:
-        """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again."""
+        """Repeat it on other instants [s]; what controllers decided is replayed, not asked for again.
+
+        None: the bare steps of the solver.
+        """
+        if times is None:
+            bare = self.options.changed({"times": None, "dt": None, "output": "steps"})
+            return trajectory(replace(self, options=bare), None)
         wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
         with warnings.catch_warnings():
             # whoever has the run was warned
@@ -236,14 +242,23 @@ def message_of(system: System, status: int, run: Any) -> str:
 
 def names_part(system: System, index: int) -> bool:
     """Whether a number is that of an element or a contact."""
-    return 0 <= index < len(system.elements) + len(system.contacts)
+    return 0 <= index < len(_acting(system))
+
+
+def _acting(system: System) -> list[Any]:
+    """The elements and contacts by the numbers that the core has for them: one of several ways has one for each."""
+    known = wiring(system)
+    return [branch.component for branch in (*known.elements, *known.contacts)]
 
 
 def told(system: System, status: int, index: int, at: float, value: float, column: int) -> str:
     """Why a run stopped at a time: an element or contact by its number, and its value, or a number of the row."""
-    parts = [*system.elements, *system.contacts]
+    parts = _acting(system)
     if NAMES[status] == "zeno" and index < 0:
-        return explain(status, None, at, value, system.inputs[int(value)].name)
+        number = int(value)
+        if number >= len(system.inputs):
+            return explain(status, system.processes[number - len(system.inputs)], at, value)
+        return explain(status, None, at, value, system.inputs[number].name)
     if status != NOT_FINITE or names_part(system, index):
         return explain(status, parts[index] if names_part(system, index) else None, at, value)
     from clutchwork.results.rows import numbers

@@ -104,13 +104,18 @@ def _element_cell(thing: Thing, sides: Mapping[str, int], moment: Moment, values
     symbol = SOURCE if thing.what == "heat" else symbol_of(thing.source)
     mirrored = _mirrored(thing, sides, symbol)
     heights = {port: symbol.heights(thing.source).get(port, 0.0) for port in (*thing.pins, *thing.fixed)}
+    heights |= {port: -symbol.down - 6.0 * (number + 1) for number, port in enumerate(thing.inner)}
     pen = Pen(mirrored=mirrored)
     if thing.what == "heat":
         shown = Drawn(thing.source, _flip(sides, mirrored), half=symbol.half)
         symbol.draw(pen, shown)
         piece = _labelled(thing, pen.marks, [], [], WARM.colour, below=False, prefix="heat of ")
     else:
-        piece = _element_piece(thing, pen, symbol, _flip(sides, mirrored), heights, moment, values)
+        for port in thing.inner:
+            side = _flip(sides, mirrored)[port]
+            pen.line((0.0, -symbol.down), (0.0, heights[port]), (side * symbol.half, heights[port]), look=SHAFT)
+        own = {port: side for port, side in sides.items() if port not in thing.inner}
+        piece = _element_piece(thing, pen, symbol, _flip(own, mirrored), heights, moment, values)
     made, links = [(piece, 0.0, 0.0)], list[Mark]()
     if thing.helpers:
         _add_helpers(thing, symbol.up, 0.0, made, links, moment, values)

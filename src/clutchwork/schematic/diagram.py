@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import field
-from typing import Any
+from typing import Any, NamedTuple
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.shown import printable, shortened
@@ -27,6 +27,7 @@ class Thing:
     pins: dict[str, Thing] = field(default_factory=dict)  # of an element: port -> node
     fixed: frozenset[str] = frozenset()  # ports at the housing
     helpers: list[Thing] = field(default_factory=list)  # processes that drive it
+    inner: list[str] = field(default_factory=list)  # names of pins at shafts inside of it
 
     @property
     def is_node(self) -> bool:
@@ -76,16 +77,20 @@ class _Reader:
         self._nodes: dict[object, Thing] = {}
         self._missing: dict[object, Thing] = {}
         self._heats: list[Thing] = []
+        self._inner: dict[str, str] = {}  # shafts inside of composites, and who has them
 
     def read(self) -> Diagram:
         """Everything of the model."""
         model = self._model
         for node in model.nodes:
-            what = "mass" if getattr(node.domain, "value", "") == "translation" else "shaft"
-            self._nodes[id(node)] = Thing(label(node.name), what, node)
+            self._nodes[id(node)] = Thing(label(node.name), _sort(node), node)
         for thermal in model.thermal:
             self._thermal(thermal)
-        elements = [self._element(component) for component in model.elements]
+        insides = [_inside(component) for component in model.elements]
+        for component, inside in zip(model.elements, insides, strict=True):
+            self._inner |= dict.fromkeys((node.name for node in inside.nodes), component.name)
+        elements = [self._element(*pair) for pair in zip(model.elements, insides, strict=True)]
+        self._join(elements)
         placed = _assisted(elements)
         found = [thing for thing in elements if id(thing) not in placed]
         nodes = [*self._nodes.values(), *self._missing.values()]
@@ -95,7 +100,7 @@ class _Reader:
         what = "ambient" if node.capacity is None else "thermal"
         return self._nodes.setdefault(("heat", str(node.name)), Thing(label(node.name), what, node))
 
-    def _element(self, component: Component) -> Thing:
+    def _element(self, component: Component, inside: Inside) -> Thing:
         pins: dict[str, Thing] = {}
         fixed = []
         for item, spec in specs(type(component), "port"):
@@ -104,11 +109,11 @@ class _Reader:
                 fixed.append(item.name)
             else:
                 pins[item.name] = self._node(node)
-        inner, heated = _inside(component)
         # a plate of several nodes is drawn as one
-        whole = not specs(type(component), "port", "thermal") and component.role is Role.COMPOSITE and bool(inner)
+        plain = not specs(type(component), "port", "thermal") and not inside.nodes
+        whole = plain and component.role is Role.COMPOSITE and bool(inside.thermal)
         thing = Thing(label(component.name), "thermal" if whole else "element", component, pins, frozenset(fixed))
-        for node in inner:
+        for node in inside.thermal:
             key = ("heat", str(node.name))
             if whole:
                 self._nodes[key] = thing
@@ -117,16 +122,27 @@ class _Reader:
         if component.role is Role.FLOW:
             for item, _ in specs(type(component), "thermal"):
                 pins[item.name] = self._heat_node(getattr(component, item.name, None))
-        for node in heated:
+        for node in inside.heated:
             self._heats.append(Thing(thing.name, "heat", component, {"heat": self._heat_node(node)}))
         return thing
 
     def _node(self, node: object) -> Thing:
         if isinstance(node, Node) and id(node) in self._nodes:
             return self._nodes[id(node)]
+        if isinstance(node, Node) and node.name in self._inner:
+            return self._nodes.setdefault(node.name, Thing(label(node.name), _sort(node), node))
         key = id(node) if isinstance(node, Node) else ("none", str(node))
         name = node.name if isinstance(node, Node) else node
         return self._missing.setdefault(key, Thing(label("?" if name is None else name), "missing", node))
+
+    def _join(self, elements: list[Thing]) -> None:
+        """Join a shaft inside of a composite, which something else is attached to, to the symbol of that."""
+        wholes = {thing.source.name: thing for thing in elements}
+        for name, whole in self._inner.items():
+            if name in self._nodes:
+                inner = name.removeprefix(f"{whole}.")
+                wholes[whole].pins[inner] = self._nodes[name]
+                wholes[whole].inner.append(inner)
 
     def _heat_node(self, node: object) -> Thing:
         if isinstance(node, ThermalNode):
@@ -138,15 +154,27 @@ class _Reader:
         return self._missing.setdefault(key, Thing(label("?" if name is None else name), "missing", node))
 
 
-def _inside(component: Component) -> tuple[list[ThermalNode], list[ThermalNode]]:
-    """Thermal nodes that an element is made of, and those that take its heat; none where it has mistakes."""
+def _sort(node: Node) -> str:
+    return "mass" if getattr(node.domain, "value", "") == "translation" else "shaft"
+
+
+class Inside(NamedTuple):
+    """Nodes that an element is made of, and thermal nodes that take its heat."""
+
+    nodes: tuple[Node, ...]
+    thermal: tuple[ThermalNode, ...]
+    heated: tuple[ThermalNode, ...]
+
+
+def _inside(component: Component) -> Inside:
+    """What is inside of an element; nothing where it has mistakes."""
     if any(component_problems(component)):
         node = getattr(component, "heat", None)
-        return [], [node] if isinstance(node, ThermalNode) else []
+        return Inside((), (), (node,) if isinstance(node, ThermalNode) else ())
     parts = take_apart([component])
     paths = [part.heat_path() for part in parts.components]
     named = {path.node.name: path.node for path in paths if path is not None}
-    return list(parts.thermal), list(named.values())
+    return Inside(parts.nodes, parts.thermal, tuple(named.values()))
 
 
 def _assisted(elements: list[Thing]) -> set[int]:

@@ -80,7 +80,9 @@ def _problems(model: Model, path: Any, run: Any, at: Any) -> Any:
     if not len(run):
         yield f"the run has no instant to show: {run.message}"
         return
-    missing = [node.name for node in run.wiring.nodes if node.name not in {one.name for one in model.nodes}]
+    known, inner = {one.name for one in model.nodes}, tuple(f"{element.name}." for element in model.elements)
+    names = [node.name for node in run.wiring.nodes]
+    missing = [name for name in names if name not in known and not name.startswith(inner)]
     if missing:
         yield f"the run is of another driveline, which has {shown(missing[0])}: draw that one, or cw.draw(run)"
     if at is None:

@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from clutchwork.assembly.inputs import SPEED
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.kept import kept
@@ -100,6 +101,9 @@ def _declared(system: System) -> Iterator[tuple[str, tuple[str, str, Spec]]]:
         yield from _of(component, component, "")
         if component.friction is not None:
             yield from _of(component.friction, component, "friction.")
+    for motion in system.motions:
+        if not hasattr(motion, "speed"):
+            yield f"{motion.name}.speed", (path_of(motion), "speed", SPEED)
     for node in system.thermal:
         yield f"{node.name}.temperature", (f'cw.ThermalNode("{node.name}")', "temperature", TEMPERATURE)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Slip, Total
+from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Powers, Slip, Total
 
 
 def needed(form: Form) -> set[int]:
@@ -24,6 +24,8 @@ def needed(form: Form) -> set[int]:
             return needed(rate) | {mode}
         case Power(torque, rate):
             return needed(torque) | needed(rate)
+        case Powers(parts):
+            return set[int]().union(*map(needed, parts))
 
 
 def moved(form: Form, places: Mapping[int, int]) -> Any:
@@ -39,6 +41,8 @@ def moved(form: Form, places: Mapping[int, int]) -> Any:
             return Slip(moved(rate, places), places[mode])
         case Power(torque, rate):
             return Power(moved(torque, places), moved(rate, places))
+        case Powers(parts):
+            return Powers(tuple(moved(part, places) for part in parts))
 
 
 def all_needed(forms: Iterable[Form]) -> list[int]:
@@ -54,9 +58,14 @@ def fixed(signal: str, form: Form) -> bool:
     match form:
         case Affine():
             return False
-        case Linear():
-            return signal.endswith(".rate")
-        case Power(torque, _):
-            return isinstance(torque, Total)
+        case Linear(_, factors):
+            # that of a way may have a radius in it
+            return signal.endswith(".rate") and bool(np.all(np.abs(factors) == 1.0))
+        case Power(torque, rate):
+            return isinstance(torque, Total) and fixed(".rate", rate)
+        case Powers(parts):
+            return all(fixed(signal, part) for part in parts)
+        case Slip(rate):
+            return fixed(".rate", rate)
         case _:
             return True

@@ -107,7 +107,8 @@ def changes(run: Any, contact: str, times: np.ndarray, reference: np.ndarray) ->
     # a clutch that opens or closes while it slips is no event of ours: its torque passes zero
     places = [i for i in places if 0 in (reference[i], reference[i + 1]) or 2 not in (reference[i], reference[i + 1])]
     # the change lies between two rows of the reference; an event of it stands twice, so the bracket is narrow
-    theirs = [(times[i], times[i + 1]) for i in places if times[i] > 0]
+    # what it does so early belongs to its start
+    theirs = [(times[i], times[i + 1]) for i in places if times[i] > TIME]
     ours = [e.time for e in run.events.of(contact).changes()]
     lost = [a for a, b in theirs if not any(a - TIME <= t <= b + TIME for t in ours)]
     added = [t for t in ours if 0 < t < times[-1] and not any(a - TIME <= t <= b + TIME for a, b in theirs)]

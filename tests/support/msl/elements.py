@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import clutchwork as cw
 
-from .pieces import UnsupportedError, bessel_speed, integral, product, scaled
+from .pieces import UnsupportedError, product, scaled
 from .signals import as_signal, levels
 
 if TYPE_CHECKING:
@@ -35,6 +35,31 @@ def _spring(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
     if e["type"] == "spring":
         return [cw.Spring(name, stiffness=float(e["c"]), **ends)]
     return [cw.SpringDamper(name, stiffness=float(e["c"]), damping=float(e["d"]), **ends)]
+
+
+def _backlash(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    if abs(float(e["b"])) <= 1e-10:
+        return _spring(b, name, {**e, "type": "spring_damper"}, at)
+    return [
+        cw.ElasticBacklash(
+            name,
+            base=at("flange_a"),
+            follower=at("flange_b"),
+            stiffness=float(e["c"]),
+            damping=float(e["d"]),
+            gap=abs(float(e["b"])),
+            limited=e["type"] == "elasto_backlash",
+            initial_twist=b.start_distance(name) - float(e.get("rel0", 0.0)),
+        )
+    ]
+
+
+def _elastic_gap(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    if float(e.get("n", 1.0)) != 1.0:
+        raise UnsupportedError(f"elasto_gap with n = {e['n']}")
+    gap = b.start_distance(name) - float(e["rel0"])
+    values = {"stiffness": float(e["c"]), "damping": float(e["d"]), "initial_gap": gap}
+    return [cw.ElasticGap(name, base=at("flange_a"), follower=at("flange_b"), **values)]
 
 
 def _damper(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
@@ -89,7 +114,8 @@ def _constant_speed(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list
 
 
 def _accelerate(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
-    return _motion(name, at, as_signal(integral(b.pieces(e["a_ref"]), b.start_speed(name)), b.t_end))
+    wanted = as_signal(b.pieces(e["a_ref"]), b.t_end)
+    return [cw.PrescribedAcceleration(name, shaft=at("flange"), base=at("support"), acceleration=wanted)]
 
 
 def position_signal(e: Mapping[str, Any]) -> Any:
@@ -98,13 +124,24 @@ def position_signal(e: Mapping[str, Any]) -> Any:
 
 
 def _position(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
-    wanted = b.pieces(position_signal(e))
-    if e.get("exact", False):
-        speed = tuple(piece.slope() for piece in wanted)
-    else:
-        place = b.start_place(f"{name}.flange") - b.start_place(f"{name}.support")
-        speed = bessel_speed(wanted, float(e["f_crit"]), place, b.start_speed(name))
-    return _motion(name, at, as_signal(speed, b.t_end))
+    wanted = as_signal(b.pieces(position_signal(e)), b.t_end)
+    cutoff = None if e.get("exact", False) else float(e["f_crit"])
+    return [cw.PrescribedPosition(name, shaft=at("flange"), base=at("support"), position=wanted, cutoff=cutoff)]
+
+
+def _eddy_current(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    """With its heat capacity, whose temperature is an output of the case."""
+    brake = cw.EddyCurrentBrake(
+        name,
+        shaft=at("flange"),
+        base=at("support"),
+        nominal_torque=float(e["tau_nominal"]),
+        nominal_speed=float(e["w_nominal"]),
+        temperature_coefficient=float(e["alpha20"]),
+        reference_temperature=float(e["TRef"]),
+        heat=b.driveline.thermal(f"{name}_heat", capacity=float(e["heat_capacity"]), temperature=float(e["T0"])),
+    )
+    return [brake]
 
 
 def _sign_torque(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
@@ -174,14 +211,12 @@ def _gear(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
 
 
 def _lossy_gear(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
-    """Without losses a gear, without efficiencies a gear and a bearing at its input."""
-    rows = [[float(x) for x in row] for row in e["loss_table"]]
-    gear = _gear(b, name, e, at)
-    if any(row[1:] != [1.0, 1.0, 0.0, 0.0] for row in rows):
-        friction, scale = _friction({"tau_pos": [(row[0], row[3]) for row in rows]}, "tau_pos")
-        bearing = cw.BearingFriction(name, shaft=at("flange_a"), base=at("support"), friction=friction, torque=scale)
-        gear = [replace(gear[0], name=f"{name}_gear"), bearing]
-    return gear
+    """Without losses a gear."""
+    rows = [tuple(float(x) for x in row) for row in e["loss_table"]]
+    if all(row[1:] == (1.0, 1.0, 0.0, 0.0) for row in rows):
+        return _gear(b, name, e, at)
+    ends = {"input": at("flange_a"), "output": at("flange_b"), "support": at("support")}
+    return [cw.LossyGear(name, ratio=float(e["ratio"]), loss_table=rows, **ends)]
 
 
 def _planetary(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
@@ -195,6 +230,26 @@ def _wheel(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
     return [cw.RollingWheel(name, shaft=at("flangeR"), mass=at("flangeT"), radius=radius)]
 
 
+def _stopped_mass(b: Builder, name: str, e: Mapping[str, Any], at: At) -> list[Any]:
+    """Friction, drag and inelastic stops beside a mass; the position is that of its centre."""
+    coulomb, stribeck = float(e["F_Coulomb"]), float(e["F_Stribeck"])
+    length, body = float(e.get("L", 0.0)), at("flange_a")
+    scale, speed = coulomb + stribeck, 1.0 / float(e["fexp"])
+    law = cw.Exponential(static=1.001, slow=1.0, fast=coulomb / scale, speed=speed)
+    housing = b.driveline.housing
+    return [
+        cw.BearingFriction(name, shaft=body, base=housing, friction=law, torque=scale),
+        cw.Damper(f"{name}_drag", base=housing, follower=body, damping=float(e["F_prop"])),
+        cw.EndStop(
+            f"{name}_stop",
+            follower=body,
+            lower=float(e["smin"]) + length / 2,
+            upper=float(e["smax"]) - length / 2,
+            initial_position=b.start_place(f"{name}.flange_a") + length / 2,
+        ),
+    ]
+
+
 ENTRIES: dict[str, Entry] = {
     "inertia": _nothing,
     "mass": _nothing,
@@ -203,12 +258,17 @@ ENTRIES: dict[str, Entry] = {
     "relative_states": _nothing,
     "spring": _spring,
     "spring_damper": _spring,
+    "elasto_backlash": _backlash,
+    "elasto_backlash2": _backlash,
+    "elasto_gap": _elastic_gap,
+    "mass_with_stop_and_friction": _stopped_mass,
     "damper": _damper,
     "torque": _torque,
     "torque2": _torque2,
     "constant_torque": _constant_torque,
     "linear_speed_dependent_torque": _speed_dependent,
     "quadratic_speed_dependent_torque": _speed_dependent,
+    "eddy_current_torque": _eddy_current,
     "speed": _speed,
     "constant_speed": _constant_speed,
     "accelerate": _accelerate,
@@ -229,12 +289,4 @@ ENTRIES: dict[str, Entry] = {
 
 def missing(case: Mapping[str, Any]) -> list[str]:
     """What the elements of the case are that has no entry."""
-    found = {e["type"] for e in case["elements"].values()} - set(ENTRIES)
-    if any(e["type"] == "lossy_gear" and not _plain_losses(e) for e in case["elements"].values()):
-        found.add("lossy_gear with efficiencies")
-    return sorted(found)
-
-
-def _plain_losses(e: Mapping[str, Any]) -> bool:
-    """Whether a gear loses a torque that depends on its speed alone."""
-    return all(float(row[1]) == float(row[2]) == 1.0 and float(row[3]) == float(row[4]) for row in e["loss_table"])
+    return sorted({e["type"] for e in case["elements"].values()} - set(ENTRIES))

@@ -35,7 +35,7 @@ def rows_of_gears(name: str, element: Mapping[str, Any]) -> list[dict[str, float
 
 def _flanges(name: str, element: Mapping[str, Any], network: Network) -> tuple[dict[str, float], float]:
     """The flange that X.phi or X.s speaks of, and the constant between them."""
-    if element["type"] in ("mass", "rod"):
+    if element["type"] in ("mass", "rod", "mass_with_stop_and_friction"):
         return {f"{name}.flange_a": 1.0}, float(element.get("L", 0.0)) / 2
     for port in ("flange_a", "flange"):
         try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -93,11 +94,12 @@ class Builder:
         inertia = dict.fromkeys(self.network.nodes(), 0.0)
         label: dict[str, str] = {}
         for name, e in self.elements.items():
-            if e["type"] in ("inertia", "mass"):
+            if e["type"] in ("inertia", "mass", "mass_with_stop_and_friction"):
                 node = self.network.node(f"{name}.flange_a")
                 if node != GROUND:
                     inertia[node] += float(e["J"] if e["type"] == "inertia" else e["m"])
-                    label.setdefault(node, name)
+                    if e["type"] != "mass_with_stop_and_friction":
+                        label.setdefault(node, name)
         nodes = {GROUND: self.driveline.housing}
         taken = (set(self.elements) - set(label.values())) | {"housing"}
         moving = self._translating()
@@ -159,12 +161,15 @@ class Builder:
 
     def model(self) -> Model:
         """Everything together."""
-        outputs = {}
+        outputs = dict[str, Callable[[Any], np.ndarray]]()
         for output in self.case["outputs"]:
-            if output["signal"].rpartition(".")[2] not in (*MODE_COLUMNS, "lossPower"):
+            what = output["signal"].rpartition(".")[2]
+            if what == "T":
+                outputs[output["csv"]] = itemgetter(f"{output['signal'][:-2]}.temperature")
+            elif what not in (*MODE_COLUMNS, "lossPower"):
                 outputs[output["csv"]] = self.kinematic(output["signal"])
         friction = {"clutch", "brake", "bearing_friction", "one_way_clutch", "lossy_gear"}
-        made = {contact.name for contact in self.driveline.elements if contact.role is Role.CONTACT}
+        made = {e.name for e in self.driveline.elements if e.role is Role.CONTACT or isinstance(e, cw.LossyGear)}
         contacts = tuple(name for name, e in self.elements.items() if e["type"] in friction and name in made)
         return Model(self.driveline, outputs, contacts)
 

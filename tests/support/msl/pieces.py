@@ -152,36 +152,3 @@ def integral(a: Pieces, value: float) -> Pieces:
     for piece in a:
         made.append(piece.integral(made[-1](piece.start) if made else value))
     return tuple(made)
-
-
-# Bessel filter of second order, corner frequency scaled to the amplitude 1/sqrt(2) (Modelica.Mechanics, Position)
-AF, BF = 1.3617, 0.6180
-
-
-def bessel_speed(a: Pieces, cutoff: float, position: float, speed: float) -> Pieces:
-    """Speed of a position that follows `a` by acceleration = ((a - position) wc - AF speed) wc/BF, wc = 2 pi cutoff."""
-    wc = 2.0 * math.pi * cutoff
-    poles = (wc / (2.0 * BF)) * complex(-AF, math.sqrt(4.0 * BF - AF**2))
-    places: list[Piece] = []
-    for piece in a:
-        if places:
-            position, speed = places[-1](piece.start), places[-1].slope()(piece.start)
-        steady = _steady(piece, wc)
-        # what is left of the state decays: x = Im(c exp(pole s))
-        x, v = position - steady(piece.start), speed - steady.slope()(piece.start)
-        c = complex((v - poles.real * x) / poles.imag, x)
-        rest = Wave(abs(c), poles.imag, cmath.phase(c), -poles.real)
-        places.append(Piece(piece.start, steady.poly, (*steady.waves, rest)))
-    return tuple(place.slope() for place in places)
-
-
-def _steady(piece: Piece, wc: float) -> Piece:
-    """Particular solution of BF/wc^2 x'' + AF/wc x' + x = piece."""
-    poly = list(piece.poly)
-    for k in range(len(poly) - 1, -1, -1):
-        if k + 1 < len(poly):
-            poly[k] -= AF / wc * (k + 1) * poly[k + 1]
-        if k + 2 < len(poly):
-            poly[k] -= BF / wc**2 * (k + 2) * (k + 1) * poly[k + 2]
-    answer = lambda e: 1.0 / (BF * (e / wc) ** 2 + AF * e / wc + 1.0)  # noqa: E731
-    return Piece(piece.start, tuple(poly), tuple(w.through(answer(w.exponent)) for w in piece.waves))

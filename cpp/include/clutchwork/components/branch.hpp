@@ -84,7 +84,7 @@ CLUTCHWORK_INLINE T branch_torque(const Workspace<T>& ws, const Branch<T>& b, T 
   if (b.law >= 0) return contact_torque(ws, b, rate, state, rates);
   return visit_torque(b.kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
-    if constexpr (computes_with<E, T>) {
+    if constexpr (computes_with<E, T> && TorqueElement<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
       const At<T> at{rate, state + b.state, b.input, b.piece, ws.sys.points};
       if constexpr (E::states > 0) E::state_rates(p, at, rates + b.state);
@@ -170,20 +170,21 @@ CLUTCHWORK_INLINE Partial<T> branch_partial_inline(const Workspace<T>& ws, const
   }
   return visit_torque(b.kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
-    if constexpr (computes_with<E, T>) {
+    if constexpr (computes_with<E, T> && TorqueElement<E>) {
       constexpr int n = E::states, N = n + 2;
       using S = Dual<T, N>;
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
       S input[E::inputs > 0 ? E::inputs : 1];
       dual_inputs<N>(E::inputs, b.input, b.input_slope, input);
       S own[n > 0 ? n : 1], own_rates[n > 0 ? n : 1];
-      for (int i = 0; i < n; ++i) own[i] = S::variable(state[b.state + i], 1 + i);
+      const int used = Sized<E> ? b.states : n;
+      for (int i = 0; i < used; ++i) own[i] = S::variable(state[b.state + i], 1 + i);
       S x = S::variable(rate, 0);
       x.d[N - 1] = rate_slope;
       const At<S> at{x, own, input, b.piece, ws.sys.points};
       const S f = E::torque(p, at);
       if constexpr (n > 0) E::state_rates(p, at, own_rates);
-      return take_partials(b, f, own_rates, n, rates, out);
+      return take_partials(b, f, own_rates, used, rates, out);
     }
     return Partial<T>{};
   });
@@ -208,8 +209,11 @@ template <class T>
   if (b.law < 0) {
     f = visit_torque(b.kind, [&](auto tag) {
       using E = typename decltype(tag)::type;
-      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-      return E::torque(p, At<S>{S(rate), own, input, b.piece, ws.sys.points});
+      if constexpr (TorqueElement<E>) {
+        const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+        return E::torque(p, At<S>{S(rate), own, input, b.piece, ws.sys.points});
+      }
+      return S(0);
     });
   } else if (b.compliant) {
     f = bending_torque<most_own_states, T, S>(ws, b, S(rate), own, input, law_input, rates);
@@ -227,14 +231,50 @@ Dual<T, 1> branch_heat(const Workspace<T>& ws, const Branch<T>& b, T rate, const
   if (b.law >= 0) return -torque * x;
   return visit_torque(b.kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
-    if constexpr (HeatingElement<E>) {
+    if constexpr (HeatingElement<E> && TorqueElement<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
       S own[E::states > 0 ? E::states : 1], input[E::inputs > 0 ? E::inputs : 1];
-      for (int i = 0; i < E::states; ++i) own[i] = S(state[b.state + i]);
+      for (int i = 0; i < b.states; ++i) own[i] = S(state[b.state + i]);
       for (int i = 0; i < E::inputs; ++i) input[i] = S(b.input[i]);
       return E::heat(p, At<S>{x, own, input, b.piece, ws.sys.points});
     }
     return -torque * x;
+  });
+}
+
+/// Torques along all ways of an element at their rates; the rates of its states go to `rates`.
+template <class T, class S>
+CLUTCHWORK_INLINE void element_torques(const Workspace<T>& ws, const Branch<T>& b, const S* rate, const S* own,
+                                       const S* input, S* rates, S* torque) {
+  visit_torque(b.kind, [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+    const At<S> at{rate[0], own, input, b.piece, ws.sys.points, rate};
+    if constexpr (E::states > 0) E::state_rates(p, at, rates);
+    if constexpr (CoupledElement<E>) {
+      E::torques(p, at, OwnTorques<S>(torque));
+    } else if constexpr (TransmissionElement<E>) {
+      // solved for once all others are known
+      torque[0] = torque[1] = S(T(0));
+    } else {
+      torque[0] = E::torque(p, at);
+    }
+  });
+}
+
+/// Heat of an element with all its ways [W], at their rates and torques.
+template <class T, class S>
+CLUTCHWORK_INLINE S element_heat(const Workspace<T>& ws, const Branch<T>& b, const S* rate, const S* own,
+                                 const S* input, const S* torque) {
+  return visit_torque(b.kind, [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (HeatingElement<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+      return E::heat(p, At<S>{rate[0], own, input, b.piece, ws.sys.points, rate});
+    }
+    S heat = -torque[0] * rate[0];
+    for (int i = 1; i < E::ways; ++i) heat -= torque[i] * rate[i];
+    return heat;
   });
 }
 

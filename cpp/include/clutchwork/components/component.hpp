@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/bound.hpp>
 #include <clutchwork/components/dual.hpp>
 #include <clutchwork/declared.gen.hpp>
 
@@ -46,6 +47,31 @@ struct OwnInputs {
   }
 };
 
+/// Rates of the ways of an element, by the names of the declaration: `at.rates[Way::...]`.
+template <class S>
+struct OwnRates {
+  const S* first = nullptr;
+  CLUTCHWORK_INLINE OwnRates() = default;
+  CLUTCHWORK_INLINE OwnRates(const S* rates) : first(rates) {}
+  template <class Name>
+  CLUTCHWORK_INLINE const S& operator[](Name name) const {
+    static_assert(std::is_enum_v<Name>, "a rate is read by the name of its way, as at.rates[Way::...]");
+    return first[int(name)];
+  }
+};
+
+/// Torques along the ways of an element, by the names of the declaration: `torque[Way::...]`.
+template <class S>
+struct OwnTorques {
+  S* first;
+  CLUTCHWORK_INLINE OwnTorques(S* torques) : first(torques) {}
+  template <class Name>
+  CLUTCHWORK_INLINE S& operator[](Name name) const {
+    static_assert(std::is_enum_v<Name>, "a torque is set by the name of its way, as torque[Way::...]");
+    return first[int(name)];
+  }
+};
+
 /// Where a component is evaluated.
 template <class S>
 struct At {
@@ -54,6 +80,7 @@ struct At {
   OwnInputs<S> input;     ///< own inputs
   int piece;              ///< number of the smooth piece of the rate
   const Real<S>* points;  ///< pool of curves: x, y, slope to the next point
+  OwnRates<S> rates{};    ///< of an element of several ways
 };
 
 /// Number of kinks inside a curve, where one linear piece follows another.
@@ -84,6 +111,23 @@ concept TorqueElement = requires(const typename E::template Params<double>& p, c
   { E::inputs } -> std::convertible_to<int>;
 };
 
+/// Element of two ways whose rates a ratio of its states and inputs ties together: rate 1 = ratio rate 2.
+template <class E>
+concept TransmissionElement =
+    requires(const typename E::template Params<double>& p, const At<double>& at, double* rates) {
+      { E::ratio(p, at) } -> std::same_as<double>;
+      { E::state_rates(p, at, rates) } -> std::same_as<void>;
+      requires E::ways == 2;
+    };
+
+/// The same for an element of several ways: a torque along each, zero along one that it only watches.
+template <class E>
+concept CoupledElement = requires(const typename E::template Params<double>& p, const At<double>& at, double* rates) {
+  { E::torques(p, at, OwnTorques<double>(rates)) } -> std::same_as<void>;
+  { E::state_rates(p, at, rates) } -> std::same_as<void>;
+  requires E::ways > 1;
+};
+
 /// Friction contact: the load that multiplies the coefficient of its law, and whether it is a freewheel.
 template <class E>
 concept ContactElement = requires(const typename E::template Params<double>& p, const At<double>& at) {
@@ -105,10 +149,26 @@ concept LimitedContact = requires(const typename E::template Params<double>& p, 
   { E::limit(p, at, 0.5, 1) } -> std::same_as<double>;
 };
 
+/// Contact whose capacity follows the torque of its own gear row: what holds against slip in a direction, over that
+/// load; `at.rate` is the size of the slip.
+template <class E>
+concept LoadedContact = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::bound(p, at, 1) } -> std::same_as<Bound<double>>;
+};
+
 /// Freewheel that gives way at a torque.
 template <class E>
 concept YieldingContact = requires(const typename E::template Params<double>& p) {
   { E::holding(p) } -> std::same_as<double>;
+};
+
+/// Contact that exists where its position is at an end alone: side -1 its lower end, 1 its upper one, not finite: there
+/// is none. Speeds return times the restitution, or not at all below the speed of rest.
+template <class E>
+concept StopContact = requires(const typename E::template Params<double>& p) {
+  { E::end(p, 1) } -> std::same_as<double>;
+  { E::restitution(p, 1) } -> std::same_as<double>;
+  { E::rest_speed(p) } -> std::same_as<double>;
 };
 
 /// Contact that can fail: `fault` is above zero when it does, then for good.
@@ -145,6 +205,15 @@ concept ProcessElement = requires(const typename E::template Params<double>& p, 
   { E::states } -> std::convertible_to<int>;
   { E::inputs } -> std::convertible_to<int>;
 };
+
+/// Process that changes between smooth pieces by its states and inputs: `margin` is positive inside `at.piece` and
+/// tells who is closest to leaving; `cross` gives the next piece and may move states. A margin does not look at heats.
+template <class E>
+concept SwitchingProcess =
+    requires(const typename E::template Params<double>& p, const At<double>& at, double* state, int& who) {
+      { E::margin(p, at, who) } -> std::same_as<double>;
+      { E::cross(p, at, 0, state) } -> std::same_as<int>;
+    };
 
 /// Law that sticks exactly: kinetic coefficient over slip (slip >= 0, continued smoothly below), static at rest.
 template <class L>
@@ -184,6 +253,12 @@ concept SwitchingLaw =
     };
 inline constexpr int turned = -1;
 
+/// Switching torque element whose piece follows from where it is, and from the present one: after a jump too.
+template <class E>
+concept Settling = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::settle(p, at) } -> std::same_as<int>;
+};
+
 /// Switching law that may leave a piece on the way back: whether a state that has just crossed goes on.
 template <class L>
 concept RunningOn = requires {
@@ -196,19 +271,26 @@ concept BoundedLaw = requires(const typename L::template Params<double>& p, cons
   { L::outside(p, at, seen) } -> std::same_as<double>;
 };
 
-/// Law whose tables have sizes that must belong together.
+/// Law or element whose tables have sizes that must belong together.
 template <class L>
 concept FittedLaw = requires(const typename L::template Params<double>& p) {
   { L::fits(p) } -> std::same_as<bool>;
 };
 
-/// Law whose number of states depends on its parameters; `states` is the most.
-template <class L>
-concept SizedLaw = requires(const typename L::template Params<double>& p) {
-  { L::count(p) } -> std::same_as<int>;
+/// Law or torque element whose number of states depends on parameters that stay fixed; `states` is the most.
+template <class C>
+concept Sized = requires(const typename C::template Params<double>& p) {
+  { C::count(p) } -> std::same_as<int>;
 };
 
-/// A component whose function of the rate has kinks.
+/// Switching torque element that oscillates by itself: the rate of that [1/s], as no error estimate may feel it.
+template <class E>
+concept Paced = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::pace(p, at) } -> std::same_as<double>;
+};
+
+/// A component whose function of the rate has kinks. Where it switches too, its pieces are numbered by the interval
+/// between kinks first: interval + (edges + 1) mode.
 template <class E, class T = double>
 concept Kinked = requires(const typename E::template Params<T>& p, const double* points) {
   { E::edges(p) } -> std::same_as<int>;

@@ -90,6 +90,47 @@ bool invert(int n, T* a, int* pivot) {
   return true;
 }
 
+/// LU factor of a general matrix in place, by rows with row pivoting; the diagonal holds 1/u. False when singular.
+template <class T>
+bool factor_lu(int n, T* a, int* pivot) {
+  for (int c = 0; c < n; ++c) {
+    int p = c;
+    for (int r = c + 1; r < n; ++r) {
+      if (abs(value(a[r * n + c])) > abs(value(a[p * n + c]))) p = r;
+    }
+    pivot[c] = p;
+    if (!(abs(value(a[p * n + c])) > 0)) return false;
+    for (int j = 0; j < n && p != c; ++j) {
+      const T swap = a[c * n + j];
+      a[c * n + j] = a[p * n + j];
+      a[p * n + j] = swap;
+    }
+    const T inverse = T(1) / a[c * n + c];
+    a[c * n + c] = inverse;
+    for (int r = c + 1; r < n; ++r) {
+      if constexpr (std::is_floating_point_v<T>) {
+        if (a[r * n + c] == 0) continue;
+      }
+      const T factor = a[r * n + c] * inverse;
+      a[r * n + c] = factor;
+      for (int j = c + 1; j < n; ++j) a[r * n + j] -= factor * a[c * n + j];
+    }
+  }
+  return true;
+}
+
+/// b := A^-1 b with that factor.
+template <class T>
+void solve_lu(int n, const T* a, const int* pivot, T* b) {
+  for (int c = 0; c < n; ++c) {
+    const T swap = b[c];
+    b[c] = b[pivot[c]];
+    b[pivot[c]] = swap;
+  }
+  for (int i = 1; i < n; ++i) b[i] -= dot(i, a + i * n, b);
+  for (int i = n - 1; i >= 0; --i) b[i] = (b[i] - dot(n - 1 - i, a + i * n + i + 1, b + i + 1)) * a[i * n + i];
+}
+
 /// Of the rows order[rank..m) the one with the largest part outside the span so far, relative to its length (-1: none
 /// has any).
 template <class T>

@@ -28,6 +28,25 @@ inline MatrixRow matrix_row(const std::int32_t* end, const std::int32_t* column,
 inline MatrixRow basis_row(const System& s, int node) {
   return matrix_row(s.basis_end, s.basis_column, s.basis_value, node);
 }
+
+/// Speed or acceleration of a node from those of the independent and the prescribed speeds.
+template <class T>
+T node_value(const System& s, int node, const T* speeds, const T* prescribed) {
+  T sum = basis_row(s, node).times(speeds);
+  for (int p = 0; p < s.prescribed; ++p) sum += T(s.basis_prescribed[node * s.prescribed + p]) * prescribed[p];
+  return sum;
+}
+
+/// Torque of a metered line on its node, of accelerations and torques; or its impulse, of jumps of speed and impulses.
+template <class T, class Acceleration, class Torque>
+T meter_sum(const System& s, int m, Acceleration&& acceleration, Torque&& torque) {
+  T sum = T(0);
+  for (int e = m > 0 ? s.meter_end[m - 1] : 0; e < s.meter_end[m]; ++e) {
+    const int k = s.meter_column[e];
+    sum += T(s.meter_value[e]) * (k < s.nodes ? acceleration(k) : torque(k - int(s.nodes)));
+  }
+  return sum;
+}
 inline MatrixRow mass_row(const System& s, int i) { return matrix_row(s.mass_end, s.mass_column, s.mass_value, i); }
 
 /// Shares of the speeds in the rate of a direction.
@@ -53,6 +72,15 @@ T rate_of(const Workspace<T>& ws, int d) {
   return r;
 }
 
+/// Rates of all ways of a branch at the present speeds.
+template <class T>
+struct PresentRates {
+  T at[most_ways];
+  PresentRates(const Workspace<T>& ws, const Branch<T>& b) {
+    for (int i = 0; i < b.ways; ++i) at[i] = rate_of(ws, b.direction + i);
+  }
+};
+
 /// The branch of an element, or of a contact that slips with the given sign.
 template <class T>
 Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
@@ -66,6 +94,7 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
     b.inputs = element_inputs(sys.element_kind[d]);
     b.kind = sys.element_kind[d];
     b.law = -1;
+    b.ways = sys.element_way[d] == 0 ? ways_of(b.kind) : 0;
     b.params = ws.params + sys.element_param[d];
     b.state = sys.element_state[d];
     b.input = ws.in.u + sys.element_input[d];
@@ -73,6 +102,7 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
   } else {
     const int c = d - int(sys.elements);
     b.kind = sys.contact_kind[c];
+    b.ways = 1;
     b.law = sys.contact_law[c];
     b.params = ws.params + sys.contact_param[c];
     b.law_params = ws.params + sys.contact_law_param[c];
@@ -84,11 +114,13 @@ Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
     b.law_input = ws.in.u + sys.contact_law_input[c];
     b.law_input_slope = ws.in.du + sys.contact_law_input[c];
     b.shaped = is_shaped(b.kind);
+    b.follows = ws.loads.of[c] >= 0;
     b.pressed = ws.contact.pressed[c] != 0;
     b.compliant = ws.contact.compliant[c] != 0;
     if (b.compliant) b.sign = forward;
   }
-  b.states = states_of(b.kind, b.law, b.law_params);
+  // the first way has the states of all
+  b.states = b.ways > 0 ? states_of(b.kind, b.law, b.law < 0 ? b.params : b.law_params) : 0;
   return b;
 }
 

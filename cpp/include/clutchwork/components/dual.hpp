@@ -98,6 +98,10 @@ CLUTCHWORK_INLINE Dual<T, N> cos(const Dual<T, N>& x) {
   return Dual<T, N>::chain(x, cos(x.v), -sin(x.v));
 }
 template <class T, int N>
+CLUTCHWORK_INLINE Dual<T, N> atan(const Dual<T, N>& x) {
+  return Dual<T, N>::chain(x, atan(x.v), T(1) / (T(1) + x.v * x.v));
+}
+template <class T, int N>
 CLUTCHWORK_INLINE Dual<T, N> tanh(const Dual<T, N>& x) {
   const T t = tanh(x.v);
   return Dual<T, N>::chain(x, t, T(1) - t * t);
@@ -111,6 +115,17 @@ template <class T, int N>
 CLUTCHWORK_INLINE Dual<T, N> pow(const Dual<T, N>& a, const Dual<T, N>& b) {
   const T p = pow(a.v, b.v);
   return Dual<T, N>::chain(a, b.v * pow(a.v, b.v - T(1)), b, p * log(a.v), p);
+}
+
+/// y += a x, for a plain factor.
+template <class T>
+CLUTCHWORK_INLINE void add_times(T a, const T& x, T& y) {
+  y += a * x;
+}
+template <class T, int N>
+CLUTCHWORK_INLINE void add_times(T a, const Dual<T, N>& x, Dual<T, N>& y) {
+  y.v += a * x.v;
+  for (int i = 0; i < N; ++i) y.d[i] += a * x.d[i];
 }
 
 }  // namespace clutchwork

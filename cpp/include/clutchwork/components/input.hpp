@@ -57,6 +57,16 @@ CLUTCHWORK_INLINE double segment_slope(const double* c, double s) {
   return x;
 }
 
+/// Second time derivative of a segment s seconds after its start.
+inline double segment_curvature(const double* c, double s) {
+  auto wave = [&](const double* w) {
+    if (w[0] == 0) return 0.0;
+    const double phase = w[1] * s + w[2], fast = w[1] * w[1], slow = w[3] * w[3];
+    return w[0] * exp(-w[3] * s) * ((slow - fast) * sin(phase) - 2 * w[1] * w[3] * cos(phase));
+  };
+  return 2 * c[2] + 6 * c[3] * s + (c[4] != 0 ? wave(c + 4) + wave(c + 8) : 0.0);
+}
+
 /// Integral of a segment from its start to s seconds later.
 inline double segment_integral(const double* c, double s) {
   double x = s * (c[0] + s * (c[1] / 2 + s * (c[2] / 3 + s * c[3] / 4)));
@@ -149,6 +159,13 @@ CLUTCHWORK_INLINE double signal_slope(const Workspace<T>& ws, int i, double t) {
   return signal.varying ? segment_slope(signal.coef, t - signal.start) : 0.0;
 }
 
+/// Second time derivative of signal i at time t on its present segment.
+template <class T>
+double signal_curvature(const Workspace<T>& ws, int i, double t) {
+  const Signal& signal = ws.in.signal[i];
+  return signal.varying && !signal.linear ? segment_curvature(signal.coef, t - signal.start) : 0.0;
+}
+
 /// Bounds of signal i from time t to its next knot; infinite where they are not plain.
 template <class T>
 void signal_range(const Workspace<T>& ws, int i, double t, double& low, double& high) {
@@ -231,7 +248,7 @@ void load_inputs(Workspace<T>& ws, double t) {
     seek(ws, i, t);
     if (ws.in.signal[i].knot < ws.in.next_knot) ws.in.next_knot = ws.in.signal[i].knot;
   }
-  ws.in.n_shared_refs = ws.in.n_direction_refs = 0;
+  ws.in.n_shared_refs = ws.in.n_direction_refs = ws.in.n_rate_refs = 0;
   for (int ref = 0; ref < ws.in.n_refs; ++ref) {
     const int i = ws.in.ref_signal[ref];
     if (i >= ws.sys.inputs) {
@@ -239,6 +256,8 @@ void load_inputs(Workspace<T>& ws, double t) {
         ws.in.shared_ref[ws.in.n_shared_refs++] = ref;
       } else {
         ws.in.direction_ref[ws.in.n_direction_refs++] = ref;
+        const bool rate = i < ws.sys.inputs + ws.sys.shared + ws.sys.elements;
+        if (rate && ws.sys.full[0] != 0) ws.in.rate_ref[ws.in.n_rate_refs++] = ref;
       }
       continue;
     }

@@ -4,15 +4,21 @@
 /// What the kinds of components say of themselves, and what a contact can hold.
 namespace clutchwork {
 
-/// Number of own states of a torque element (law < 0) or of a contact, which are those of its law.
+/// Number of own states of a torque element (law < 0) or of a contact, which are those of its law; `params` are those
+/// of the element or the law.
 template <class T>
-int states_of(int kind, int law, const T* law_params) {
-  if (law < 0) return visit_torque(kind, [](auto tag) { return decltype(tag)::type::states; });
-  return visit_law(law, [&](auto tag) {
-    using L = typename decltype(tag)::type;
-    if constexpr (SizedLaw<L>) return L::count(*reinterpret_cast<const typename L::template Params<T>*>(law_params));
-    return int(L::states);
-  });
+int states_of(int kind, int law, const T* params) {
+  auto count = [&](auto tag) {
+    using C = typename decltype(tag)::type;
+    if constexpr (Sized<C>) return C::count(*reinterpret_cast<const typename C::template Params<T>*>(params));
+    return int(C::states);
+  };
+  return law < 0 ? visit_torque(kind, count) : visit_law(law, count);
+}
+
+/// Ways of a torque element.
+inline int ways_of(int kind) {
+  return visit_torque(kind, [](auto tag) { return int(decltype(tag)::type::ways); });
 }
 
 /// Most states of a law.
@@ -73,6 +79,25 @@ CLUTCHWORK_INLINE S contact_gain(int kind, const T* params, const S& mu, int dir
   });
 }
 
+/// What holds against slip of a size in a direction, over its load, of a contact that follows one.
+template <class T, class S>
+Bound<S> contact_bound(int kind, const T* params, const S& slip, const S* input, int piece, const Real<T>* points,
+                       int direction) {
+  return visit_contact(kind, [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (LoadedContact<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(params);
+      return E::bound(p, At<S>{slip, nullptr, input, piece, points}, direction);
+    }
+    return Bound<S>{};
+  });
+}
+
+/// Whether a contact follows a load.
+inline bool is_loaded(int kind) {
+  return visit_contact(kind, [](auto tag) { return LoadedContact<typename decltype(tag)::type>; });
+}
+
 /// Static coefficient of a law.
 template <class T>
 CLUTCHWORK_INLINE T law_hold(int law, const T* params, const T* input, const Real<T>* points) {
@@ -107,10 +132,20 @@ T contact_limit(const Sys& sys, int c, const T* params, const T* input, const T*
   });
 }
 
+/// The sign of the slip that a contact cannot oppose, however pressed: forward of a freewheel, away from the end of a
+/// stop that is closed; 0: there is none.
+template <class T>
+CLUTCHWORK_INLINE int free_way(const Workspace<T>& ws, int c) {
+  if (ws.contact.fault[c] == cannot_transmit) return 0;
+  return visit_contact(ws.sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (StopContact<E> && !has_lanes<T>) return -ws.contact.side[c];
+    return int(E::one_way);
+  });
+}
 template <class T>
 CLUTCHWORK_INLINE bool contact_one_way(const Workspace<T>& ws, int c) {
-  if (ws.contact.fault[c] == cannot_transmit) return false;
-  return visit_contact(ws.sys.contact_kind[c], [](auto tag) { return decltype(tag)::type::one_way; });
+  return free_way(ws, c) != 0;
 }
 
 /// What a freewheel holds before it gives way [N m].

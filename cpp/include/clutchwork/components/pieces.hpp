@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/kinds.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// The smooth pieces of elements and laws: kinks over the rate, and those that change by their own states.
@@ -13,20 +14,21 @@ decltype(auto) visit_branch(const Branch<T>& b, F&& f) {
   return visit_law(b.law, [&](auto tag) { return f(tag, b.law_params, b.law_input, b.law_input_slope, b.law_inputs); });
 }
 
-/// How far the law of a switching branch is from leaving its piece, and its time derivative; `who` would leave.
+/// How far the law of a switching branch is from leaving its piece, and its time derivative; `who` would leave. Rates
+/// and their slopes are those of all its ways.
 template <class T>
-Dual<T, 1> law_margin(const Workspace<T>& ws, const Branch<T>& b, T rate, T slope, const T* state, const T* rates,
-                      int& who) {
+Dual<T, 1> law_margin(const Workspace<T>& ws, const Branch<T>& b, const T* rate, const T* slope, const T* state,
+                      const T* rates, int& who) {
   using S = Dual<T, 1>;
   return visit_branch(b, [&](auto tag, const T* params, const T* inputs, const T* input_slopes, int n) {
     using L = typename decltype(tag)::type;
     if constexpr (SwitchingLaw<L>) {
       const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
-      S x(rate), own[L::states > 0 ? L::states : 1], input[most_inputs];
-      x.d[0] = slope;
+      S x[most_ways], own[L::states > 0 ? L::states : 1], input[most_inputs];
+      for (int i = 0; i < b.ways; ++i) x[i] = S(rate[i]), x[i].d[0] = slope[i];
       for (int i = 0; i < b.states; ++i) own[i] = S(state[b.state + i]), own[i].d[0] = rates[b.state + i];
       dual_inputs<1>(n, inputs, input_slopes, input);
-      return L::margin(p, At<S>{x, own, input, b.piece, ws.sys.points}, who);
+      return L::margin(p, At<S>{x[0], own, input, b.piece, ws.sys.points, x}, who);
     }
     return S(1);
   });
@@ -34,20 +36,50 @@ Dual<T, 1> law_margin(const Workspace<T>& ws, const Branch<T>& b, T rate, T slop
 
 /// Take the law of a switching branch to its next piece; returns it and moves the states where the law says so.
 template <class T>
-int law_cross(const Workspace<T>& ws, const Branch<T>& b, T rate, int who, T* state) {
+int law_cross(const Workspace<T>& ws, const Branch<T>& b, const T* rate, int who, T* state) {
   return visit_branch(b, [&](auto tag, const T* params, const T* inputs, const T*, int) {
     using L = typename decltype(tag)::type;
     if constexpr (SwitchingLaw<L>) {
       const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
-      return L::cross(p, At<T>{rate, state + b.state, inputs, b.piece, ws.sys.points}, who, state + b.state);
+      const At<T> at{rate[0], state + b.state, inputs, b.piece, ws.sys.points, rate};
+      return L::cross(p, at, who, state + b.state);
     }
     return b.piece;
   });
 }
 
+/// The piece in which a switching element is where it is now.
+template <class T>
+int settled_piece(const Workspace<T>& ws, const Branch<T>& b, const T* rate) {
+  return visit_torque(b.kind, [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (Settling<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+      return E::settle(p, At<T>{rate[0], ws.state + b.state, b.input, b.piece, ws.sys.points, rate});
+    }
+    return b.piece;
+  });
+}
+/// Rate at which a switching element oscillates by itself [1/s].
+template <class T>
+double own_pace(const Workspace<T>& ws, const Branch<T>& b, T rate) {
+  return visit_torque(b.kind, [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (Paced<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+      return value(E::pace(p, At<T>{rate, ws.state + b.state, b.input, b.piece, ws.sys.points}));
+    }
+    return 0.0;
+  });
+}
+inline bool is_settling(int kind) {
+  return visit_torque(kind, [](auto tag) { return Settling<typename decltype(tag)::type>; });
+}
+
 /// Whether a change of sign of the slip matters to the law of a branch now.
 template <class T>
 bool law_turns(const Branch<T>& b) {
+  if (b.ways == 0) return false;
   return visit_branch(b, [&](auto tag, const T* params, const T*, const T*, int) {
     using L = typename decltype(tag)::type;
     if constexpr (SwitchingLaw<L>) {
@@ -70,6 +102,7 @@ bool law_runs_on(const Branch<T>& b, int who) {
 /// Whether an element or a law switches between pieces.
 template <class T>
 bool is_switching(const Branch<T>& b) {
+  if (b.ways == 0) return false;
   return visit_branch(
       b, [&](auto tag, const T*, const T*, const T*, int) { return SwitchingLaw<typename decltype(tag)::type>; });
 }
@@ -110,10 +143,13 @@ int edge_count(const Workspace<T>& ws, int direction) {
     }
   };
   if (direction < sys.elements) {
+    if (sys.element_way[direction] != 0) return 0;
     return visit_torque(sys.element_kind[direction],
                         [&](auto tag) { return count(tag, ws.params + sys.element_param[direction]); });
   }
   const int c = direction - int(sys.elements);
+  if (is_loaded(sys.contact_kind[c]))
+    return visit_contact(sys.contact_kind[c], [&](auto tag) { return count(tag, ws.params + sys.contact_param[c]); });
   return visit_law(sys.contact_law[c], [&](auto tag) { return count(tag, ws.params + sys.contact_law_param[c]); });
 }
 
@@ -134,6 +170,8 @@ double edge_at(const Workspace<T>& ws, int direction, int i) {
                         [&](auto tag) { return at(tag, ws.params + sys.element_param[direction]); });
   }
   const int c = direction - int(sys.elements);
+  if (is_loaded(sys.contact_kind[c]))
+    return visit_contact(sys.contact_kind[c], [&](auto tag) { return at(tag, ws.params + sys.contact_param[c]); });
   return visit_law(sys.contact_law[c], [&](auto tag) { return at(tag, ws.params + sys.contact_law_param[c]); });
 }
 

@@ -9,7 +9,7 @@
 /// What the core asks of a number. Scalars: double, float, Dual<double, N>, Dual<float, N>.
 namespace clutchwork {
 
-using std::abs, std::cos, std::exp, std::log, std::pow, std::sin, std::sqrt, std::tanh;
+using std::abs, std::atan, std::cos, std::exp, std::log, std::pow, std::sin, std::sqrt, std::tanh;
 
 /// The plain number behind a scalar: comparisons and decisions use it, in double whatever the scalar.
 template <class T>

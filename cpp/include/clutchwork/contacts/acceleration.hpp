@@ -3,6 +3,7 @@
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/contacts/problem.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// How the slips accelerate without the torques of the contacts, and the problem that finds those.
@@ -16,8 +17,14 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   const int nv = int(sys.speeds);
   for (int i = 0; i < nv; ++i) q[i] = T(0);
   ws.decision.effort = 0;
+  for (int l = 0; l < sys.loads; ++l) {
+    ws.coupled.given[l] = T(0);
+    for (int p = 0; p < sys.prescribed; ++p)
+      ws.coupled.given[l] += ws.loads.by_slope[l * sys.prescribed + p] * ws.in.prescribed_slope[p];
+  }
   auto add = [&](T size, int d) {
     ws.geometry.white.add(d, size, q);
+    for (int l = 0; l < sys.loads; ++l) ws.coupled.given[l] += ws.loads.by_torque[l * ws.n_directions + d] * size;
     ws.decision.effort += abs(value(size)) * sqrt(value(ws.geometry.own[d]));
   };
   for (int p = 0; p < sys.prescribed; ++p)
@@ -25,15 +32,23 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   for (int d = 0; d < ws.n_directions; ++d) {
     const int c = d - int(sys.elements);
     int sign = 0;
-    if (c >= 0 && !ws.contact.loaded[c]) continue;
+    if (c >= 0 && (!ws.contact.loaded[c] || ws.loads.of[c] >= 0)) continue;
     if (c >= 0 && !ws.contact.compliant[c]) {
       if (candidate[c]) continue;
       sign = ws.contact.mode[c];
       if (sign != forward && sign != backward) continue;
     }
     const Branch<T> b = make_branch(ws, d, sign);
+    if (b.ways != 1) {
+      T torque[most_ways];
+      const PresentRates<T> rate(ws, b);
+      if (b.ways > 0) element_torques(ws, b, rate.at, ws.state + b.state, b.input, ws.seen.state_rates, torque);
+      for (int i = 0; i < b.ways; ++i) add(torque[i], d + i);
+      continue;
+    }
     add(branch_torque_once(ws, b, rate_of(ws, d), ws.state, ws.seen.state_rates), d);
   }
+  if (ws.ratios.inside) accelerate_rows(ws, q);
 }
 
 /// Acceleration of a slip for mass-weighted acceleration q.
@@ -42,7 +57,7 @@ T slip_acceleration(const Workspace<T>& ws, int c, const T* q) {
   const int d = int(ws.sys.elements) + c;
   T a = ws.geometry.white.times(d, q);
   for (int p = 0; p < ws.sys.prescribed; ++p) a += prescribed_share(ws, d, p) * ws.in.prescribed_slope[p];
-  return a;
+  return ws.ratios.inside ? a + pulled(ws, d) : a;
 }
 
 /// Acceleration of a slip that the prescribed speeds give.

@@ -4,6 +4,8 @@
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/acceleration.hpp>
+#include <clutchwork/contacts/coupled.hpp>
+#include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/problem.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
@@ -16,7 +18,7 @@ template <class T>
 void release(Workspace<T>& ws, int c, int sign) {
   const int d = int(ws.sys.elements) + c;
   const double slip = value(rate_of(ws, d));
-  const bool moving = abs(slip) > slip_tolerance(ws);
+  const bool moving = abs(slip) > slip_tolerance(ws) && !is_tied(ws, c);
   ws.contact.mode[c] = !moving ? sign : slip > 0 ? forward : backward;
   if (moving) ws.contact.forced[c] = ws.contact.mode[c];
   if (!ws.contact.compliant[c]) ws.piece[d] = piece_of(ws, d, moving ? abs(slip) : 0.0);
@@ -24,7 +26,7 @@ void release(Workspace<T>& ws, int c, int sign) {
 
 /// How a decision ended: all contacts have their mode, none was found, a freewheel gives way first, or prescribed
 /// speeds turn one backward.
-enum class Settled { yes, no, gives_way, jams };
+enum class Settled { yes, no, gives_way, jams, unbalanced };
 
 /// An end of a decision, and the contact that gives way or jams (-1: none).
 struct Verdict {
@@ -43,11 +45,12 @@ Choice choice_of(Workspace<T>& ws, int c, double slip, double tolerance, bool hi
   // prescribed speeds have parted: there is no choice
   if (hit && ws.happened.cause == Cause::torque_limit && rigid) {
     const double parting = slip != 0 ? slip : value(slip_slope(ws, c));
-    if (parting < 0 && contact_one_way(ws, c)) return Choice::jams;
+    if (parting * free_way(ws, c) < 0) return Choice::jams;
     mode = forced = parting < 0 ? backward : forward;
     return Choice::slips;
   }
-  const bool still = mode == locked && !rigid, arrived = hit && ws.happened.cause != Cause::input && !rigid;
+  const bool still = mode == locked && !rigid,
+             arrived = hit && ws.happened.cause != Cause::input && (!rigid || is_tied(ws, c));
   const bool rests = still || arrived || abs(slip) <= tolerance;
   if (rests && forced == 0) return Choice::sticks;
   mode = rests ? forced : slip > 0 ? forward : backward;
@@ -106,9 +109,10 @@ BoundedProblem<T> pose_problem(Workspace<T>& ws, bool warm) {
     const int c = list[a];
     const T resists_forward = usable_capacity(ws, c, forward), resists_backward = usable_capacity(ws, c, backward);
     p.gradient[a] = slip_acceleration(ws, c, q);
-    p.lower[a] = -resists_forward;
-    p.upper[a] = contact_one_way(ws, c) ? freewheel_limit(ws, c) : resists_backward;
-    capacity[a] = larger(resists_forward, p.upper[a]);
+    const int way = free_way(ws, c);
+    p.lower[a] = way < 0 ? T(-infinity) : -resists_forward;
+    p.upper[a] = way > 0 ? freewheel_limit(ws, c) : resists_backward;
+    capacity[a] = larger(-p.lower[a], p.upper[a]);
     p.x[a] = warm ? ws.decision.torque[c] : T(0);
     if (is_rigid(ws, c)) p.matrix.diagonal[a] = T(1e-300);
   }
@@ -138,7 +142,7 @@ double slope_noise(const Workspace<T>& ws, const BoundedProblem<T>& p, int a, in
 /// docs/theory/contacts.md, rule 3
 template <class T>
 bool overruns(const Workspace<T>& ws, const BoundedProblem<T>& p, int a) {
-  return contact_one_way(ws, ws.decision.list[a]) && value(p.slope[a]) < 0;
+  return value(p.slope[a]) * free_way(ws, ws.decision.list[a]) < 0;
 }
 
 /// Of the bound torques that cannot hold, the first of a freewheel, else the one that gives way most (-1: all hold).
@@ -183,6 +187,196 @@ int turned_back(Workspace<T>& ws, const BoundedProblem<T>& p) {
   return -1;
 }
 
+/// As pose_problem where contacts follow loads: those that slip take part too, behind the candidates.
+template <class T>
+CoupledProblem<T> pose_coupled(Workspace<T>& ws, BoundedProblem<T>& p) {
+  const System& sys = ws.sys;
+  CoupledMemory<T>& m = ws.coupled;
+  int *list = ws.decision.list, n = 0;
+  auto follows = [&](int c) { return ws.loads.of[c] >= 0; };
+  auto slips = [&](int c) { return follows(c) && !ws.decision.candidate[c] && ws.contact.mode[c] != open; };
+  for (int c = 0; c < sys.contacts; ++c) {
+    if (ws.decision.candidate[c] || slips(c)) list[n++] = c;
+  }
+  // free_motion leaves the loads without these torques in coupled.given
+  free_motion(ws, ws.decision.candidate, ws.decision.motion);
+  p = gather(ws, list, n);
+  CoupledProblem<T> q{n,      int(sys.loads), m.mobility, m.gradient, m.weight, m.lower, m.upper,
+                      m.load, m.sliding,      m.reach,    m.given,    m.bound,  m.x,     m.slope,
+                      m.now,  m.state,        m.line,     m.matrix,   m.trial,  m.pivot, m.next};
+  for (int a = 0; a < n; ++a) {
+    const int c = list[a];
+    const bool rigid = is_rigid(ws, c);
+    for (int b = 0; b < n; ++b) q.mobility[a * n + b] = T(a == b && rigid ? 1 : 0);
+    if (!rigid) p.matrix.each(a, [&](int b, T g) { q.mobility[a * n + b] = g; });
+    q.weight[a] = q.mobility[a * n + a] * T(1e-10);
+    p.gradient[a] = slip_acceleration(ws, c, ws.decision.motion);
+    q.gradient[a] = rigid ? T(0) : p.gradient[a];
+    q.load[a] = ws.loads.of[c];
+    // what slips goes on with its line where that fits
+    q.line[a] = follows(c) ? ws.loads.line[ws.loads.of[c]] : 0;
+    q.sliding[a] = ws.decision.candidate[c] ? 0 : ws.contact.mode[c];
+    for (int l = 0; l < sys.loads; ++l) q.reach[l * n + a] = ws.loads.by_torque[l * ws.n_directions + sys.elements + c];
+    q.lower[a] = q.upper[a] = T(0);
+    if (follows(c)) {
+      const T slip = abs(rate_of(ws, int(sys.elements) + c));
+      const bool still = q.sliding[a] == 0 || ws.contact.forced[c] != 0;
+      const int piece = still ? 0 : ws.piece[sys.elements + c];
+      Bound<T>* bound = q.bound + 2 * q.load[a];
+      bound[0] = bound_of(ws, c, backward, still ? T(0) : slip, piece);
+      bound[1] = bound_of(ws, c, forward, still ? T(0) : slip, piece);
+      // what moves nothing and is driven by nobody has no torque
+      if (rigid && q.sliding[a] == 0) q.load[a] = -1;
+    } else if (!rigid) {
+      const int way = free_way(ws, c);
+      q.lower[a] = way < 0 ? T(-infinity) : -usable_capacity(ws, c, forward);
+      q.upper[a] = way > 0 ? freewheel_limit(ws, c) : usable_capacity(ws, c, backward);
+    }
+  }
+  return q;
+}
+
+/// The solution as that of a bounded problem, for the rules of the rounds: those that follow loads have no bound of
+/// their own, and those without inertia have the acceleration that is prescribed.
+template <class T>
+void take_solution(Workspace<T>& ws, const CoupledProblem<T>& q, BoundedProblem<T>& p) {
+  for (int a = 0; a < q.n; ++a) {
+    const int c = ws.decision.list[a];
+    const bool rigid = is_rigid(ws, c);
+    p.x[a] = q.x[a];
+    p.slope[a] = rigid ? p.gradient[a] : q.slope[a];
+    p.bound[a] = rigid ? 1 : -q.state[a];
+    ws.decision.torque[c] = q.x[a];
+    if (rigid) p.matrix.diagonal[a] = T(1e-300);
+  }
+}
+
+/// Of the candidates without load at a bound the one that gives way most, as `weakest`.
+template <class T>
+int weakest_beside(Workspace<T>& ws, const BoundedProblem<T>& p, const CoupledProblem<T>& q, int located,
+                   double tolerance) {
+  int first = -1;
+  double most = 0;
+  for (int a = 0; a < p.n; ++a) {
+    const int c = ws.decision.list[a];
+    if (ws.loads.of[c] >= 0) continue;
+    ws.contact.mode[c] = locked;
+    const double acceleration = abs(value(p.slope[a]));
+    if (p.bound[a] == 0 || acceleration <= slope_noise(ws, p, a, located, tolerance)) continue;
+    if (overruns(ws, p, a)) return a;
+    const double size = acceleration / value(sqrt(p.matrix.diagonal[a]));
+    if (size > most) first = a, most = size;
+  }
+  (void)q;
+  return first;
+}
+
+/// Modes and lines of the contacts that follow loads.
+template <class T>
+void settle_loads(Workspace<T>& ws, const BoundedProblem<T>& p, const CoupledProblem<T>& q, int located,
+                  double tolerance) {
+  for (int l = 0; l < q.loads; ++l) ws.loads.now[l] = q.now[l];
+  for (int a = 0; a < q.n; ++a) {
+    const int c = ws.decision.list[a], l = ws.loads.of[c];
+    if (l < 0) continue;
+    if (q.load[a] >= 0) ws.loads.line[l] = q.line[a];
+    if (q.sliding[a] != 0) continue;
+    const bool moves = p.bound[a] != 0 && abs(value(p.slope[a])) > slope_noise(ws, p, a, located, tolerance);
+    ws.contact.mode[c] = !moves ? locked : value(p.slope[a]) > 0 ? forward : backward;
+    if (!moves) continue;
+    ws.piece[ws.sys.elements + c] = 0;
+    const Bound<T> bound = bound_of(ws, c, ws.contact.mode[c], T(0), 0);
+    ws.loads.line[l] = q.load[a] >= 0 ? q.line[a] : bound.line_at(q.now[l]);
+  }
+}
+
+/// Of the contacts that slip and follow loads the one whose line falls most with its own friction: that which cannot be
+/// balanced (-1: none slips).
+template <class T>
+int steepest(const Workspace<T>& ws) {
+  int found = -1;
+  double most = -infinity;
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    const int c = ws.sys.load_contact[l], sign = ws.contact.mode[c];
+    if (sign != forward && sign != backward) continue;
+    const Bound<T> bound =
+        bound_of(ws, c, sign, abs(rate_of(ws, int(ws.sys.elements) + c)), ws.piece[ws.sys.elements + c]);
+    for (int line = 0; line < 2; ++line) {
+      const double own =
+          value(ws.loads.by_torque[l * ws.n_directions + ws.sys.elements + c] * bound.slope[line]) * -sign;
+      if (own > most) most = own, found = c;
+    }
+  }
+  return found;
+}
+
+/// Whether all candidates together hold, where some depend on others and some follow loads: then they do.
+/// docs/theory/load-dependent.md, rule 2
+template <class T>
+bool hold_together(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  int *candidate = ws.decision.candidate, *before = ws.coupled.next;
+  for (int l = 0; l < sys.loads; ++l) {
+    if (!candidate[sys.load_contact[l]]) return false;
+  }
+  for (int c = 0; c < sys.contacts; ++c) {
+    before[c] = ws.contact.mode[c];
+    if (candidate[c]) ws.contact.mode[c] = locked;
+  }
+  list_locked(ws);
+  Held<T>& h = ws.held;
+  bool holds = h.n_sets > 0 && factor_mobility(ws);
+  if (holds) {
+    free_motion(ws, candidate, ws.decision.motion);
+    for (int a = 0; a < h.n; ++a) {
+      h.rhs[a] = is_rigid(ws, h.contact[a]) ? T(0) : -slip_acceleration(ws, h.contact[a], ws.decision.motion);
+    }
+    solve_locked(ws, h.rhs, h.carried);
+    for (int l = 0; l < sys.loads; ++l) {
+      ws.loads.now[l] = ws.coupled.given[l];
+      for (int a = 0; a < h.n; ++a)
+        ws.loads.now[l] += ws.loads.by_torque[l * ws.n_directions + sys.elements + h.contact[a]] * h.carried[a];
+    }
+    holds = value(set_room(ws, 0, h.carried, T(0), ws.loads.now)) >= -1e-11;
+  }
+  for (int c = 0; !holds && c < sys.contacts; ++c) ws.contact.mode[c] = before[c];
+  if (!holds) return false;
+  for (int a = 0; a < h.n; ++a) ws.decision.torque[h.contact[a]] = h.carried[a];
+  for (int s = 0; s < h.n_spare; ++s) ws.decision.torque[h.spare[s]] = T(0);
+  return true;
+}
+
+/// As settle_contacts where contacts follow loads: torques, loads and modes are found together.
+/// docs/theory/load-dependent.md, rule 1
+template <class T>
+Verdict settle_coupled(Workspace<T>& ws, int located, double tolerance) {
+  int *candidate = ws.decision.candidate, *released = ws.decision.released;
+  if (ws.geometry.redundant && hold_together(ws)) return {Settled::yes};
+  for (int round = 0; round <= 4 * ws.sys.contacts + 4; ++round) {
+    BoundedProblem<T> p{};
+    CoupledProblem<T> q = pose_coupled(ws, p);
+    if (!solve(q)) return {Settled::unbalanced, steepest(ws)};
+    take_solution(ws, q, p);
+    const int weak = weakest_beside(ws, p, q, located, tolerance);
+    if (weak >= 0) {
+      const int c = ws.decision.list[weak];
+      if (overruns(ws, p, weak)) return {is_rigid(ws, c) ? Settled::jams : Settled::gives_way, c};
+      release(ws, c, value(p.slope[weak]) > 0 ? forward : backward);
+      candidate[c] = 0;
+      released[c] = released[c] == 0 ? 1 : 2;
+      continue;
+    }
+    const int back = turned_back(ws, p);
+    if (back >= 0) {
+      released[back] = -1, candidate[back] = 1;
+      continue;
+    }
+    settle_loads(ws, p, q, located, tolerance);
+    return {Settled::yes};
+  }
+  return {Settled::no};
+}
+
 /// Give every contact at zero slip its torque or its direction of slip. `located`: the contact whose guard was hit.
 template <class T>
 Verdict settle_contacts(Workspace<T>& ws, int located) {
@@ -190,6 +384,7 @@ Verdict settle_contacts(Workspace<T>& ws, int located) {
   int *candidate = ws.decision.candidate, *released = ws.decision.released;
   const int jammed = choose_candidates(ws, located, tolerance);
   if (jammed >= 0) return {Settled::jams, jammed};
+  if (ws.sys.loads > 0) return settle_coupled(ws, located, tolerance);
   // rounds: those at a bound that accelerate start to slip with their kinetic torque
   for (int round = 0; round <= 4 * ws.sys.contacts + 4; ++round) {
     // among many contacts a release changes few torques

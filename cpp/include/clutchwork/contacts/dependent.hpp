@@ -2,6 +2,8 @@
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/workspace/settings.hpp>
 
+#include <type_traits>
+
 /// What contacts whose directions depend on each other hold together, and the share of each: docs/theory/contacts.md.
 namespace clutchwork {
 
@@ -20,8 +22,80 @@ struct DependentSet {
 /// Most of the load that counts: a set that holds it twice is far from its limit.
 inline constexpr double ample = 2;
 
-/// Bounded simplex for the largest factor of the load that the set can hold, at most `ample`. docs/theory/contacts.md
-/// (11) Variables: the torques, then the factor. Memory: tableau rank x (n + 1), x, price and `place` n + 1 each.
+/// Steps of a bounded simplex. P has `rows` and `width` of its tableau, the bounds of its variables, their values and
+/// prices, the variable of each row, and the row of each variable (-1: it is not basic).
+///
+/// A variable that raises the last one, and which way it goes; -1: that is the largest.
+template <class P>
+int entering(const P& p, int& way) {
+  double most = 0;
+  for (int j = 0; j < p.width(); ++j) most = larger(most, abs(value(p.price[j])));
+  for (int j = p.width() - 1; j >= 0; --j) {
+    if (p.place[j] >= 0 || abs(value(p.price[j])) <= 1e-11 * most) continue;
+    way = value(p.price[j]) > 0 ? 1 : -1;
+    if (way > 0 ? value(p.x[j]) < value(p.upper(j)) : value(p.x[j]) > value(p.lower(j))) return j;
+  }
+  return -1;
+}
+
+/// Move variable j until it or a basic one meets its bound; the row of that one (-1: j itself).
+template <class P>
+int move(const P& p, int j, int way) {
+  using T = std::remove_reference_t<decltype(*p.x)>;
+  T step = way > 0 ? p.upper(j) - p.x[j] : p.x[j] - p.lower(j);
+  int row = -1;
+  for (int r = 0; r < p.rows(); ++r) {
+    const T rate = p.tableau[r * p.width() + j] * T(-way);
+    if (abs(value(rate)) <= 1e-11) continue;
+    const int b = p.basis[r];
+    const T bound = value(rate) > 0 ? p.upper(b) : p.lower(b);
+    if (abs(value(bound)) == infinity) continue;
+    const T room = larger((bound - p.x[b]) / rate, T(0));
+    if (value(room) < value(step) || (row >= 0 && value(room) == value(step) && b > p.basis[row])) step = room, row = r;
+  }
+  for (int r = 0; r < p.rows(); ++r) p.x[p.basis[r]] -= T(way) * step * p.tableau[r * p.width() + j];
+  p.x[j] += T(way) * step;
+  if (row >= 0) {
+    const int b = p.basis[row];
+    p.x[b] = value(p.tableau[row * p.width() + j]) * way < 0 ? p.upper(b) : p.lower(b);
+  }
+  if (row < 0) p.x[j] = way > 0 ? p.upper(j) : p.lower(j);
+  return row;
+}
+
+/// Variable j becomes the basic one of a row.
+template <class P>
+void pivot(const P& p, int row, int j) {
+  using T = std::remove_reference_t<decltype(*p.x)>;
+  T* own = p.tableau + row * p.width();
+  const T inverse = T(1) / own[j];
+  for (int k = 0; k < p.width(); ++k) own[k] *= inverse;
+  auto clear = [&](T* other) {
+    const T factor = other[j];
+    for (int k = 0; k < p.width(); ++k) other[k] -= factor * own[k];
+    other[j] = T(0);
+  };
+  for (int r = 0; r < p.rows(); ++r) {
+    if (r != row) clear(p.tableau + r * p.width());
+  }
+  clear(p.price);
+  p.place[p.basis[row]] = -1, p.place[j] = row, p.basis[row] = j;
+}
+
+/// Raise the last variable as far as it goes.
+template <class P>
+void raise(const P& p, int most_rounds) {
+  for (int round = 0; round < most_rounds; ++round) {
+    int way = 0;
+    const int j = entering(p, way);
+    if (j < 0) break;
+    const int row = move(p, j, way);
+    if (row >= 0) pivot(p, row, j);
+  }
+}
+
+/// The largest factor of the load that the set can hold, at most `ample`. docs/theory/contacts.md (11) Variables: the
+/// torques, then the factor. Memory: tableau rank x (n + 1), x, price and `place` n + 1 each.
 template <class T>
 struct LimitLoad {
   const DependentSet<T>& set;
@@ -33,6 +107,7 @@ struct LimitLoad {
   T lower(int j) const { return j < set.n ? set.lower[j] : T(0); }
   T upper(int j) const { return j < set.n ? set.upper[j] : T(ample) * size; }
   int width() const { return set.n + 1; }
+  int rows() const { return set.rank; }
 
   /// The carriers are the first basis; no torque, no load.
   void start() {
@@ -47,65 +122,10 @@ struct LimitLoad {
     }
   }
 
-  /// A variable that raises the factor, and which way it goes; -1: the factor is the largest.
-  int entering(int& way) const {
-    double most = 0;
-    for (int j = 0; j < width(); ++j) most = larger(most, abs(value(price[j])));
-    for (int j = width() - 1; j >= 0; --j) {
-      if (place[j] >= 0 || abs(value(price[j])) <= 1e-11 * most) continue;
-      way = value(price[j]) > 0 ? 1 : -1;
-      if (way > 0 ? value(x[j]) < value(upper(j)) : value(x[j]) > value(lower(j))) return j;
-    }
-    return -1;
-  }
-
-  /// Move variable j until it or a basic one meets its bound; the row of that one (-1: j itself).
-  int move(int j, int way) {
-    T step = way > 0 ? upper(j) - x[j] : x[j] - lower(j);
-    int row = -1;
-    for (int r = 0; r < set.rank; ++r) {
-      const T rate = tableau[r * width() + j] * T(-way);
-      if (abs(value(rate)) <= 1e-11) continue;
-      const int b = basis[r];
-      const T bound = value(rate) > 0 ? upper(b) : lower(b);
-      if (abs(value(bound)) == infinity) continue;
-      const T room = larger((bound - x[b]) / rate, T(0));
-      if (value(room) < value(step) || (row >= 0 && value(room) == value(step) && b > basis[row])) step = room, row = r;
-    }
-    for (int r = 0; r < set.rank; ++r) x[basis[r]] -= T(way) * step * tableau[r * width() + j];
-    x[j] += T(way) * step;
-    if (row >= 0) x[basis[row]] = value(tableau[row * width() + j]) * way < 0 ? upper(basis[row]) : lower(basis[row]);
-    if (row < 0) x[j] = way > 0 ? upper(j) : lower(j);
-    return row;
-  }
-
-  /// Variable j becomes the basic one of a row.
-  void pivot(int row, int j) {
-    T* own = tableau + row * width();
-    const T inverse = T(1) / own[j];
-    for (int k = 0; k < width(); ++k) own[k] *= inverse;
-    auto clear = [&](T* other) {
-      const T factor = other[j];
-      for (int k = 0; k < width(); ++k) other[k] -= factor * own[k];
-      other[j] = T(0);
-    };
-    for (int r = 0; r < set.rank; ++r) {
-      if (r != row) clear(tableau + r * width());
-    }
-    clear(price);
-    place[basis[row]] = -1, place[j] = row, basis[row] = j;
-  }
-
   /// The largest factor. `price` then tells how the set gives way: a contact with a positive one slips backward.
   T solve() {
     start();
-    for (int round = 0; round < 50 + 20 * set.n; ++round) {
-      int way = 0;
-      const int j = entering(way);
-      if (j < 0) break;
-      const int row = move(j, way);
-      if (row >= 0) pivot(row, j);
-    }
+    raise(*this, 50 + 20 * set.n);
     return value(size) > 0 ? x[set.n] / size : T(ample);
   }
 };

@@ -180,7 +180,7 @@ bool expand_kept(Workspace<T>& ws) {
 /// and reduced.nz. False: there is no room.
 template <class T>
 bool eliminate_locked(Workspace<T>& ws) {
-  const int steps = eliminate(ws, ws.held.contact, ws.held.n);
+  const int steps = eliminate(ws, ws.held.contact, ws.held.n_fixed);
   if (steps < 0 || !spread_eliminated(ws, steps)) return false;
   ws.reduced.nz = number_kept(ws);
   ws.reduced.rank = steps;

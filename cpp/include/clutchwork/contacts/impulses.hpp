@@ -4,6 +4,7 @@
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/acceleration.hpp>
 #include <clutchwork/contacts/problem.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -20,6 +21,37 @@ void take_heat(Workspace<T>& ws, int direction, T heat) {
   }
 }
 
+/// Energy of an impulse through metered lines, for jumps x of the independent speeds, before they are made.
+template <class T, class Jump, class Torque>
+void meter_impulse(Workspace<T>& ws, const T* x, Jump&& prescribed_jump, Torque&& impulse) {
+  const System& sys = ws.sys;
+  auto jump = [&](int n) {
+    T sum = basis_row(sys, n).times(x);
+    for (int p = 0; p < sys.prescribed; ++p)
+      sum += T(sys.basis_prescribed[n * sys.prescribed + p]) * prescribed_jump(p);
+    return sum;
+  };
+  for (int m = 0; m < sys.meters; ++m) {
+    const int n = sys.meter_node[m];
+    const T after = node_value(sys, n, ws.v, ws.in.prescribed) + basis_row(sys, n).times(x);
+    ws.metered[m] += meter_sum<T>(sys, m, jump, impulse) * (after - T(0.5) * jump(n));
+  }
+}
+
+/// The impulses that transmissions take of those of contacts.
+template <class T>
+void take_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list) {
+  Ratios<T>& r = ws.ratios;
+  const int ne = int(ws.sys.elements);
+  for (int k = 0; k < r.rank; ++k) {
+    r.share[k] = T(0);
+    for (int a = 0; a < p.n; ++a) r.share[k] -= p.x[a] * r.part[(ne + list[a]) * r.n + k];
+  }
+  torques_of_rows(ws, [&](auto&& carry) {
+    for (int a = 0; a < p.n; ++a) carry(ne + list[a], p.x[a]);
+  });
+}
+
 /// Apply the impulses of a solved problem over speeds: new speeds, and the work of each contact.
 template <class T>
 void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list) {
@@ -34,12 +66,23 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
     take_heat(ws, ne + list[a], -work);
   }
   backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
+  if (ws.ratios.inside) take_impulses(ws, p, list);
+  meter_impulse(
+      ws, x, [](int) { return T(0); },
+      [&](int d) {
+        for (int a = 0; a < p.n; ++a) {
+          if (ne + list[a] == d) return p.x[a];
+        }
+        return impulse_of_row(ws, d);
+      });
   for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
+  if (ws.ratios.inside) move_followers(ws);
   // the sources behind prescribed speeds take their share
   for (int k = 0; k < ws.sys.prescribed; ++k) {
     T impulse = T(0);
     for (int i = 0; i < nv; ++i) impulse += T(ws.sys.mass_prescribed[i * ws.sys.prescribed + k]) * x[i];
     for (int a = 0; a < p.n; ++a) impulse -= p.x[a] * prescribed_share(ws, ne + list[a], k);
+    if (ws.ratios.inside) impulse -= impulse_on_source(ws, k);
     ws.prescribed_work[k] += impulse * ws.in.prescribed[k];
   }
   // friction transmits no impulse: what was locked and is moved now slips
@@ -73,15 +116,17 @@ bool least_impulses(Workspace<T>& ws, Stops&& stops) {
   bool needed = false;
   for (int a = 0; a < n; ++a) {
     const double slip = value(rate_of(ws, ne + list[a]));
-    needed = needed || slip < -tolerance || (stops(list[a]) && slip > tolerance);
+    needed = needed || slip * free_way(ws, list[a]) < -tolerance || (stops(list[a]) && abs(slip) > tolerance);
   }
   if (!needed) return true;
   BoundedProblem<T> p = gather(ws, list, n);
   T* capacity = ws.problem.capacity;
   for (int a = 0; a < n; ++a) {
     p.gradient[a] = rate_of(ws, ne + list[a]);
-    p.lower[a] = stops(list[a]) ? T(-infinity) : T(0);
-    p.upper[a] = capacity[a] = T(infinity);
+    const bool both = stops(list[a]);
+    p.lower[a] = both || free_way(ws, list[a]) < 0 ? T(-infinity) : T(0);
+    p.upper[a] = both || free_way(ws, list[a]) > 0 ? T(infinity) : T(0);
+    capacity[a] = T(infinity);
     p.x[a] = T(0);
   }
   capacity_weights(p, capacity);
@@ -90,7 +135,7 @@ bool least_impulses(Workspace<T>& ws, Stops&& stops) {
   for (int a = 0; a < n; ++a) {
     // a freewheel that an impulse has closed is locked, one that it has left behind overruns
     const bool stopped = abs(value(p.slope[a])) <= tolerance;
-    if (stopped && (stops(list[a]) || value(p.x[a]) > 0)) ws.contact.mode[list[a]] = locked;
+    if (stopped && (stops(list[a]) || value(p.x[a]) * free_way(ws, list[a]) > 0)) ws.contact.mode[list[a]] = locked;
   }
   return true;
 }
@@ -115,6 +160,36 @@ bool stop_within_tolerance(Workspace<T>& ws, int located) {
       ws, [&](int c) { return ws.contact.mode[c] == locked && (c == located || !contact_one_way(ws, c)); });
 }
 
+/// A contact that follows a load and jams stops at once; the others that are locked stay so, but for freewheels.
+/// docs/theory/load-dependent.md, rule 4
+template <class T>
+bool stop_jammed(Workspace<T>& ws, int jammed) {
+  return least_impulses(
+      ws, [&](int c) { return c == jammed || (ws.contact.mode[c] == locked && !contact_one_way(ws, c)); });
+}
+
+/// Transmissions keep their rates together while prescribed speeds jump; x: mass-weighted.
+template <class T>
+void jump_beside(Workspace<T>& ws, T* x) {
+  Ratios<T>& r = ws.ratios;
+  const int nv = int(ws.sys.speeds);
+  T *wanted = r.wanted, *taken = r.pull;
+  for (int a = 0; a < r.n; ++a) {
+    const int d = first_of(ws, a);
+    wanted[a] = T(0);
+    for (int p = 0; p < ws.sys.prescribed; ++p) {
+      const T share = prescribed_share(ws, d, p) - r.value[a] * prescribed_share(ws, d + 1, p);
+      wanted[a] -= share * (ws.in.prescribed[p] - ws.in.prescribed_before[p]);
+    }
+  }
+  without_followers(ws, wanted);
+  for (int k = 0; k < r.rank; ++k) taken[k] = dot(nv, r.span + k * nv, x);
+  take_off_span(ws, x);
+  follow_rows(ws, wanted, x);
+  for (int k = 0; k < r.rank; ++k) r.share[k] -= taken[k];
+  torques_of_rows(ws, [](auto&&) {});
+}
+
 /// A jump of prescribed speeds: friction transmits no impulse, rigid parts follow.
 template <class T>
 void prescribed_jump(Workspace<T>& ws) {
@@ -130,7 +205,11 @@ void prescribed_jump(Workspace<T>& ws) {
     axpy(nv, -jump, ws.geometry.prescribed_momentum + p * nv, x);
   }
   if (!any) return;
+  if (ws.ratios.inside) jump_beside(ws, x);
   backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
+  meter_impulse(
+      ws, x, [&](int p) { return ws.in.prescribed[p] - ws.in.prescribed_before[p]; },
+      [&](int d) { return impulse_of_row(ws, d); });
   // impulse of each source: its column of inertia times the jumps of all node speeds
   for (int n = 0; n < sys.nodes; ++n) {
     T jump = basis_row(sys, n).times(x);
@@ -143,11 +222,12 @@ void prescribed_jump(Workspace<T>& ws) {
     }
   }
   for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
-  const double tolerance = slip_tolerance(ws);
-  for (int c = 0; c < sys.contacts; ++c) {
-    const double slip = value(rate_of(ws, int(sys.elements) + c));
-    if (abs(slip) > tolerance) ws.contact.mode[c] = slip > 0 ? forward : backward;
+  if (ws.ratios.inside) {
+    move_followers(ws);
+    for (int p = 0; p < np; ++p)
+      ws.prescribed_work[p] -= impulse_on_source(ws, p) * (ws.in.prescribed[p] + ws.in.prescribed_before[p]) * T(0.5);
   }
+  part_moved(ws, slip_tolerance(ws));
 }
 
 }  // namespace clutchwork

@@ -5,6 +5,7 @@
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/dependent.hpp>
 #include <clutchwork/contacts/eliminate.hpp>
+#include <clutchwork/contacts/loaded_set.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -20,7 +21,7 @@ bool factor_mobility(Workspace<T>& ws) {
   const int nc = int(ws.sys.contacts);
   h.near.whole = g.near.whole;
   for (int q = 0; q < nc; ++q) carrier[q] = -1;
-  for (int a = 0; a < h.n; ++a) carrier[g.place[h.contact[a]]] = a;
+  for (int a = 0; a < h.n_fixed; ++a) carrier[g.place[h.contact[a]]] = a;
   for (int q = 0; q < nc; ++q) {
     row[q] = m;
     if (carrier[q] < 0) continue;
@@ -41,10 +42,11 @@ bool factor_mobility(Workspace<T>& ws) {
 template <class T>
 void solve_locked(const Workspace<T>& ws, const T* b, T* x) {
   const Held<T>& h = ws.held;
-  for (int a = 0; a < h.n; ++a) h.turned[a] = b[h.turn[a]];
-  forward_solve(h.n, h.near, h.factor, h.turned);
-  backward_solve(h.n, h.near, h.factor, h.turned);
-  for (int a = 0; a < h.n; ++a) x[h.turn[a]] = h.turned[a];
+  const int n = h.n_fixed;
+  for (int a = 0; a < n; ++a) h.turned[a] = b[h.turn[a]];
+  forward_solve(n, h.near, h.factor, h.turned);
+  backward_solve(n, h.near, h.factor, h.turned);
+  for (int a = 0; a < n; ++a) x[h.turn[a]] = h.turned[a];
 }
 
 /// Direction of row `own` of a split in terms of the pivot rows, in pivot order.
@@ -57,11 +59,29 @@ void resolve_direction(int rank, int nv, const T* rows, const int* order, const 
   }
 }
 
-/// Label each carrier with the lowest one of its set.
+/// Whether locked contacts follow loads.
+template <class T>
+bool holds_loads(const Workspace<T>& ws) {
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    if (ws.contact.mode[ws.sys.load_contact[l]] == locked) return true;
+  }
+  return false;
+}
+
+/// Label each carrier with the lowest one of its set; where some follow loads, which any torque may make, all are one.
 template <class T>
 void join_sets(Workspace<T>& ws, int* label) {
   const int nc = int(ws.sys.contacts);
   for (int a = 0; a < ws.held.n; ++a) label[a] = a;
+  if (ws.held.n_spare > 0 && holds_loads(ws)) {
+    int lowest = -1;
+    for (int a = 0; a < ws.held.n; ++a) {
+      if (is_rigid(ws, ws.held.contact[a])) continue;
+      if (lowest < 0) lowest = a;
+      label[a] = lowest;
+    }
+    return;
+  }
   for (int s = 0; s < ws.held.n_spare; ++s) {
     int lowest = -1;
     for (int a = 0; a < ws.held.n; ++a) {
@@ -104,7 +124,7 @@ void list_sets(Workspace<T>& ws, const int* label) {
       if (label_of(s) == root) add(ws.held.spare[s], s);
     }
     const int size = at - ws.held.set_first[ws.held.n_sets - 1];
-    if (!is_few(ws.sys) && size > ws.sys.set_size) ws.held.too_many = true;
+    if (!is_few(ws.sys) && ws.sys.loads == 0 && size > ws.sys.set_size) ws.held.too_many = true;
   }
   ws.held.set_first[ws.held.n_sets] = at;
 }
@@ -144,6 +164,33 @@ void list_carriers(Workspace<T>& ws, int n) {
     if (h.number[a] < 0 && !is_rigid(ws, h.all[a])) continue;
     h.number[a] = h.n;
     h.contact[h.n++] = h.all[a];
+  }
+  h.n_fixed = h.n;
+}
+
+/// Whether the direction of a contact varies, for it moves a speed that follows from a transmission.
+template <class T>
+bool varies(const Workspace<T>& ws, int c) {
+  const T* via = ws.ratios.via + (ws.sys.elements + c) * ws.ratios.n;
+  for (int b = 0; b < ws.ratios.n; ++b) {
+    if (value(via[b]) != 0) return true;
+  }
+  return false;
+}
+
+/// As list_carriers beside transmissions, which come before all contacts: those whose directions vary are the last.
+template <class T>
+void list_carriers_beside(Workspace<T>& ws, int n) {
+  Held<T>& h = ws.held;
+  h.n = 0;
+  for (int varying = 0; varying < 2; ++varying) {
+    for (int a = 0; a < n; ++a) {
+      const bool rigid = value(ws.ratios.whole[ws.sys.elements + h.all[a]]) == 0;
+      if ((h.number[a] < 0 && !rigid) || int(varies(ws, h.all[a])) != varying) continue;
+      h.number[a] = h.n;
+      h.contact[h.n++] = h.all[a];
+    }
+    if (varying == 0) h.n_fixed = h.n;
   }
 }
 
@@ -202,7 +249,8 @@ void tie_far_spares(Workspace<T>& ws, int n) {
 template <class T>
 void list_driven(Workspace<T>& ws) {
   for (int s = 0; s < ws.held.n_spare; ++s) {
-    bool driven = false;
+    // what transmissions hold moves when their ratios do
+    bool driven = ws.ratios.n > 0;
     for (int p = 0; p < ws.sys.prescribed; ++p) driven = driven || driven_share(ws, s, p) != 0;
     if (driven) ws.held.driven[ws.held.n_driven++] = s;
   }
@@ -216,15 +264,15 @@ void list_locked(Workspace<T>& ws) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
     if (ws.contact.mode[c] == locked) h.in_set[n] = 0, h.all[n] = h.contact[n] = c, ++n;
   }
-  h.n = n;
+  h.n = h.n_fixed = n;
   h.n_spare = h.n_sets = h.n_driven = 0;
   h.too_many = false;
-  if (!ws.geometry.redundant || n < 2) return;
+  if (ws.ratios.n == 0 && (!ws.geometry.redundant || n < 2)) return;
   if (is_few(ws.sys)) {
     const int rank = split_held(ws, n);
     for (int a = 0; a < n; ++a) h.number[a] = -1;
     for (int j = 0; j < rank; ++j) h.number[h.order[j]] = 0;
-    list_carriers(ws, n);
+    ws.ratios.n > 0 ? list_carriers_beside(ws, n) : list_carriers(ws, n);
     if (h.n == n) return;
     tie_spares(ws, n, rank);
   } else {
@@ -252,8 +300,14 @@ DependentSet<T> dependent_set(Workspace<T>& ws, int k, const T* carried, T noise
     for (int r = 0; r < rank; ++r) {
       set.column[i * rank + r] = i < rank ? T(i == r ? 1 : 0) : ws.held.tie[place[i] * nc + place[r]];
     }
-    set.lower[i] = -capacity_of(ws, c, forward) - noise;
-    set.upper[i] = (contact_one_way(ws, c) ? freewheel_limit(ws, c) : capacity_of(ws, c, backward)) + noise;
+    if (ws.loads.of[c] >= 0) {
+      // a bound over its load, which is not known before the torques are
+      set.lower[i] = T(-infinity), set.upper[i] = T(infinity);
+      continue;
+    }
+    const int way = free_way(ws, c);
+    set.lower[i] = (way < 0 ? T(-infinity) : -capacity_of(ws, c, forward)) - noise;
+    set.upper[i] = (way > 0 ? freewheel_limit(ws, c) : capacity_of(ws, c, backward)) + noise;
   }
   return set;
 }
@@ -264,19 +318,42 @@ LimitLoad<T> limit_of(Workspace<T>& ws, const DependentSet<T>& set) {
   return {set, ws.set.tableau, ws.set.limit_x, ws.set.price, ws.set.basis, ws.set.place};
 }
 
-/// What set k has left of its limit load, as a share of the load: below zero it cannot hold.
+/// The loads without the torques of the locked contacts, from those with the torques of the carriers.
 template <class T>
-[[gnu::noinline]] T set_room(Workspace<T>& ws, int k, const T* carried, T noise) {
+void outer_loads(Workspace<T>& ws, const T* load, const T* carried) {
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    ws.loads.outer[l] = load[l];
+    for (int a = 0; a < ws.held.n; ++a)
+      ws.loads.outer[l] -= ws.loads.by_torque[l * ws.n_directions + ws.sys.elements + ws.held.contact[a]] * carried[a];
+  }
+}
+
+/// What set k has left of its limit load, as a share of the load: below zero it cannot hold. `load`: with the torques
+/// of the carriers.
+template <class T>
+[[gnu::noinline]] T set_room(Workspace<T>& ws, int k, const T* carried, T noise, const T* load) {
   const DependentSet<T> set = dependent_set(ws, k, carried, noise);
-  return limit_of(ws, set).solve() - T(1);
+  if (ws.sys.loads == 0 || !holds_loads(ws)) return limit_of(ws, set).solve() - T(1);
+  outer_loads(ws, load, carried);
+  LoadedLimit<T> limit = loaded_limit(ws, set, ws.held.set_member + ws.held.set_first[k], noise);
+  return solve_loaded(limit) - T(1);
 }
 
 /// Torques of all contacts of set k in place of those of its carriers: `give` takes contact and torque.
 template <class T, class Give>
 void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
+  const int* member = ws.held.set_member + ws.held.set_first[k];
+  if (ws.sys.loads > 0 && holds_loads(ws)) {
+    outer_loads(ws, ws.loads.now, carried);
+    LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
+    // what holds the largest multiple of the load holds the load in proportion
+    const T factor = solve_loaded(limit);
+    for (int i = 0; i < set.n; ++i) give(member[i], value(limit.size) > 0 ? limit.x[i] / factor : T(0));
+    return;
+  }
   Shares<T>{set, ws.set.deflection, ws.set.step, ws.set.residual, ws.set.matrix}.solve();
-  for (int i = 0; i < set.n; ++i) give(ws.held.set_member[ws.held.set_first[k] + i], set.x[i]);
+  for (int i = 0; i < set.n; ++i) give(member[i], set.x[i]);
 }
 
 /// Torques of the locked contacts, carriers given, by contact: `give` takes contact and torque.
@@ -294,15 +371,24 @@ CLUTCHWORK_INLINE void locked_torques(Workspace<T>& ws, const T* carried, Give&&
 template <class T>
 void break_set(Workspace<T>& ws, int k, const T* carried) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
+  const int* member = ws.held.set_member + ws.held.set_first[k];
+  auto force = [&](auto&& price) {
+    double most = 0;
+    for (int i = 0; i < set.n; ++i) most = larger(most, abs(value(price(i))));
+    for (int i = 0; i < set.n; ++i) {
+      const double own = value(price(i));
+      if (abs(own) > 1e-9 * most) ws.contact.forced[member[i]] = own > 0 ? backward : forward;
+    }
+  };
+  if (ws.sys.loads > 0 && holds_loads(ws)) {
+    outer_loads(ws, ws.loads.now, carried);
+    LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
+    solve_loaded(limit);
+    return force([&](int i) { return limit.price_of(i); });
+  }
   LimitLoad<T> limit = limit_of(ws, set);
   limit.solve();
-  double most = 0;
-  for (int i = 0; i < set.n; ++i) most = larger(most, abs(value(limit.price[i])));
-  for (int i = 0; i < set.n; ++i) {
-    const double price = value(limit.price[i]);
-    if (abs(price) > 1e-9 * most)
-      ws.contact.forced[ws.held.set_member[ws.held.set_first[k] + i]] = price > 0 ? backward : forward;
-  }
+  force([&](int i) { return limit.price[i]; });
 }
 
 /// Torques of the contacts that a decision has locked: what it gave them together, shared as everywhere else.
@@ -315,6 +401,14 @@ void share_decided(Workspace<T>& ws) {
     carried[a] = ws.decision.torque[ws.held.contact[a]];
     for (int s = 0; s < ws.held.n_spare; ++s)
       carried[a] += ws.held.tie[s * nc + a] * ws.decision.torque[ws.held.spare[s]];
+  }
+  // as if the carriers held all of it
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    const T* by_torque = ws.loads.by_torque + l * ws.n_directions + ws.sys.elements;
+    for (int a = 0; a < ws.held.n; ++a)
+      ws.loads.now[l] += by_torque[ws.held.contact[a]] * (carried[a] - ws.decision.torque[ws.held.contact[a]]);
+    for (int s = 0; s < ws.held.n_spare; ++s)
+      ws.loads.now[l] -= by_torque[ws.held.spare[s]] * ws.decision.torque[ws.held.spare[s]];
   }
   for (int k = 0; k < ws.held.n_sets; ++k) share_load(ws, k, carried, [&](int c, T x) { ws.decision.torque[c] = x; });
 }

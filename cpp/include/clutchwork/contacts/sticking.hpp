@@ -14,9 +14,21 @@ T load_of(const Workspace<T>& ws, int c) {
                       sys.points);
 }
 
+/// What holds a contact that follows a load against slip in a direction, at a size of slip.
+template <class T>
+Bound<T> bound_of(const Workspace<T>& ws, int c, int direction, T slip, int piece) {
+  const System& sys = ws.sys;
+  return contact_bound<T, T>(sys.contact_kind[c], ws.params + sys.contact_param[c], slip,
+                             ws.in.u + sys.contact_input[c], piece, sys.points, direction);
+}
+
 /// Static torque of a contact now that resists slip in a direction [N m].
 template <class T>
 T static_torque(const Workspace<T>& ws, int c, int direction) {
+  if constexpr (!has_lanes<T>) {
+    if (ws.loads.of[c] >= 0) [[unlikely]]
+      return bound_of(ws, c, direction, T(0), 0).at(ws.loads.now[ws.loads.of[c]]);
+  }
   return ws.contact.fault[c] == cannot_transmit ? T(0)
                                                 : contact_limit(ws.sys, c, ws.params, ws.in.u + ws.sys.contact_input[c],
                                                                 ws.in.u + ws.sys.contact_law_input[c], direction);

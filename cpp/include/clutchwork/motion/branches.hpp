@@ -33,8 +33,15 @@ void pack_branches(Workspace<T>& ws) {
   }
   ws.n_branches = ws.n_rates;
   for (int c = 0; c < nc; ++c) {
-    if (ws.contact.loaded[c] || ws.contact.compliant[c]) continue;
+    // the position of an open stop tells when it closes
+    if (ws.contact.loaded[c] || ws.contact.compliant[c] || ws.sys.contact_place[c] >= 0) continue;
     pack(ws, ne + c, ws.contact.mode[c] == open ? 0 : ws.contact.mode[c], block);
+  }
+  // rows of locked contacts whose directions vary stand behind all rates
+  ws.ratios.more_rows = 0;
+  for (int a = ws.held.n_fixed; a < ws.held.n; ++a) {
+    const int d = ne + ws.held.contact[a];
+    if (ws.branch_of[d] < 0) ws.branch[ws.n_rates + ws.ratios.more_rows++] = make_branch(ws, d, 0);
   }
 }
 

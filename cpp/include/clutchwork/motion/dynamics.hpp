@@ -5,6 +5,8 @@
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/full.hpp>
+#include <clutchwork/motion/loads.hpp>
 #include <clutchwork/motion/reduce.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/workspace.hpp>
@@ -16,6 +18,7 @@ namespace clutchwork {
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void evaluate_inline(Form& form, Real<T> t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
+  if constexpr (Form::full) return evaluate_whole(form, t, y, d, ws.full.plain.rate, ws.full.plain.torque);
   const int nz = form.nz(), n = form.n();
   inputs_with(ws, t, y + nz);
   for (int i = 0; i < n; ++i) d[i] = T(0);
@@ -45,6 +48,7 @@ template <class Form, class T = typename Form::Scalar>
 void observe(Form& form, double t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
   T *rate = ws.seen.rate, *torque = ws.seen.torque;
+  if constexpr (Form::full) return evaluate_whole(form, t, y, d, rate, torque);
   const int nz = form.nz(), n = form.n();
   inputs_with(ws, t, y + nz);
   for (int i = 0; i < n; ++i) d[i] = T(0);
@@ -59,6 +63,7 @@ void observe(Form& form, double t, const T* y, T* d) {
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void linearize(Form& form, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
+  if constexpr (Form::full) return linearize_whole(form, t, y, d, dt, edge);
   const int nz = form.nz(), n = form.n();
   inputs_with(ws, t, y + nz);
   input_slopes_at(ws, t);
@@ -89,17 +94,26 @@ CLUTCHWORK_INLINE void slopes(Form& form, const T* velocity, Edge<T>& edge) {
   for (int k = 0; k < ws.n_rates; ++k) edge.slope[k] = form.rate(k, velocity) + offset_slope(ws, k);
 }
 
+/// All inputs at (t, y), the rates among them.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void inputs_of(Form& form, Real<T> t, const T* y) {
+  if constexpr (Form::full) return full_inputs(form, t, y);
+  inputs_with(form.ws, t, y + form.nz());
+}
+
 /// Torques of many locked contacts for given branch torques: free acceleration, then one solve with the factor of their
 /// mobility.
 template <class T>
 void sparse_multipliers(const Workspace<T>& ws, const T* torque, int np, T* out) {
   const System& sys = ws.sys;
-  const int m = ws.held.n, nv = int(sys.speeds), ne = int(sys.elements);
+  const int m = ws.held.n_fixed, nv = int(sys.speeds), ne = int(sys.elements);
   T *q = ws.held.motion, *b = ws.held.rhs;
   for (int i = 0; i < nv; ++i) q[i] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
     ws.geometry.white.add(ws.branch[k].direction, torque[k], q);
   }
+  // those of varying directions are known
+  for (int a = m; a < ws.held.n; ++a) ws.geometry.white.add(ne + ws.held.contact[a], out[a], q);
   for (int p = 0; p < np; ++p) axpy(nv, -ws.in.prescribed_slope[p], ws.geometry.prescribed_momentum + p * nv, q);
   for (int a = 0; a < m; ++a) {
     const int d = ne + ws.held.contact[a];
@@ -134,20 +148,18 @@ T capacity_swing(const Workspace<T>& ws, int c, T capacity) {
       [] { return T(0); });
 }
 
-/// Multipliers of the locked contacts, their drift and their capacities at the point that was linearized last.
+/// Torques of the branches and their drift at the point that was linearized last, at y, where the speeds change with
+/// `velocity`.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
+CLUTCHWORK_INLINE void drift_torques(Form& form, const T* y, const T* velocity, const T* d, const Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
-  const int m = ws.held.n, nb = ws.n_branches;
-  if (m == 0) return;
   T *drift = ws.seen.drift, *torque = ws.seen.torque;
   const T* states = d + form.nz();
-  T size = T(0);
-  for (int k = 0; k < nb; ++k) {
+  if constexpr (Form::full) return drift_whole(form, y, velocity, states, torque, drift);
+  for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
     const Partial<T>& p = ws.jacobian.partial[k];
     torque[k] = p.torque;
-    size += abs(p.torque);
     drift[k] = p.by_rate * (edge.slope[k] - offset_slope(ws, k)) + p.by_time;
     for (int s = 0; s < b.states; ++s) drift[k] += ws.jacobian.f_state[b.state + s] * states[b.state + s];
     if constexpr (!Form::small) {
@@ -155,18 +167,65 @@ CLUTCHWORK_INLINE void sense(Form& form, const T* d, Edge<T>& edge) {
       for (int j = 0; j < nx; ++j) drift[k] += ws.shared.torque_by[k * nx + j] * states[ws.sys.states - nx + j];
     }
   }
-  multipliers(ws, torque, true, edge.multiplier);
-  multipliers(ws, drift, false, edge.drift);
+}
+
+/// Loads, how fast they change, and how far from their ends the lines are with which contacts slip that follow them.
+template <class T>
+[[gnu::noinline]] void sense_loads(Workspace<T>& ws, Edge<T>& edge) {
+  loads_of(ws, ws.seen.torque, true, ws.loads.now);
+  loads_of(ws, ws.seen.drift, false, ws.loads.drift);
+  for (int l = 0; l < ws.sys.loads; ++l) edge.load[l] = ws.loads.now[l], edge.load_drift[l] = ws.loads.drift[l];
+  for (int i = 0; i < ws.loads.n_sliding; ++i) {
+    const int l = ws.loads.sliding[i];
+    T by_load = T(0);
+    edge.clearance[l] = line_clearance(ws, l, edge.rate[ws.loads.branch[i]], by_load);
+    edge.closing[l] = by_load * ws.loads.drift[l];
+  }
+}
+
+/// Size of the time derivative of the capacity of a contact that follows a load.
+template <class T>
+T load_swing(const Workspace<T>& ws, int c, T torque) {
+  const int l = ws.loads.of[c];
+  const Bound<T> bound = bound_of(ws, c, value(torque) > 0 ? backward : forward, T(0), 0);
+  return abs(bound.slope[bound.line_at(ws.loads.now[l])] * ws.loads.drift[l]);
+}
+
+/// Multipliers of the locked contacts, their drift and their capacities there.
+template <class Form, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void sense(Form& form, const T* y, const T* velocity, const T* d, Edge<T>& edge) {
+  Workspace<T>& ws = form.ws;
+  const int m = ws.held.n;
+  if constexpr (Form::full) {
+    full_drifts(form, d, edge);
+    if (m == 0 && ws.loads.n_sliding == 0) return;
+  } else {
+    if (m == 0) return;
+  }
+  drift_torques(form, y, velocity, d, edge);
+  if constexpr (Form::full) sense_loads(ws, edge);
+  T size = T(0);
+  for (int k = 0; k < ws.n_branches; ++k) size += abs(ws.seen.torque[k]);
+  if constexpr (Form::full) {
+    varying_multipliers(ws, ws.ratios.drift, edge.multiplier, [](const auto& x) { return x.v; });
+    varying_multipliers(ws, ws.ratios.drift, edge.drift, [](const auto& x) { return x.d[0]; });
+  }
+  multipliers(ws, ws.seen.torque, true, edge.multiplier);
+  multipliers(ws, ws.seen.drift, false, edge.drift);
   for (int a = 0; a < m; ++a) {
     edge.noise[a] = T(1e-12) * size;
     edge.capacity[a] = capacity_at(ws, ws.held.contact[a], edge.multiplier[a]);
     edge.swing[a] = choose(
         load_bends(ws, ws.held.contact[a]), [&] { return capacity_swing(ws, ws.held.contact[a], edge.capacity[a]); },
         [] { return T(0); });
+    if constexpr (Form::full) {
+      const int c = ws.held.contact[a];
+      if (ws.loads.of[c] >= 0) edge.swing[a] = load_swing(ws, c, edge.multiplier[a]);
+    }
   }
   if constexpr (!has_lanes<T>) {
     for (int k = 0; k < ws.held.n_sets; ++k) [[unlikely]]
-      edge.room[k] = set_room(ws, k, edge.multiplier, edge.noise[0]);
+      edge.room[k] = set_room(ws, k, edge.multiplier, edge.noise[0], edge.load);
   }
 }
 
@@ -175,7 +234,8 @@ template <class T>
 double room_ahead(Workspace<T>& ws, int k, const Edge<T>& edge, double time) {
   T* carried = ws.held.carried;
   for (int a = 0; a < ws.held.n; ++a) carried[a] = edge.multiplier[a] + T(time) * edge.drift[a];
-  return value(set_room(ws, k, carried, edge.noise[0]));
+  for (int l = 0; l < ws.sys.loads; ++l) ws.loads.drift[l] = edge.load[l] + T(time) * edge.load_drift[l];
+  return value(set_room(ws, k, carried, edge.noise[0], ws.loads.drift));
 }
 
 /// v = Z z + Y u.
@@ -200,6 +260,7 @@ void expand(Form& form, const T* z, T* v, bool offset = true) {
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void floor_states(Form& form, const T* y) {
   Workspace<T>& ws = form.ws;
+  if constexpr (Form::full) return floor_whole(form, y);
   const Real<T> rtol = ws.options.rtol, atol = ws.options.atol;
   for (int i = 0; i < form.ns(); ++i) ws.reduced.floor[i] = atol;
   for (int k = 0; k < ws.n_branches; ++k) {

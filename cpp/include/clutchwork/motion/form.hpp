@@ -16,7 +16,7 @@ struct KnownSize {
 template <class T, class Size>
 struct DenseForm : Size {
   using Scalar = T;
-  static constexpr bool small = true;
+  static constexpr bool small = true, full = false;
   static constexpr int fixed_size = Size::most, own_states = Size::most - Size::most_speeds;
   using Size::ns, Size::nz;
   Workspace<T>& ws;
@@ -102,7 +102,7 @@ using SmallForm = DenseForm<T, KnownSize<NZ, NS>>;
 template <class T>
 struct SparseForm {
   using Scalar = T;
-  static constexpr bool small = false;
+  static constexpr bool small = false, full = false;
   static constexpr int fixed_size = 0, own_states = -1;
   Workspace<T>& ws;
   T* w;

@@ -2,6 +2,7 @@
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/kinds.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/workspace.hpp>
@@ -10,7 +11,8 @@
 namespace clutchwork {
 
 /// Sizes of the matrix of derivatives. Rows: torque of each direction, rate of each state, static torque of each
-/// contact, most torque of each contact, then least one, value of each flow. Columns: rate of each direction, each
+/// contact, most torque of each contact, then least one, value of each flow, ratio of each transmission, then its time
+/// derivative with the rates of what it depends on held. Columns: rate of each direction, each
 /// state, each signal, then the value itself.
 struct LocalSizes {
   std::int64_t directions, states, contacts, signals;
@@ -21,7 +23,7 @@ struct LocalSizes {
         states(s.states),
         contacts(s.contacts),
         signals(s.inputs),
-        rows(directions + states + 3 * contacts + s.flows),
+        rows(directions + states + 3 * contacts + s.flows + 2 * s.transmissions),
         columns(directions + states + signals + 1) {}
 };
 
@@ -49,23 +51,32 @@ class LocalDerivatives {
   void fill() {
     for (std::int64_t i = 0; i < n_.rows * n_.columns; ++i) out_[i] = 0;
     inputs_with(ws_, ws_.time, ws_.state);
+    present_rates(ws_);
     T *rate = ws_.seen.rate, *torque = ws_.seen.torque, *d = ws_.seen.state_rates;
     for (int i = 0; i < sys_.states; ++i) d[i] = T(0);
     for (int k = 0; k < ws_.n_branches; ++k) {
       rate[k] = rate_of(ws_, ws_.branch[k].direction);
-      torque[k] = branch_torque_once(ws_, ws_.branch[k], rate[k], ws_.state, d);
+      const Branch<T>& b = ws_.branch[k];
+      if (b.ways == 1) torque[k] = branch_torque_once(ws_, b, rate[k], ws_.state, d);
+    }
+    for (int k = 0; k < ws_.n_branches; ++k) {
+      const Branch<T>& b = ws_.branch[k];
+      if (b.ways > 1) element_torques(ws_, b, rate + k, ws_.state + b.state, b.input, d + b.state, torque + k);
     }
     if (sys_.shared > 0) shared_rates(ws_, rate, torque, ws_.state, d);
-    for (int k = 0; k < ws_.n_branches; ++k) fill_branch(k);
+    for (int k = 0; k < ws_.n_branches; ++k) {
+      if (ws_.branch[k].ways > 0) fill_branch(k);
+    }
     for (int h = 0; h < sys_.heats; ++h) fill_heat(h);
     for (int f = 0; f < sys_.flows; ++f) fill_flow(f);
+    for (int a = 0; a < sys_.transmissions; ++a) fill_ratio(a);
     for (int i = 0; i < sys_.processes; ++i) fill_process(i);
     for (int c = 0; c < sys_.contacts; ++c) fill_bounds(c);
   }
 
  private:
   static constexpr int most_own = most_own_states > 0 ? most_own_states : 1;
-  static constexpr int first_input = 1 + most_own, N = first_input + 2 * most_inputs;
+  static constexpr int first_own = most_ways, first_input = first_own + most_own, N = first_input + 2 * most_inputs;
   using S = Dual<T, N>;
 
   Workspace<T>& ws_;
@@ -82,21 +93,21 @@ class LocalDerivatives {
   double* row_of_flow(int f) { return row_of_capacity(int(3 * n_.contacts) + f); }
   double& value_in(double* row) { return row[n_.columns - 1]; }
 
-  /// A branch at the present point, over its rate, its own states and its inputs.
+  /// A branch at the present point, over the rates of its ways, its own states and its inputs.
   struct Point {
-    S rate, own[most_own], own_rates[most_own], input[most_inputs], law_input[most_inputs];
+    S rate[most_ways], own[most_own], own_rates[most_own], input[most_inputs], law_input[most_inputs];
   };
-  void place(Point& at, const Branch<T>& b, T rate) const {
-    at.rate = S::variable(rate, 0);
-    for (int i = 0; i < b.states; ++i) at.own[i] = S::variable(ws_.state[b.state + i], 1 + i);
+  void place(Point& at, const Branch<T>& b, const T* rate) const {
+    for (int i = 0; i < b.ways; ++i) at.rate[i] = S::variable(rate[i], i);
+    for (int i = 0; i < b.states; ++i) at.own[i] = S::variable(ws_.state[b.state + i], first_own + i);
     for (int i = 0; i < b.inputs; ++i) at.input[i] = S::variable(b.input[i], first_input + i);
     for (int i = 0; i < b.law_inputs; ++i) at.law_input[i] = S::variable(b.law_input[i], first_input + most_inputs + i);
   }
 
   /// row += factor * derivatives of f, and its value.
   void add(double* row, T factor, const S& f, const Branch<T>& b) {
-    row[b.direction] += value(factor * f.d[0]);
-    for (int i = 0; i < b.states; ++i) row[n_.directions + b.state + i] += value(factor * f.d[1 + i]);
+    for (int i = 0; i < b.ways; ++i) row[b.direction + i] += value(factor * f.d[i]);
+    for (int i = 0; i < b.states; ++i) row[n_.directions + b.state + i] += value(factor * f.d[first_own + i]);
     for (int i = 0; i < b.inputs; ++i) add_reference(row, factor * f.d[first_input + i], int(b.input - ws_.in.u) + i);
     for (int i = 0; i < b.law_inputs; ++i)
       add_reference(row, factor * f.d[first_input + most_inputs + i], int(b.law_input - ws_.in.u) + i);
@@ -124,7 +135,7 @@ class LocalDerivatives {
   /// row += factor * derivatives of the heat of branch k [W], and its value where that is wanted.
   void add_heat(double* row, T factor, int k, bool valued) {
     const Branch<T>& b = ws_.branch[k];
-    const T rate = ws_.seen.rate[k], torque = ws_.seen.torque[k];
+    const T *rate = ws_.seen.rate + k, *torque = ws_.seen.torque + k;
     const double before = value_in(row);
     const bool own =
         b.law < 0 && visit_torque(
@@ -135,39 +146,58 @@ class LocalDerivatives {
                              Point at;
                              place(at, b, rate);
                              const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-                             add(row, factor, E::heat(p, At<S>{at.rate, at.own, at.input, b.piece, ws_.sys.points}), b);
+                             const At<S> here{at.rate[0], at.own, at.input, b.piece, ws_.sys.points, at.rate};
+                             add(row, factor, E::heat(p, here), b);
                              return true;
                            }
                            return false;
                          });
-    if (!own) {
-      const double* own_torque = row_of_torque(b.direction);
-      for (std::int64_t i = 0; i + 1 < n_.columns; ++i) row[i] -= value(factor * rate) * own_torque[i];
-      row[b.direction] -= value(factor * torque);
-      value_in(row) -= value(factor * rate * torque);
+    for (int w = 0; w < b.ways && !own; ++w) {
+      const double* own_torque = row_of_torque(b.direction + w);
+      for (std::int64_t i = 0; i + 1 < n_.columns; ++i) row[i] -= value(factor * rate[w]) * own_torque[i];
+      row[b.direction + w] -= value(factor * torque[w]);
+      value_in(row) -= value(factor * rate[w] * torque[w]);
     }
     if (!valued) value_in(row) = before;
+  }
+
+  /// Ratio of transmission a, and its time derivative with the rates of its states and inputs held.
+  void fill_ratio(int a) {
+    using D = Dual<S, 1>;
+    const int k = ws_.branch_of[first_of(ws_, a)];
+    const Branch<T>& b = ws_.branch[k];
+    Point at;
+    place(at, b, ws_.seen.rate + k);
+    visit_transmission(ws_, a, [&](auto tag, const auto& p) {
+      using E = typename decltype(tag)::type;
+      D own[E::states > 0 ? E::states : 1], input[E::inputs > 0 ? E::inputs : 1];
+      if constexpr (E::states > 0)
+        E::state_rates(p, At<S>{at.rate[0], at.own, at.input, b.piece, sys_.points, at.rate}, at.own_rates);
+      for (int i = 0; i < E::states; ++i) own[i] = D(at.own[i]), own[i].d[0] = S(value(at.own_rates[i]));
+      for (int i = 0; i < E::inputs; ++i) {
+        input[i] = D(at.input[i]);
+        input[i].d[0] = S(value(slope_of_input(ws_, int(b.input - ws_.in.u) + i)));
+      }
+      const D ratio = E::ratio(p, At<D>{D(S(0)), own, input, b.piece, sys_.points});
+      const std::int64_t first = n_.rows - 2 * sys_.transmissions;
+      add(out_ + (first + a) * n_.columns, T(1), ratio.v, b);
+      add(out_ + (first + sys_.transmissions + a) * n_.columns, T(1), ratio.d[0], b);
+    });
   }
 
   void fill_branch(int k) {
     const Branch<T>& b = ws_.branch[k];
     Point at;
-    place(at, b, ws_.seen.rate[k]);
-    S f{};
+    place(at, b, ws_.seen.rate + k);
+    S f[most_ways];
     if (b.law < 0) {
-      f = visit_torque(b.kind, [&](auto tag) {
-        using E = typename decltype(tag)::type;
-        const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-        const At<S> here{at.rate, at.own, at.input, b.piece, ws_.sys.points};
-        if constexpr (E::states > 0) E::state_rates(p, here, at.own_rates);
-        return E::torque(p, here);
-      });
+      element_torques(ws_, b, at.rate, at.own, at.input, at.own_rates, f);
     } else if (b.compliant) {
-      f = bending_torque<most_own_states, T, S>(ws_, b, at.rate, at.own, at.input, at.law_input, at.own_rates);
+      f[0] = bending_torque<most_own_states, T, S>(ws_, b, at.rate[0], at.own, at.input, at.law_input, at.own_rates);
     } else {
-      f = sliding_torque<T, S>(ws_, b, at.rate, at.input, at.law_input);
+      f[0] = sliding_torque<T, S>(ws_, b, at.rate[0], at.input, at.law_input);
     }
-    add(row_of_torque(b.direction), T(1), f, b);
+    for (int i = 0; i < b.ways; ++i) add(row_of_torque(b.direction + i), T(1), f[i], b);
     for (int i = 0; i < b.states; ++i) add(row_of_state(b.state + i), T(1), at.own_rates[i], b);
   }
 
@@ -203,7 +233,7 @@ class LocalDerivatives {
       for (int i = 0; i < E::inputs; ++i) input[i] = D::variable(ws_.in.u[refs + i], E::states + i);
       for (int i = 0; i < E::states; ++i) own[i] = D::variable(ws_.state[first + i], i);
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws_.params + sys_.process_param[c]);
-      E::state_rates(p, At<D>{D(0), own, input, 0, sys_.points}, rates);
+      E::state_rates(p, process_at<T, D>(ws_, c, own, input), rates);
       for (int s = 0; s < E::states; ++s) {
         double* row = row_of_state(first + s);
         for (int j = 0; j < E::states; ++j) row[n_.directions + first + j] += value(rates[s].d[j]);
@@ -224,8 +254,13 @@ class LocalDerivatives {
       value_in(row_of_most(c)) = infinity, value_in(row_of_least(c)) = -infinity;
       return;
     }
-    add_static(row_of_least(c), c, forward, -1);
-    if (contact_one_way(ws_, c)) {
+    const int way = free_way(ws_, c);
+    if (way < 0) {
+      value_in(row_of_least(c)) = -infinity;
+    } else {
+      add_static(row_of_least(c), c, forward, -1);
+    }
+    if (way > 0) {
       value_in(row_of_most(c)) = value(freewheel_limit(ws_, c));
     } else {
       add_static(row_of_most(c), c, backward, 1);
@@ -236,7 +271,8 @@ class LocalDerivatives {
   void add_static(double* row, int c, int resisted, int sign) {
     const Branch<T> b = make_branch(ws_, int(sys_.elements) + c, 0);
     Point at;
-    place(at, b, T(0));
+    const T still = T(0);
+    place(at, b, &still);
     const S hold = visit_law(b.law, [&](auto tag) {
       using L = typename decltype(tag)::type;
       return L::hold(Lifted<L, S, T>(b.law_params).get(), At<S>{S(0), nullptr, at.law_input, 0, sys_.points});

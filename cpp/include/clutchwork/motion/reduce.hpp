@@ -14,14 +14,14 @@ namespace clutchwork {
 /// that is left.
 template <class T>
 int split_locked(Workspace<T>& ws) {
-  for (int a = 0; a < ws.held.n; ++a) ws.held.all[a] = ws.held.contact[a];
-  return split_held(ws, ws.held.n);
+  for (int a = 0; a < ws.held.n_fixed; ++a) ws.held.all[a] = ws.held.contact[a];
+  return split_held(ws, ws.held.n_fixed);
 }
 
 /// Multipliers as a linear map of branch torques and prescribed accelerations; few speeds only.
 template <class T>
 void map_multipliers(Workspace<T>& ws) {
-  const int m = ws.held.n, ne = int(ws.sys.elements), np = int(ws.sys.prescribed), nv = int(ws.sys.speeds);
+  const int m = ws.held.n_fixed, ne = int(ws.sys.elements), np = int(ws.sys.prescribed), nv = int(ws.sys.speeds);
   const Compressed<T>& white = ws.geometry.white;
   T *b = ws.held.rhs, *x = ws.held.solved;
   for (int k = 0; k < ws.n_branches; ++k) {
@@ -57,7 +57,7 @@ void free_part(const Workspace<T>& ws, const T* momentum, T* x) {
 /// The same for many speeds, without a basis: less what the carriers take.
 template <class T>
 void far_free_part(Workspace<T>& ws, const T* momentum, T* x) {
-  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), m = ws.held.n;
+  const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), m = ws.held.n_fixed;
   const Compressed<T>& white = ws.geometry.white;
   T *share = ws.held.rhs, *size = ws.held.solved;
   for (int i = 0; i < nv; ++i) x[i] = -momentum[i];
@@ -73,7 +73,7 @@ void far_free_part(Workspace<T>& ws, const T* momentum, T* x) {
 template <class T>
 void map_prescribed(Workspace<T>& ws) {
   const System& sys = ws.sys;
-  const int nv = int(sys.speeds), np = int(sys.prescribed), ne = int(sys.elements), m = ws.held.n;
+  const int nv = int(sys.speeds), np = int(sys.prescribed), ne = int(sys.elements), m = ws.held.n_fixed;
   for (int p = 0; p < np; ++p) {
     T* x = ws.reduced.column;
     const T* momentum = ws.geometry.prescribed_momentum + p * nv;
@@ -92,7 +92,7 @@ template <class T>
 void reduce_rates(Workspace<T>& ws) {
   const System& sys = ws.sys;
   const int np = int(sys.prescribed), nz = ws.reduced.nz;
-  for (int k = 0; k < ws.n_rates; ++k) {
+  for (int k = 0; k < row_count(ws); ++k) {
     const int d = ws.branch[k].direction;
     const MatrixRow row = rate_row(sys, d);
     for (int p = 0; p < np; ++p) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -61,6 +62,27 @@ void direction_inputs(Workspace<T>& ws, const T* rate) {
   }
 }
 
+/// The element behind a reference to a rate.
+template <class T>
+CLUTCHWORK_INLINE int element_behind(const Workspace<T>& ws, int ref) {
+  return ws.sys.input_refs[ref] - int(ws.sys.inputs + ws.sys.shared);
+}
+
+/// References to rates at the present speeds.
+template <class T>
+void present_rates(Workspace<T>& ws) {
+  for (int i = 0; i < ws.in.n_rate_refs; ++i) {
+    const int ref = ws.in.rate_ref[i];
+    ws.in.u[ref] = rate_of(ws, element_behind(ws, ref));
+  }
+}
+
+/// Process i at its states and inputs, on the piece that it is on.
+template <class T, class S>
+CLUTCHWORK_INLINE At<S> process_at(const Workspace<T>& ws, int i, const S* own, const S* input) {
+  return At<S>{S(0), own, input, ws.shared.piece[i], ws.sys.points};
+}
+
 template <class T>
 T flow_value(const Workspace<T>& ws, int f) {
   const System& sys = ws.sys;
@@ -78,7 +100,12 @@ template <class T>
   T* x = d + sys.states - sys.shared;
   for (int j = 0; j < sys.shared; ++j) x[j] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
-    ws.shared.heat[k] = branch_heat(ws, ws.branch[k], rate[k], state, Dual<T, 1>(torque[k])).v;
+    const Branch<T>& b = ws.branch[k];
+    if (b.ways == 1) {
+      ws.shared.heat[k] = branch_heat(ws, b, rate[k], state, Dual<T, 1>(torque[k])).v;
+    } else {
+      ws.shared.heat[k] = b.ways == 0 ? T(0) : element_heat(ws, b, rate + k, state + b.state, b.input, torque + k);
+    }
   }
   direction_inputs(ws, rate);
   for (int h = 0; h < sys.heats; ++h) {
@@ -94,8 +121,8 @@ template <class T>
     visit_process(sys.process_kind[i], [&](auto tag) {
       using E = typename decltype(tag)::type;
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.process_param[i]);
-      const At<T> at{T(0), state + sys.process_state[i], ws.in.u + sys.process_input[i], 0, sys.points};
-      E::state_rates(p, at, d + sys.process_state[i]);
+      const T *own = state + sys.process_state[i], *input = ws.in.u + sys.process_input[i];
+      E::state_rates(p, process_at(ws, i, own, input), d + sys.process_state[i]);
     });
   }
 }
@@ -222,7 +249,7 @@ void linearize_process(Workspace<T>& ws, SharedRow<T>& row, int c, const T* stat
     for (int i = 0; i < E::inputs; ++i) input[i] = S::variable(ws.in.u[sys.process_input[c] + i], E::states + i);
     for (int i = 0; i < E::states; ++i) own[i] = S::variable(state[sys.process_state[c] + i], i);
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.process_param[c]);
-    E::state_rates(p, At<S>{S(0), own, input, 0, sys.points}, rates);
+    E::state_rates(p, process_at<T, S>(ws, c, own, input), rates);
     const int at = sys.process_state[c] - row.first;
     for (int s = 0; s < E::states; ++s) {
       for (int j = 0; j < E::states; ++j) ws.shared.by_shared[(at + s) * nx + at + j] += rates[s].d[j];

@@ -6,6 +6,12 @@
 /// Reduced coordinates for many speeds: a subset of v, each locked contact eliminating one; everything stays sparse.
 namespace clutchwork {
 
+/// Rows over the reduced speeds: rates, then locked contacts whose directions vary.
+template <class T>
+int row_count(const Workspace<T>& ws) {
+  return ws.n_rates + ws.ratios.more_rows;
+}
+
 /// Rates of the branches: rows.rate. False: there is no room.
 template <class T>
 bool compress_rates(Workspace<T>& ws) {
@@ -15,7 +21,7 @@ bool compress_rates(Workspace<T>& ws) {
   Compressed<T>& rate = ws.rows.rate;
   int at = 0;
   bool fits = true;
-  for (int k = 0; k < ws.n_rates; ++k) {
+  for (int k = 0; k < row_count(ws); ++k) {
     rate.first[k] = at;
     const MatrixRow given = rate_row(sys, ws.branch[k].direction);
     WorkRow<T> row(ws.reduced.row, ws.reduced.nz);
@@ -29,7 +35,7 @@ bool compress_rates(Workspace<T>& ws) {
       if (fits) rate.col[at] = j, rate.val[at++] = x;
     });
   }
-  rate.first[ws.n_rates] = at;
+  rate.first[row_count(ws)] = at;
   return fits;
 }
 

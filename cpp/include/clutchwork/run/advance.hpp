@@ -4,6 +4,7 @@
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/form.hpp>
 #include <clutchwork/motion/geometry.hpp>
@@ -14,6 +15,8 @@
 #include <clutchwork/run/methods.hpp>
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/phase.hpp>
+#include <clutchwork/run/processes.hpp>
+#include <clutchwork/run/settle.hpp>
 #include <clutchwork/run/switch.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -31,9 +34,10 @@ Status run_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink)
   return status;
 }
 
-/// Exact sizes for small systems, one sparse form for the rest.
+/// The full form for systems that need it; exact sizes for small systems, one sparse form for the rest.
 template <class T, int NZ = 1, int NS = 0>
 Status dispatch(Workspace<T>& ws, double t_end, Sink& sink) {
+  if (ws.sys.full[0] != 0) return run_phase<FullForm<T>>(ws, t_end, sink);
   if (ws.reduced.is_sparse) return run_phase<SparseForm<T>>(ws, t_end, sink);
   if constexpr (NZ > small_speeds) {
     return Status::no_mode;
@@ -53,8 +57,11 @@ void take_initial(Workspace<T>& ws) {
   for (int i = 0; i < sys.states; ++i) ws.state[i] = T(sys.initial_state[i]);
   for (int i = 0; i < sys.nodes; ++i) ws.angle[i] = T(sys.initial_angle[i]);
   for (int d = 0; d < ws.n_directions; ++d) ws.work[d] = T(0), ws.piece[d] = 0;
+  for (int i = 0; i < sys.processes; ++i) ws.shared.piece[i] = 0;
   for (int d = 0; d < ws.n_directions; ++d) ws.heading[d] = forward, ws.branch_of[d] = -1;
   for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_work[p] = T(0);
+  for (int i = 0; i < sys.supplies; ++i) ws.supplied[i] = T(0);
+  for (int m = 0; m < sys.meters; ++m) ws.metered[m] = T(0);
 }
 
 /// Every contact before the first decision: it slips, or is open.
@@ -67,6 +74,9 @@ void start_contacts(Workspace<T>& ws) {
     ws.guard.turned_at[c] = -infinity;
     const double slip = value(rate_of(ws, int(ws.sys.elements) + c));
     ws.contact.mode[c] = abs(slip) <= slip_tolerance(ws) ? open : slip > 0 ? forward : backward;
+    ws.contact.side[c] = ws.contact.struck[c] = 0;
+    ws.contact.met_at[c] = -infinity;
+    if (is_stop(ws, c)) ws.contact.mode[c] = open;
     ws.happened.mode[c] = ws.contact.mode[c];
   }
 }
@@ -75,6 +85,7 @@ void start_contacts(Workspace<T>& ws) {
 template <class T>
 bool start(Workspace<T>& ws) {
   if (!prepare_geometry(ws)) return false;
+  prepare_loads(ws);
   ws.time = ws.options.t_start;
   ws.statistics = {};
   ws.events.n = 0;
@@ -83,10 +94,13 @@ bool start(Workspace<T>& ws) {
   take_initial(ws);
   load_inputs(ws, ws.time);
   shared_inputs(ws, ws.state);
+  present_rates(ws);
   keep_prescribed(ws);
   input_slopes_at(ws, ws.time);
   start_contacts(ws);
   find_pieces(ws);
+  list_processes(ws);
+  find_process_pieces(ws);
   refresh_loads(ws);
   ws.happened.cause = Cause::initial;
   ws.happened.contact = -1;
@@ -114,8 +128,11 @@ Status take_outside(Workspace<T>& ws) {
   ws.params_changed = false;
   note_torques(ws);
   keep_prescribed(ws);
+  keep_ratios(ws);
   load_inputs(ws, ws.time);
   input_slopes_at(ws, ws.time);
+  find_process_pieces(ws);
+  find_pieces(ws);
   refresh_loads(ws);
   ws.happened.cause = Cause::input;
   ws.happened.contact = -1;

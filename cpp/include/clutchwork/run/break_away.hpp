@@ -18,7 +18,9 @@ namespace clutchwork {
 template <class T>
 CLUTCHWORK_INLINE Real<T> margin(const Workspace<T>& ws, int a, T torque, T capacity) {
   capacity += ws.here.noise[a];
-  if (!contact_one_way(ws, ws.held.contact[a])) return value(capacity) - abs(value(torque));
+  const int way = free_way(ws, ws.held.contact[a]);
+  if (way == 0) return value(capacity) - abs(value(torque));
+  if (way < 0) return value(capacity - torque);
   return smaller(value(torque + capacity), value(freewheel_limit(ws, ws.held.contact[a]) - torque));
 }
 
@@ -50,6 +52,7 @@ void torques_at(Form& form, Step<Form>& step, double s) {
   if (ws.sys.prescribed > 0) input_slopes_at(ws, t);
   observe(form, t, step.point(), step.slope());
   multipliers(ws, ws.seen.torque, true, ws.seen.carried);
+  if (ws.sys.loads > 0) loads_of(ws, ws.seen.torque, true, ws.loads.now);
   ++ws.statistics.locations;
 }
 
@@ -116,6 +119,21 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
   hit = {Hit::multiplier, who, s, -1};
 }
 
+/// The same for a set with contacts that follow loads: its limit load has kinks where a load changes its sign. Far from
+/// it at both ends, ahead of both and in the middle, it is taken to be far from it in between.
+template <class Form, class Integrator>
+[[gnu::noinline]] void find_loaded_limit(Form& form, Step<Form>& step, int k, double least, Hit& hit) {
+  auto& ws = form.ws;
+  if (!step.dense) Integrator::prepare_dense(form, step);
+  auto f = [&](double s) {
+    torques_at(form, step, s);
+    return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
+  };
+  if (least >= ample - 1 && f(0.5) >= ample - 1) return;
+  const double s = first_dip(f, value(ws.here.room[k]), value(ws.there.room[k]), hit.s);
+  if (is_first(hit, s)) hit = {Hit::set, k, s, -1};
+}
+
 /// Where a dependent set of locked contacts reaches its limit load.
 template <class Form, class Integrator>
 [[gnu::noinline]] void find_set_limit(Form& form, Step<Form>& step, Hit& hit) {
@@ -126,16 +144,50 @@ template <class Form, class Integrator>
     const double coming = room_ahead(ws, k, ws.here, step.h), gone = room_ahead(ws, k, ws.there, -step.h);
     const double change = larger(abs(after - before), larger(before - coming, after - gone));
     bool bends = false;
+    if (ws.sys.loads > 0 && holds_loads(ws)) {
+      find_loaded_limit<Form, Integrator>(form, step, k, smaller(smaller(before, after), smaller(coming, gone)), hit);
+      continue;
+    }
     for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
       bends = bends || load_bends(ws, ws.held.set_member[i]);
     if (!bends && smaller(before, after) > change) continue;
     if (!step.dense) Integrator::prepare_dense(form, step);
     auto f = [&](double s) {
       torques_at(form, step, s);
-      return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0]));
+      return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
     };
     const double s = first_crossing(f, before, after, hit.s);
     if (is_first(hit, s)) hit = {Hit::set, k, s, -1};
+  }
+}
+
+/// Slip of a locked contact at s, which transmissions hold.
+template <class Form, class T = typename Form::Scalar>
+double slip_beside(Form& form, Step<Form>& step, int c, double s) {
+  Workspace<T>& ws = form.ws;
+  interpolate(form, step, s, step.point());
+  inputs_at(ws, step.t + s * step.h);
+  expand(form, step.point(), ws.out.v);
+  const int d = int(ws.sys.elements) + c;
+  T slip = rate_row(ws.sys, d).times(ws.out.v);
+  for (int p = 0; p < ws.sys.prescribed; ++p) slip += prescribed_share(ws, d, p) * ws.in.prescribed[p];
+  return value(slip);
+}
+
+/// Where a transmission parts what it held together itself. Inside a step the interpolant keeps its row less exactly
+/// than at the ends, so that the slip must leave zero there.
+template <class Form, class Integrator>
+void find_parting_beside(Form& form, Step<Form>& step, Hit& hit) {
+  auto& ws = form.ws;
+  if (!step.dense) Integrator::prepare_dense(form, step);
+  for (int i = 0; i < ws.held.n_driven; ++i) {
+    const int spare = ws.held.driven[i], c = ws.held.spare[spare];
+    const double end = abs(slip_beside(form, step, c, 1.0)), zero = slip_tolerance(ws);
+    if (end <= zero) continue;
+    const double clear = larger(zero, 0.01 * end);
+    auto f = [&](double s) { return clear - abs(slip_beside(form, step, c, s)); };
+    const double s = first_crossing(f, clear, clear - end, hit.s);
+    if (is_first(hit, s)) hit = {Hit::parting, spare, s, -1};
   }
 }
 
@@ -143,6 +195,7 @@ template <class Form, class Integrator>
 template <class Form, class Integrator>
 void find_parting(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
+  if (ws.ratios.n > 0) return find_parting_beside<Form, Integrator>(form, step, hit);
   const double zero = slip_tolerance(ws);
   for (int i = 0; i < ws.held.n_driven; ++i) {
     auto f = [&](double s) {

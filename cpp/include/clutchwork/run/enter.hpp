@@ -5,11 +5,14 @@
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/branches.hpp>
 #include <clutchwork/motion/reduce.hpp>
 #include <clutchwork/motion/sparse.hpp>
+#include <clutchwork/run/gaps.hpp>
 #include <clutchwork/run/methods.hpp>
+#include <clutchwork/run/processes.hpp>
 #include <clutchwork/run/stiffness.hpp>
 #include <clutchwork/run/watch.hpp>
 #include <clutchwork/workspace.hpp>
@@ -59,8 +62,8 @@ Method choose_method(Workspace<T>& ws) {
   // speeds without inertia are algebraic: only a method for stiff motion carries them
   if (has_massless(ws)) return is_for_stiff(wanted) ? wanted : first_method(true);
   if (wanted != Method::auto_) return wanted;
-  // shared states may be stiff
-  return first_method(ws.sys.shared > 0 || !is_soft(ws));
+  // shared states may be stiff, and so may what several ways couple
+  return first_method(ws.sys.full[0] != 0 || ws.sys.shared > 0 || !is_soft(ws));
 }
 
 /// Contacts without load forget: the bristles of their laws are straight when they close again.
@@ -83,7 +86,7 @@ void turn_jumped(Workspace<T>& ws) {
     const T rate = rate_of(ws, b.direction);
     const int heading = value(rate) > 0 ? forward : backward;
     if (abs(value(rate)) <= slip_tolerance(ws) || heading == ws.heading[b.direction] || !law_turns(b)) continue;
-    ws.piece[b.direction] = b.piece = law_cross(ws, b, rate, turned, ws.state);
+    ws.piece[b.direction] = b.piece = law_cross(ws, b, PresentRates<T>(ws, b).at, turned, ws.state);
     ws.heading[b.direction] = heading;
   }
 }
@@ -93,6 +96,7 @@ template <class T>
 bool reduce_motion(Workspace<T>& ws) {
   const bool few = is_few(ws.sys);
   map_prescribed(ws);
+  if (ws.sys.loads > 0) map_loads(ws);
   ws.held.mapped = few && !ws.reduced.is_sparse;
   if (ws.held.mapped) map_multipliers(ws);
   if (few && ws.reduced.is_sparse && !eliminate_locked(ws)) return false;
@@ -113,19 +117,28 @@ bool count_reduced(Workspace<T>& ws) {
   return true;
 }
 
+/// The locked contacts, sorted by what transmissions leave of their directions.
+template <class T>
+void list_locked_now(Workspace<T>& ws) {
+  const BesideRatios<T> beside(ws);
+  list_locked(ws);
+}
+
 /// Reduced motion of the present modes; the state goes to ws.reduced.y. False: the inertias differ too much to tell
 /// them apart.
 template <class T>
 bool enter_mode(Workspace<T>& ws) {
   const System& sys = ws.sys;
   relax_open(ws);
-  list_locked(ws);
+  list_locked_now(ws);
   pack_branches(ws);
   list_laws(ws);
+  list_processes(ws);
+  list_gaps(ws);
   turn_jumped(ws);
   if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);
-  ws.reduced.is_sparse = sys.states > most_small_states(ws.reduced.method) || sys.shared > 0 ||
+  ws.reduced.is_sparse = sys.full[0] != 0 || sys.states > most_small_states(ws.reduced.method) || sys.shared > 0 ||
                          !is_small_size(ws.reduced.nz, sys.states) || has_massless(ws);
   if (!factor_mobility(ws) || !reduce_motion(ws)) return false;
   list_lines(ws);

@@ -29,7 +29,7 @@ bool crowds(Workspace<T>& ws, std::int64_t count) {
   constexpr int most = 50;
   if (ws.time - ws.events.crowd_time > 1e-6) {
     ws.events.crowd_time = ws.time;
-    for (std::int64_t i = 0; i < ws.n_directions + ws.sys.inputs; ++i) ws.events.crowd[i] = 0;
+    for (std::int64_t i = 0; i < ws.n_directions + ws.sys.inputs + ws.sys.processes; ++i) ws.events.crowd[i] = 0;
   }
   return ++ws.events.crowd[count] > most;
 }
@@ -52,6 +52,15 @@ bool knots_crowd(Workspace<T>& ws) {
     return true;
   }
   return false;
+}
+
+/// Whether the pieces of a process crowd; told by its number behind those of the signals, without a component.
+template <class T>
+bool process_crowds(Workspace<T>& ws, int i) {
+  if (!crowds(ws, ws.n_directions + ws.sys.inputs + i)) return false;
+  ws.detail.component = -1;
+  ws.detail.value = double(ws.sys.inputs + i);
+  return true;
 }
 
 /// Forced break-aways last while time stands. docs/theory/contacts.md, rule 5

@@ -4,10 +4,12 @@
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/break_away.hpp>
+#include <clutchwork/run/gaps.hpp>
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/locate.hpp>
+#include <clutchwork/run/processes.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Where inside a step something changes: docs/theory/events.md.
@@ -61,21 +63,36 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   return s <= limit ? s : -1;
 }
 
+/// Whether some inputs follow the state, so that they are known inside a step from its interpolant alone.
+template <class T>
+bool inputs_follow(const Workspace<T>& ws) {
+  return ws.in.n_shared_refs > 0 || ws.in.n_rate_refs > 0;
+}
+
 /// All inputs at the share s of a step.
 template <class Form>
 void inputs_in(Form& form, Step<Form>& step, double s) {
   auto& ws = form.ws;
   const double t = step.t + s * step.h;
-  if (ws.in.n_shared_refs == 0) return inputs_at(ws, t);
+  if (!inputs_follow(ws)) return inputs_at(ws, t);
   interpolate(form, step, s, step.point());
-  inputs_with(ws, t, step.point() + form.nz());
+  inputs_of(form, t, step.point());
+}
+
+/// Time derivatives of the inputs that are rates, at the share s of a step.
+template <class Form>
+void slopes_in(Form& form, Step<Form>& step, double s) {
+  auto& ws = form.ws;
+  interpolate_slope(form, step, s, step.slope());
+  input_slopes_at(ws, step.t + s * step.h);
+  rate_slopes(ws, [&](int k) { return form.rate(k, step.slope()) + offset_slope(ws, k); });
 }
 
 /// Where a contact fails.
 template <class Form, class Integrator>
 void find_fault(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
-  if (ws.in.n_shared_refs > 0 && !step.dense) Integrator::prepare_dense(form, step);
+  if (inputs_follow(ws) && !step.dense) Integrator::prepare_dense(form, step);
   for (int i = 0; i < ws.guard.n_faulty; ++i) {
     const int c = ws.guard.faulty[i];
     if (ws.contact.fault[c] != sound) continue;
@@ -99,7 +116,7 @@ void find_exit(Form& form, Step<Form>& step, Hit& hit) {
     const int c = ws.guard.bounded[i], k = ws.branch_of[ws.sys.elements + c];
     T seen = T(0);
     auto room = [&](double s, const T* y) {
-      inputs_with(ws, step.t + s * step.h, y + form.nz());
+      inputs_of(form, step.t + s * step.h, y);
       const T slip = k < 0 ? T(0) : form.rate(k, y) + offset_rate(ws, k);
       return value(table_room(ws, c, slip, seen));
     };
@@ -130,22 +147,70 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
     const int k = ws.guard.switching[i];
     const Branch<T>& b = ws.branch[k];
     int who = turned;
-    const auto start = law_margin(ws, b, ws.here.rate[k], ws.here.slope[k], step.y0() + nz, step.f0() + nz, who);
-    const auto end = law_margin(ws, b, ws.there.rate[k], ws.there.slope[k], step.y1() + nz, step.f1() + nz, who);
+    inputs_of(form, step.t, step.y0());
+    rate_slopes(ws, [&](int j) { return ws.here.slope[j]; });
+    const auto start = law_margin(ws, b, ws.here.rate + k, ws.here.slope + k, step.y0() + nz, step.f0() + nz, who);
+    inputs_of(form, step.t + step.h, step.y1());
+    rate_slopes(ws, [&](int j) { return ws.there.slope[j]; });
+    const auto end = law_margin(ws, b, ws.there.rate + k, ws.there.slope + k, step.y1() + nz, step.f1() + nz, who);
     const double change = abs(value(end.v - start.v));
     const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
     if (smaller(value(start.v), value(end.v)) > larger(change, drift)) continue;
     if (!step.dense) Integrator::prepare_dense(form, step);
     auto f = [&](double s) {
       interpolate(form, step, s, step.point());
-      inputs_with(ws, step.t + s * step.h, step.point() + nz);
-      const T rate = form.rate(k, step.point()) + offset_rate(ws, k);
-      return noise + value(law_margin(ws, b, rate, T(0), step.point() + nz, step.f0() + nz, who).v);
+      inputs_of(form, step.t + s * step.h, step.point());
+      if (ws.in.n_rate_refs > 0) slopes_in(form, step, s);
+      T rate[most_ways];
+      const T still[most_ways] = {};
+      for (int w = 0; w < b.ways; ++w) rate[w] = form.rate(k + w, step.point()) + offset_rate(ws, k + w);
+      return noise + value(law_margin(ws, b, rate, still, step.point() + nz, step.f0() + nz, who).v);
     };
     const double s = first_crossing(f, noise + value(start.v), noise + value(end.v), hit.s);
     if (!is_first(hit, s)) continue;
     f(s);
     hit = {Hit::law, k, s, who};
+  }
+}
+
+/// Where processes leave their pieces. docs/theory/events.md, rule 12
+template <class Form, class Integrator>
+[[gnu::noinline]] void find_process_hit(Form& form, Step<Form>& step, Hit& hit) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  const int nz = form.nz();
+  constexpr double noise = 1e-12;
+  for (int i = 0; i < ws.guard.n_processes; ++i) {
+    const int c = ws.guard.process[i];
+    int who = 0;
+    auto at_end = [&](double t, const T* y, const T* f, const Edge<T>& edge) {
+      auto rate = [&](int d, T& slope) {
+        const int k = ws.branch_of[d];
+        if (k < 0 || k >= ws.n_branches) return T(0);
+        return slope = edge.slope[k], edge.rate[k];
+      };
+      return process_margin(ws, c, t, y + nz, f + nz, rate, who);
+    };
+    const auto start = at_end(step.t, step.y0(), step.f0(), ws.here);
+    const auto end = at_end(step.t + step.h, step.y1(), step.f1(), ws.there);
+    const double change = abs(value(end.v - start.v));
+    const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
+    if (smaller(value(start.v), value(end.v)) > larger(change, drift)) continue;
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    auto f = [&](double s) {
+      const double t = step.t + s * step.h;
+      interpolate(form, step, s, step.point());
+      inputs_at(ws, t);
+      auto rate = [&](int d, T&) {
+        const int k = ws.branch_of[d];
+        return k < 0 || k >= ws.n_branches ? T(0) : form.rate(k, step.point()) + offset_rate(ws, k);
+      };
+      return noise + value(process_margin(ws, c, t, step.point() + nz, step.f0() + nz, rate, who).v);
+    };
+    const double s = first_crossing(f, noise + value(start.v), noise + value(end.v), hit.s);
+    if (!is_first(hit, s)) continue;
+    f(s);
+    hit = {Hit::process, c, s, who};
   }
 }
 
@@ -203,12 +268,35 @@ void find_load(Form& form, Step<Form>& step, Hit& hit) {
       inputs_in(form, step, s);
       return sign * value(load_of(ws, c)) + noise;
     };
-    if (ws.in.n_shared_refs > 0 && !step.dense) Integrator::prepare_dense(form, step);
+    if (inputs_follow(ws) && !step.dense) Integrator::prepare_dense(form, step);
     const double l0 = f(0), l1 = f(1);
     const double s = first_crossing(f, l0, abs(l1) <= 1e-12 * abs(l0) ? 0.0 : l1, hit.s);
     if (!is_first(hit, s)) continue;
     if (!step.dense) Integrator::prepare_dense(form, step);
     hit = {Hit::load, c, s, -1};
+  }
+}
+
+/// Where a load passes to the other line of the bound with which its contact slips. docs/theory/load-dependent.md, rule
+/// 3
+template <class Form, class Integrator>
+[[gnu::noinline]] void find_flip(Form& form, Step<Form>& step, Hit& hit) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  for (int i = 0; i < ws.loads.n_sliding; ++i) {
+    const int l = ws.loads.sliding[i], k = ws.loads.branch[i];
+    const double start = value(ws.here.clearance[l]), end = value(ws.there.clearance[l]);
+    const double drift = step.h * larger(abs(value(ws.here.closing[l])), abs(value(ws.there.closing[l])));
+    if (smaller(start, end) > larger(abs(end - start), drift)) continue;
+    if (!step.dense) Integrator::prepare_dense(form, step);
+    const double noise = 1e-12 * torque_size(ws);
+    auto f = [&](double s) {
+      torques_at(form, step, s);
+      T by_load = T(0);
+      return noise + value(line_clearance(ws, l, ws.seen.rate[k], by_load));
+    };
+    const double s = first_crossing(f, noise + start, noise + end, hit.s);
+    if (is_first(hit, s)) hit = {Hit::flip, l, s, -1};
   }
 }
 
@@ -221,12 +309,15 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   list_near_loads(ws, step.h);
   find_line<Form, Integrator>(form, step, hit);
   if (ws.guard.n_switching > 0) find_law_hit<Form, Integrator>(form, step, hit);
+  if (ws.guard.n_processes > 0) find_process_hit<Form, Integrator>(form, step, hit);
   if (ws.held.n > 0) find_break_away<Form, Integrator>(form, step, hit);
   if (ws.held.n_sets > 0) find_set_limit<Form, Integrator>(form, step, hit);
   if (ws.held.n_driven > 0) find_parting<Form, Integrator>(form, step, hit);
   if (ws.guard.n_faulty > 0) find_fault<Form, Integrator>(form, step, hit);
   if (ws.guard.n_bounded > 0) find_exit<Form, Integrator>(form, step, hit);
+  if (ws.loads.n_sliding > 0) find_flip<Form, Integrator>(form, step, hit);
   if (ws.guard.n_near > 0) find_load<Form, Integrator>(form, step, hit);
+  if (ws.guard.n_gaps > 0) find_gap<Form, Integrator>(form, step, hit);
   return hit;
 }
 

@@ -6,10 +6,23 @@ namespace clutchwork {
 
 /// The first thing that happens inside a step.
 struct Hit {
-  enum What : int { nothing, line, multiplier, set, parting, load, law, fault, exit } what = nothing;
-  int index = -1;  ///< guard, locked contact, dependent set, spare, contact, or branch
+  enum What : int {
+    nothing,
+    line,
+    multiplier,
+    set,
+    parting,
+    load,
+    law,
+    fault,
+    exit,
+    process,
+    flip,
+    gap
+  } what = nothing;
+  int index = -1;  ///< guard, locked contact, dependent set, spare, contact, branch, or process
   double s = 1;    ///< where in the step, 0 to 1
-  int who = -1;    ///< what of a law leaves its piece
+  int who = -1;    ///< what of a law leaves its piece; the end that a stop meets
 };
 
 /// Round-off of a load over its largest size: a load that has passed zero passes it again only from farther away.

@@ -39,12 +39,13 @@ template <class F>
   return f(x);
 }
 
-/// Root of a decreasing-through-zero function on [low, high] with f(low) >= 0 > f(high), to round-off (ITP).
+/// Root of a decreasing-through-zero function on [low, high] with f(low) >= 0 > f(high), to round-off (ITP). One that
+/// starts at zero is followed back to where it is above, in so many halvings.
 template <class F>
-double locate(F&& f, double low, double f_low, double high, double f_high) {
+double locate(F&& f, double low, double f_low, double high, double f_high, int halvings = 12) {
   // a guard that starts on its surface: step off it, or it is hit at once
-  for (int k = 1; k < 12 && f_low <= 0; ++k) {
-    const double x = low + (high - low) / double(1 << k), y = f(x);
+  for (int k = 1; k < halvings && f_low <= 0; ++k) {
+    const double x = low + (high - low) / double(1ll << k), y = f(x);
     if (y > 0) low = x, f_low = y;
   }
   if (f_low <= 0) return low;
@@ -63,6 +64,33 @@ double locate(F&& f, double low, double f_low, double high, double f_high) {
     }
   }
   return high;
+}
+
+/// First zero of a function with kinks, which may dip sharply between two samples: a fine grid, and at each of its
+/// lowest places a search for the bottom; then its root. -1: none before `limit`.
+template <class F>
+[[gnu::noinline]] double first_dip(F&& sampled, double start, double end, double limit) {
+  constexpr int intervals = 16, rounds = 16;
+  auto f = [&](double s) { return sample(sampled, s); };
+  auto place = [&](int i) { return limit * i / intervals; };
+  double y[intervals + 1];
+  y[0] = larger(start, 0.0);
+  for (int i = 1; i <= intervals; ++i) {
+    y[i] = i == intervals && limit == 1 ? end : f(place(i));
+    if (y[i] < 0) return locate(f, place(i - 1), y[i - 1], place(i), y[i]);
+    const bool low = i >= 2 && y[i - 1] <= y[i - 2] && y[i - 1] <= y[i];
+    if (!low || y[i - 1] > 2 * (y[i - 2] + y[i] - 2 * y[i - 1])) continue;
+    // thirds towards the bottom
+    double left = place(i - 2), right = place(i), before = y[i - 2];
+    for (int k = 0; k < rounds; ++k) {
+      const double a = left + (right - left) / 3, b = right - (right - left) / 3, at_a = f(a);
+      if (at_a < 0) return locate(f, left, before, a, at_a);
+      const double at_b = f(b);
+      if (at_b < 0) return locate(f, a, at_a, b, at_b);
+      at_a > at_b ? (left = a, before = at_a) : (right = b);
+    }
+  }
+  return -1;
 }
 
 /// First sample below zero among five inner points and the vertex of a parabola at the lowest; then its root.

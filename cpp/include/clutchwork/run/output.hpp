@@ -138,6 +138,11 @@ void fill_work(const Workspace<T>& ws, double x, double h, double* row) {
   for (int p = 0; p < ws.sys.prescribed; ++p) {
     row[ws.row.prescribed_work + p] = value(ws.prescribed_work[p] + since(nd + p));
   }
+  for (int i = 0; i < ws.sys.supplies; ++i) {
+    row[ws.row.supply_energy + i] = value(ws.supplied[i] + since(nd + int(ws.sys.prescribed) + i));
+  }
+  const int first = nd + int(ws.sys.prescribed + ws.sys.supplies);
+  for (int m = 0; m < ws.sys.meters; ++m) row[ws.row.meter_energy + m] = value(ws.metered[m] + since(first + m));
 }
 
 /// One row of output at s; work is fitted over the part of the step up to s_end. False: a number is not finite.
@@ -152,6 +157,9 @@ bool fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row)
   for (int i = 0; i < sys.states; ++i) row[ws.row.state + i] = value(shot.y[form.nz() + i]);
   const bool fitted = ws.options.work && s > 0;
   fill_work(ws, fitted ? s / s_end : -1.0, s_end * step.h, row);
+  for (int i = 0; i < sys.supplies; ++i) {
+    row[ws.row.supply_power + i] = value(supply_power(ws, i, shot.y + form.nz()));
+  }
   fill_contacts(ws, shot, row);
   if (sys.flows > 0) {
     shared_rates(ws, shot.rate, ws.seen.torque, shot.y + form.nz(), shot.d + form.nz());
@@ -232,6 +240,10 @@ void accumulate(Form& form, Step<Form>& step, double s) {
   if (!ws.options.work) return;
   for (int d = 0; d < nd; ++d) ws.work[d] += fitted_work(ws, d, 1.0, s * step.h);
   for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_work[p] += fitted_work(ws, nd + p, 1.0, s * step.h);
+  const int first = nd + int(ws.sys.prescribed);
+  for (int i = 0; i < ws.sys.supplies; ++i) ws.supplied[i] += fitted_work(ws, first + i, 1.0, s * step.h);
+  const int last = first + int(ws.sys.supplies);
+  for (int m = 0; m < ws.sys.meters; ++m) ws.metered[m] += fitted_work(ws, last + m, 1.0, s * step.h);
 }
 
 }  // namespace clutchwork

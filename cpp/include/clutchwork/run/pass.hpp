@@ -2,6 +2,7 @@
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/components/pieces.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/shared.hpp>
@@ -9,6 +10,8 @@
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/processes.hpp>
+#include <clutchwork/run/settle.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/watch.hpp>
@@ -26,6 +29,7 @@ void export_state(Form& form, const T* y) {
   for (int i = 0; i < form.ns(); ++i) ws.state[i] = y[form.nz() + i];
   inputs_with(ws, ws.time, ws.state);
   expand(form, y, ws.v);
+  present_rates(ws);
 }
 
 /// After a knot: right limits of the signals; true when the modes must be decided again. docs/theory/events.md, rule 1
@@ -34,8 +38,10 @@ bool pass_knot(Form& form, Step<Form>& step) {
   auto& ws = form.ws;
   using T = typename Form::Scalar;
   keep_prescribed(ws);
+  keep_ratios(ws);
   load_inputs(ws, ws.time);
-  bool decide = refresh_loads(ws);
+  settle_pieces(ws);
+  bool decide = refresh_loads(ws) || ratios_jump(ws);
   for (int p = 0; p < ws.sys.prescribed; ++p)
     decide = decide || value(ws.in.prescribed[p] - ws.in.prescribed_before[p]) != 0;
   if (decide) return true;
@@ -59,7 +65,7 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   Branch<T>& b = ws.branch[k];
   T* state = step.y0() + form.nz();
   int& heading = ws.heading[b.direction];
-  b.piece = law_cross(ws, b, rate_of(ws, b.direction), who, state);
+  b.piece = law_cross(ws, b, PresentRates<T>(ws, b).at, who, state);
   // a state that starts to slide does so the way the contact slips, however small the slip
   if (who == turned) {
     heading = -heading;
@@ -70,6 +76,22 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   for (int i = 0; i < b.states; ++i) ws.state[b.state + i] = state[b.state + i];
   list_lines(ws);
   return !events_crowd(ws, b.direction);
+}
+
+/// A process goes to its next piece. False: it does so without end. `moved`: it has set its states, which others may
+/// read.
+template <class Form>
+bool pass_process(Form& form, Step<Form>& step, int c, int who, bool& moved) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  T* state = step.y0() + form.nz();
+  moved = process_cross(ws, c, who, state);
+  if (moved) {
+    export_state(form, step.y0());
+    shared_inputs(ws, ws.state);
+    refresh_loads(ws);
+  }
+  return !process_crowds(ws, c);
 }
 
 /// Whether a contact whose torque jumps with the sign of its slip reverses again and again within a few steps: it

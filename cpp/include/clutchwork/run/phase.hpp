@@ -2,6 +2,7 @@
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/run/break_away.hpp>
 #include <clutchwork/run/event.hpp>
@@ -88,6 +89,10 @@ class Phase : public Pace<typename Form::Scalar> {
       if (fresh) form_.solve_mass(ws_.reduced.y);
     }
     for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = ws_.reduced.y[i];
+    if constexpr (Form::full) {
+      if (ws_.ratios.n > 0) prepare_ratios(form_);
+      if (fresh) keep_ties(form_, step_, ws_.time, step_.y0());
+    }
     if constexpr (!Form::small) balance_massless(form_, step_);
     ws_.fresh_phase = ws_.stiffened = false;
     // at a knot the row is the right limit, which comes after it
@@ -140,6 +145,7 @@ class Phase : public Pace<typename Form::Scalar> {
     step_.t = ws_.time;
     const double error = Integrator::advance(form_, step_, reach_);
     if (!judge(error, all_finite(form_.n(), step_.y1()))) return false;
+    if constexpr (Form::full) keep_ties(form_, step_, end_of_step(), step_.y1());
     look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
     return true;
   }
@@ -246,10 +252,13 @@ class Phase : public Pace<typename Form::Scalar> {
     forget_forced(ws_);
     if (hit.what == Hit::set) force_set(hit);
     for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = step_.u()[i];
+    if (hit.what == Hit::gap) land_on_end(form_, step_, hit);
     ws_.in.time = -infinity;
+    if constexpr (Form::full) keep_ties(form_, step_, ws_.time, step_.y0());
     export_state(form_, step_.y0());
     input_slopes_at(ws_, ws_.time);
     keep_prescribed(ws_);
+    keep_ratios(ws_);
     if (!passes(hit) && !over_) settle_later(hit);
   }
 
@@ -261,6 +270,8 @@ class Phase : public Pace<typename Form::Scalar> {
 
   /// Guards that need no decision: the next piece of a law or a table, an open contact that passes zero.
   CLUTCHWORK_INLINE bool passes(const Hit& hit) {
+    if (hit.what == Hit::flip) return passes_flip(hit.index);
+    if (hit.what == Hit::process) return passes_process(hit);
     const LineGuard* guard = hit.what == Hit::line ? &ws_.guard.line[hit.index] : nullptr;
     const bool law = hit.what == Hit::law || (guard != nullptr && guard->kind == LineGuard::turn);
     if (!law && (guard == nullptr || guard->kind == LineGuard::slip)) return false;
@@ -270,8 +281,40 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (!law) pass_line(form_, *guard);
     look_here();
-    if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(ws_, hit.index));
+    if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(form_, hit.index));
     h_ = ws_.last_step;
+    return true;
+  }
+
+  /// A process on its next piece; states that it has set may be loads of contacts.
+  bool passes_process(const Hit& hit) {
+    bool moved = false;
+    if (!pass_process(form_, step_, hit.index, hit.who, moved)) {
+      leave(Status::zeno);
+      return false;
+    }
+    if (moved) return false;
+    look_here();
+    h_ = ws_.last_step;
+    return true;
+  }
+
+  /// A load changes to the other line, with the same torque.
+  bool passes_flip(int l) {
+    const int c = ws_.sys.load_contact[l];
+    if (events_crowd(ws_, int(ws_.sys.elements) + c)) {
+      leave(Status::zeno);
+      return false;
+    }
+    ws_.loads.line[l] = 1 - ws_.loads.line[l];
+    if (!is_balanced(ws_, ws_.here.rate)) {
+      ws_.loads.jammed = c;
+      hand_over(Cause::jam, c);
+      return true;
+    }
+    look_here();
+    // no restart follows that would shorten it
+    h_ = ws_.last_step = smaller(ws_.last_step, larger(h_, reach_));
     return true;
   }
 
@@ -293,9 +336,13 @@ class Phase : public Pace<typename Form::Scalar> {
       case Hit::exit:
         ws_.detail.component = ne + hit.index;
         return leave(Status::out_of_table);
+      case Hit::gap:
+        return hand_over(Cause::impact, hit.index);
       case Hit::fault:
         hand_over(Cause::fault, hit.index);
         return fail(ws_, hit.index);
+      case Hit::process:
+        return hand_over(Cause::input);
       default:
         hand_over(Cause::input, hit.index);
         return turn_load(ws_, hit.index);
@@ -309,7 +356,8 @@ class Phase : public Pace<typename Form::Scalar> {
     if (rolls_over(ws_, c)) return fail(ws_, c);
     if (is_rigid(ws_, c)) return;
     const double pull = hit.s > 0 ? value(ws_.happened.torque[c]) : value(ws_.there.multiplier[hit.index]);
-    ws_.contact.forced[c] = pull > 0 && !contact_one_way(ws_, c) ? backward : forward;
+    const int way = free_way(ws_, c);
+    ws_.contact.forced[c] = way != 0 ? way : pull > 0 ? backward : forward;
   }
 
   /// Freewheels of a set that gives way at their own limit do so for good.

@@ -27,36 +27,60 @@ struct Gauss {
 };
 inline constexpr Gauss gauss{};
 
-/// Power of every direction and source over the step up to s_end, as cubics in s / s_end.
+/// Numbers of fitted powers: directions, prescribed speeds, supplies, meters.
+template <class T>
+CLUTCHWORK_INLINE int fitted_powers(const Workspace<T>& ws) {
+  return ws.n_directions + int(ws.sys.prescribed + ws.sys.supplies + ws.sys.meters);
+}
+
+/// Power that supply i gives where the branches were observed last: work on the shaft, and heat.
+template <class T>
+T supply_power(const Workspace<T>& ws, int i, const T* state) {
+  const int k = ws.branch_of[ws.sys.supply_element[i]];
+  const T torque = ws.seen.torque[k];
+  return torque * ws.seen.rate[k] + branch_heat(ws, ws.branch[k], ws.seen.rate[k], state, Dual<T, 1>(torque)).v;
+}
+
+/// Power through a metered line: what it puts on its node, times the speed of that.
+template <class T>
+T metered_power(const Workspace<T>& ws, const Snapshot<T>& shot, int m) {
+  const System& sys = ws.sys;
+  const T torque = meter_sum<T>(
+      sys, m, [&](int n) { return node_value(sys, n, shot.dv, ws.in.prescribed_slope); },
+      [&](int d) { return ws.out.torque[d]; });
+  return torque * node_value(sys, sys.meter_node[m], shot.v, ws.in.prescribed);
+}
+
+/// Power of every direction, source, supply and meter over the step up to s_end, as cubics in s / s_end.
 template <class Form, class T = typename Form::Scalar>
 void fit_power(Form& form, Step<Form>& step, double s_end) {
   Workspace<T>& ws = form.ws;
-  const int nd = ws.n_directions, np = int(ws.sys.prescribed), n = nd + np;
+  const int nd = ws.n_directions, np = int(ws.sys.prescribed), n = fitted_powers(ws);
   for (int i = 0; i < 4 * n; ++i) ws.out.power[i] = T(0);
   for (int g = 0; g < 4; ++g) {
     const double s = gauss.node[g] * s_end, t = step.t + s * step.h;
     Snapshot<T> shot{};
-    if (np > 0) {
+    if (np > 0 || ws.sys.meters > 0) {
       shot = take_snapshot(form, step, s);
     } else {
       interpolate(form, step, s, step.point());
       observe(form, t, step.point(), step.slope());
     }
-    for (int k = 0; k < ws.n_branches; ++k) {
-      const T power = ws.seen.torque[k] * ws.seen.rate[k];
-      for (int j = 0; j < 4; ++j) ws.out.power[j * n + ws.branch[k].direction] += power * T(gauss.coef[g][j]);
-    }
-    for (int p = 0; p < np; ++p) {
-      const T power = source_torque(ws, shot, p) * ws.in.prescribed[p];
-      for (int j = 0; j < 4; ++j) ws.out.power[j * n + nd + p] += power * T(gauss.coef[g][j]);
-    }
+    auto add = [&](int i, const T& power) {
+      for (int j = 0; j < 4; ++j) ws.out.power[j * n + i] += power * T(gauss.coef[g][j]);
+    };
+    for (int k = 0; k < ws.n_branches; ++k) add(ws.branch[k].direction, ws.seen.torque[k] * ws.seen.rate[k]);
+    for (int p = 0; p < np; ++p) add(nd + p, source_torque(ws, shot, p) * ws.in.prescribed[p]);
+    for (int i = 0; i < ws.sys.supplies; ++i) add(nd + np + i, supply_power(ws, i, step.point() + form.nz()));
+    const int first = nd + np + int(ws.sys.supplies);
+    for (int m = 0; m < ws.sys.meters; ++m) add(first + m, metered_power(ws, shot, m));
   }
 }
 
 /// Integral of a fitted power from the start of the step to the share x of the fitted part of length h.
 template <class T>
 T fitted_work(const Workspace<T>& ws, int i, double x, double h) {
-  const int n = ws.n_directions + int(ws.sys.prescribed);
+  const int n = fitted_powers(ws);
   const T* c = ws.out.power + i;
   const T r = T(x);
   return T(h) * r * (c[0] + r * (c[n] / T(2) + r * (c[2 * n] / T(3) + r * c[3 * n] / T(4))));

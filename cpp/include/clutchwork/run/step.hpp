@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/input.hpp>
+#include <clutchwork/components/pieces.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/form.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
@@ -30,19 +31,48 @@ void balance_massless(SparseForm<T>& form, Step<SparseForm<T>>& step) {
   }
 }
 
+/// The same in the full form, the states held.
+template <class T>
+void balance_massless(FullForm<T>& form, Step<FullForm<T>>& step) {
+  Workspace<T>& ws = form.ws;
+  const int nz = form.nz();
+  const auto massless = [&](int i) { return ws.rows.mass.first[i] == ws.rows.mass.first[i + 1]; };
+  bool any = false;
+  for (int i = 0; i < nz; ++i) any = any || massless(i);
+  for (int round = 0; any && round < 8; ++round) {
+    linearize(form, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
+    // a huge inertia holds all other speeds
+    if (!form.factor_whole(T(1e30), nz)) return;
+    T* b = step.slope();
+    for (int i = 0; i < nz; ++i) b[i] = massless(i) ? step.f0()[i] : T(0);
+    form.solve_whole(b, nz);
+    for (int i = 0; i < nz; ++i) step.y0()[i] += b[i];
+  }
+}
+
+/// Speeds at y brought onto the ties of transmissions. docs/theory/varying-ratios.md (9)
+template <class T>
+void keep_ties(FullForm<T>& form, Step<FullForm<T>>& step, Real<T> t, T* y) {
+  Workspace<T>& ws = form.ws;
+  if (ws.ratios.n == 0) return;
+  evaluate(form, t, y, step.slope());
+  settle_ties(form, y);
+}
+
 /// Derivatives, rates, slopes, multipliers at one end of the step.
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void look_inline(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
   linearize(form, t, y, d, dt, edge);
   if constexpr (Form::small) {
     slopes(form, d, edge);
+    sense(form, y, d, d, edge);
   } else {
     T* velocity = step.slope();
     for (int i = 0; i < form.nz(); ++i) velocity[i] = d[i];
     form.solve_mass(velocity);
     slopes(form, velocity, edge);
+    sense(form, y, velocity, d, edge);
   }
-  sense(form, d, edge);
 }
 
 template <class Form, class T = typename Form::Scalar>
@@ -66,19 +96,26 @@ double first_step(Form& form, Step<Form>& step, double span) {
 
 /// Longest first step after an element has met another piece: half a radian of the swing of what it joins on its own
 /// stiffness. An implicit step much longer would damp a whole collision away unseen. docs/theory/events.md, rule 13
-template <class T>
-double collision_step(const Workspace<T>& ws, int k) {
-  const Branch<T>& b = ws.branch[k];
+template <class Form>
+double collision_step(Form& form, int k) {
+  const auto& ws = form.ws;
+  const auto& b = ws.branch[k];
   if (b.law >= 0) return infinity;
-  double stiffness = 0;
-  for (int s = 0; s < b.states; ++s)
-    stiffness += abs(value(ws.jacobian.f_state[b.state + s] * ws.jacobian.g_rate[b.state + s]));
-  const double square = stiffness * value(ws.geometry.own[b.direction]);
+  double square = 0;
+  if constexpr (Form::full) {
+    square = swing_whole(form, k);
+  } else {
+    double stiffness = 0;
+    for (int s = 0; s < b.states; ++s)
+      stiffness += abs(value(ws.jacobian.f_state[b.state + s] * ws.jacobian.g_rate[b.state + s]));
+    square = stiffness * value(ws.geometry.own[b.direction]);
+  }
   return square > 0 ? 0.5 / sqrt(square) : infinity;
 }
 
-/// Longest step that resolves the oscillating signals, which the error estimate may not see: with work half a radian
-/// of a sine or half a time constant of a decay, for the quadrature; else what the samples of the guards need.
+/// Longest step that resolves the oscillating signals and elements, which the error estimate may not see: with work
+/// half a radian of a sine or half a time constant of a decay, for the quadrature; else what the samples of the guards
+/// need.
 /// docs/theory/events.md, rule 6
 template <class T>
 double signal_step(const Workspace<T>& ws) {
@@ -86,6 +123,12 @@ double signal_step(const Workspace<T>& ws) {
   for (int k = 0; k < ws.in.n_varying; ++k) {
     const Signal& signal = ws.in.signal[ws.in.ref_signal[ws.in.varying[k]]];
     if (!signal.linear) fastest = larger(fastest, segment_rate(signal.coef, ws.time - signal.start));
+  }
+  if constexpr (!has_lanes<T>) {
+    for (int i = 0; i < ws.guard.n_switching; ++i) {
+      const int k = ws.guard.switching[i];
+      if (ws.branch[k].law < 0) fastest = larger(fastest, own_pace(ws, ws.branch[k], ws.here.rate[k]));
+    }
   }
   return fastest > 0 ? (ws.options.work ? 0.5 : 1.5) / fastest : infinity;
 }

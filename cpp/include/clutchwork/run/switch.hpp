@@ -8,9 +8,13 @@
 #include <clutchwork/contacts/decision.hpp>
 #include <clutchwork/contacts/impulses.hpp>
 #include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/ratio_jumps.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/contacts/stops.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/settle.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -22,6 +26,7 @@ template <class T>
 T torque_after(const Workspace<T>& ws, int c) {
   const int d = int(ws.sys.elements) + c;
   if (!ws.contact.loaded[c]) return T(0);
+  if (ws.loads.of[c] >= 0) return ws.decision.torque[c];
   const T held = ws.contact.mode[c] == locked ? ws.decision.torque[c] : T(0);
   if (ws.contact.mode[c] == locked && !ws.contact.compliant[c]) return held;
   const Branch<T> b = make_branch(ws, d, ws.contact.mode[c]);
@@ -37,23 +42,49 @@ void accelerations_after(Workspace<T>& ws) {
   for (int c = 0; c < nc; ++c) stuck[c] = ws.contact.mode[c] == locked;
   free_motion(ws, stuck, q);
   for (int c = 0; c < nc; ++c) {
-    const bool holds = ws.contact.mode[c] == locked && ws.contact.loaded[c];
+    const bool holds = (ws.contact.mode[c] == locked && ws.contact.loaded[c]) || ws.loads.of[c] >= 0;
     if (holds) ws.geometry.white.add(ne + c, ws.decision.torque[c], q);
   }
   for (int c = 0; c < nc; ++c) out[c] = ws.contact.mode[c] == locked ? T(0) : slip_acceleration(ws, c, q);
+}
+
+/// Stops that were forced to open and are driven back may hold after all: whether there are such ones.
+template <class T>
+bool takes_back_stops(Workspace<T>& ws) {
+  const int ne = int(ws.sys.elements);
+  auto forced = [&](int c) { return is_stop(ws, c) && ws.contact.side[c] * ws.contact.forced[c] != 0; };
+  bool any = false;
+  for (int c = 0; c < ws.sys.contacts; ++c) any = any || (forced(c) && !is_rigid(ws, c));
+  if (!any) return false;
+  accelerations_after(ws);
+  any = false;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const double noise = 1e-12 * ws.decision.effort * value(sqrt(ws.geometry.own[ne + c]));
+    if (!forced(c) || ws.contact.side[c] * value(ws.decision.acceleration[c]) <= noise) continue;
+    ws.contact.forced[c] = 0, ws.contact.mode[c] = locked;
+    any = true;
+  }
+  return any;
 }
 
 /// Decide the modes; freewheels that would have to hold more than they can give way for good on the way. `running`:
 /// they are decided.
 template <class T>
 Status settle(Workspace<T>& ws, int located) {
+  const bool stops = has_stops(ws);
+  if (stops) close_stops(ws);
   for (int round = 0; round <= ws.sys.contacts; ++round) {
     const Verdict verdict = settle_contacts(ws, located);
     switch (verdict.how) {
       case Settled::yes:
+        if (stops && takes_back_stops(ws)) continue;
+        if (stops) open_stops(ws);
         return Status::running;
       case Settled::no:
         return Status::no_mode;
+      case Settled::unbalanced:
+        ws.detail.component = verdict.contact < 0 ? -1 : int(ws.sys.elements) + verdict.contact;
+        return Status::unbalanced;
       case Settled::jams:
         ws.detail.component = int(ws.sys.elements) + verdict.contact;
         return Status::jammed;
@@ -68,10 +99,18 @@ Status settle(Workspace<T>& ws, int located) {
 template <class T>
 int backward_freewheel(const Workspace<T>& ws) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (!ws.contact.loaded[c] || !contact_one_way(ws, c)) continue;
-    if (value(rate_of(ws, int(ws.sys.elements) + c)) < -1e3 * slip_tolerance(ws)) return c;
+    if (!ws.contact.loaded[c]) continue;
+    if (value(rate_of(ws, int(ws.sys.elements) + c)) * free_way(ws, c) < -1e3 * slip_tolerance(ws)) return c;
   }
   return -1;
+}
+
+/// After a jump of the speeds: what contacts read of them, and which of them can transmit.
+template <class T>
+void see_speeds(Workspace<T>& ws) {
+  if (ws.in.n_rate_refs == 0) return;
+  present_rates(ws);
+  refresh_loads(ws);
 }
 
 /// Impulses, then modes; the impulse of a stop within a tolerance may bring others to rest, or break them loose.
@@ -79,27 +118,30 @@ int backward_freewheel(const Workspace<T>& ws) {
 template <class T>
 Status decide(Workspace<T>& ws, bool at_start) {
   const int located = ws.happened.contact;
-  if (!settle_impulses(ws, at_start)) return Status::no_mode;
+  const bool stops = has_stops(ws);
+  if (!settle_impulses(ws, at_start) || (stops && !collide(ws))) return Status::no_mode;
+  see_speeds(ws);
+  find_pieces(ws);
   for (int c = 0; at_start && c < ws.sys.contacts; ++c) {
     ws.contact.impulse[c] = ws.contact.mode[c] == locked && ws.happened.mode[c] != locked;
   }
-  Status status = settle(ws, located);
+  Status status = ws.loads.jammed < 0 ? settle(ws, located) : Status::unbalanced;
+  for (int round = 0; status == Status::unbalanced && round < ws.sys.loads; ++round) {
+    const int c = ws.loads.jammed >= 0 ? ws.loads.jammed : ws.detail.component - int(ws.sys.elements);
+    ws.loads.jammed = -1;
+    if (c < 0 || !stop_jammed(ws, c)) return status;
+    ws.happened.cause = Cause::jam, ws.happened.contact = c;
+    status = settle(ws, -1);
+  }
   if (status == Status::running && stops_short(ws, located)) {
-    if (!stop_within_tolerance(ws, located)) return Status::no_mode;
+    if (!stop_within_tolerance(ws, located) || (stops && !collide(ws))) return Status::no_mode;
+    see_speeds(ws);
     status = settle(ws, -1);
   }
   const int jammed = status == Status::running ? backward_freewheel(ws) : -1;
   if (jammed < 0) return status;
   ws.detail.component = int(ws.sys.elements) + jammed;
   return Status::jammed;
-}
-
-/// The elements are on the pieces that hold their rates.
-template <class T>
-void find_pieces(Workspace<T>& ws) {
-  for (int d = 0; d < ws.sys.elements; ++d) {
-    if (edge_count(ws, d) > 0) ws.piece[d] = piece_of(ws, d, value(rate_of(ws, d)));
-  }
 }
 
 /// Report every contact that has changed its mode; at the start, those alone that an impulse has locked.
@@ -112,13 +154,25 @@ void report_changes(Workspace<T>& ws, bool at_start, double energy_before) {
   const Happened<T>& before = ws.happened;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int mode = ws.contact.mode[c];
-    if (mode == before.mode[c] || (at_start && !ws.contact.impulse[c])) continue;
+    const bool struck = ws.contact.struck[c] != 0;
+    if (!struck && (mode == before.mode[c] || (at_start && !ws.contact.impulse[c]))) continue;
     const bool own = c == before.contact || before.contact < 0;
-    const Cause cause = at_start ? Cause::impulse : own ? before.cause : Cause::other_event;
+    const Cause cause = at_start ? Cause::impulse : struck ? Cause::impact : own ? before.cause : Cause::other_event;
     const double hits = value(mode == locked ? before.slope[c] : ws.decision.acceleration[c]);
     const double torque_before = value(before.torque[c]), torque = value(torque_after(ws, c));
     record(ws, {c, before.mode[c], mode, cause, hits, torque_before, torque, energy_before, energy_after});
   }
+}
+
+/// What jumps at an instant: prescribed speeds while the ratios are still those before, then the ratios.
+template <class T>
+void jump(Workspace<T>& ws) {
+  if (ws.ratios.n == 0) return prescribed_jump(ws);
+  {
+    const BesideRatios<T> beside(ws, true);
+    prescribed_jump(ws);
+  }
+  jump_ratios(ws, slip_tolerance(ws));
 }
 
 /// Decide the modes at the present instant and report what changed.
@@ -126,16 +180,23 @@ template <class T>
 Status switch_modes(Workspace<T>& ws) {
   const int ne = int(ws.sys.elements), located = ws.happened.contact;
   const bool at_start = ws.happened.cause == Cause::initial;
-  if (located >= 0 && events_crowd(ws, ne + located)) return Status::zeno;
+  // bounces end by their own rule. docs/theory/play.md, rule 2
+  const bool bounces = ws.happened.cause == Cause::impact && ws.time > ws.contact.met_at[located];
+  if (located >= 0 && !bounces && events_crowd(ws, ne + located)) return Status::zeno;
+  for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.struck[c] = 0;
   ws.detail.component = located >= 0 ? ne + located : -1;
   if (ws.statistics.events > ws.options.max_events) return Status::too_many_events;
 
   forget_forced(ws);
   if (ws.happened.cause == Cause::slip_zero && located >= 0) ws.contact.forced[located] = 0;
-  if (!at_start) prescribed_jump(ws);
+  if (!at_start) jump(ws);
+  const BesideRatios<T> beside(ws);
+  if (ws.ratios.n > 0) settle_rows(ws);
+  if (!at_start) see_speeds(ws);
   const double energy_before = kinetic_energy(ws);
   const Status decided = decide(ws, at_start);
   if (decided != Status::running) return decided;
+  if (ws.happened.cause == Cause::impact) ws.contact.met_at[located] = ws.time;
   find_pieces(ws);
   ws.fresh_phase = true;
   if (ws.contact.failed >= 0) {

@@ -58,11 +58,11 @@ void list_lines(Workspace<T>& ws) {
     const bool contact = b.law >= 0;
     if (contact) list_slip(ws, k);
     list_turn(ws, k);
-    const int edges = edge_count(ws, b.direction), sign = contact ? b.sign : 1;
-    if (b.piece < edges)
-      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, -sign, sign * edge_at(ws, b.direction, b.piece)};
-    if (edges > 0 && b.piece > 0)
-      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, sign, sign * edge_at(ws, b.direction, b.piece - 1)};
+    const int edges = edge_count(ws, b.direction), sign = contact ? b.sign : 1, interval = b.piece % (edges + 1);
+    if (interval < edges)
+      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, -sign, sign * edge_at(ws, b.direction, interval)};
+    if (interval > 0)
+      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, sign, sign * edge_at(ws, b.direction, interval - 1)};
   }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) {
     // an open contact has passed zero when it is clear of it on the other side

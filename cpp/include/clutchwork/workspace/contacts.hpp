@@ -14,6 +14,9 @@ struct Contacts {
   int* compliant = nullptr;                   ///< contacts with a law that never sticks
   int* fault = nullptr;                       ///< what has failed in it
   int* impulse = nullptr;                     ///< contacts that an impulse has locked at the start
+  int* side = nullptr;                        ///< of each stop: the end at which it is closed, -1 or 1, 0: it is open
+  int* struck = nullptr;                      ///< stops that have met an end at this instant
+  double* met_at = nullptr;                   ///< [s] when a stop met an end last
   int failed = -1;                            ///< contact whose fault ends the run
   double forced_time = -infinity;             ///< [s]
 
@@ -22,7 +25,8 @@ struct Contacts {
     a.keep(p.mode, n.contacts, backward, open), a.keep(p.forced, n.contacts, backward, forward);
     a.keep(p.pressed, n.contacts, 0, 1), a.keep(p.loaded, n.contacts, 0, 1);
     a.take(p.compliant, n.contacts), a.keep(p.fault, n.contacts, 0, choice::words<choice::Fault> - 1);
-    a.keep(p.impulse, n.contacts, 0, 1);
+    a.keep(p.impulse, n.contacts, 0, 1), a.keep(p.side, n.contacts, -1, 1), a.take(p.struck, n.contacts);
+    a.take(p.met_at, n.contacts);
   }
 };
 
@@ -44,12 +48,13 @@ struct Happened {
 /// them: contacts/locked.hpp.
 template <class T>
 struct Held {
-  int n = 0;                                        ///< number of carriers
-  int* contact = nullptr;                           ///< of each carrier
-  Envelope near;                                    ///< of the factor
-  int* turn = nullptr;                              ///< carrier at each row of the factor
-  T* factor = nullptr;                              ///< Cholesky factor of the mobility of the carriers
-  bool mapped = false;                              ///< the torques of the carriers are a linear map, below
+  int n = 0;               ///< number of carriers
+  int n_fixed = 0;         ///< of those whose directions do not vary, which come first: docs/theory/varying-ratios.md
+  int* contact = nullptr;  ///< of each carrier
+  Envelope near;           ///< of the factor
+  int* turn = nullptr;     ///< carrier at each row of the factor
+  T* factor = nullptr;     ///< Cholesky factor of the mobility of the carriers
+  bool mapped = false;     ///< the torques of the carriers are a linear map, below
   T *reach = nullptr, *reach_prescribed = nullptr;  ///< torques by those of branches and prescribed accelerations
 
   int n_spare = 0, n_sets = 0, n_driven = 0;
@@ -89,14 +94,18 @@ struct SetMemory {
   T *tableau = nullptr, *limit_x = nullptr, *price = nullptr;
   T *deflection = nullptr, *step = nullptr, *residual = nullptr, *matrix = nullptr;
   int *basis = nullptr, *place = nullptr;
+  T *low = nullptr, *high = nullptr;                               ///< where members follow loads: bounds
+  int *follower = nullptr, *line = nullptr, *best_line = nullptr;  ///< and which they are, and their lines
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    const auto m = n.set;
+    const auto m = n.set, more = 2 * n.loads, wide = m + more + 1;
     a.scratch(p.column, m * m), a.scratch(p.load, m), a.scratch(p.lower, m), a.scratch(p.upper, m), a.scratch(p.x, m);
-    a.scratch(p.tableau, m * (m + 1)), a.scratch(p.limit_x, m + 1), a.scratch(p.price, m + 1);
+    a.scratch(p.tableau, (m + more) * wide), a.scratch(p.limit_x, wide), a.scratch(p.price, wide);
     a.scratch(p.deflection, m), a.scratch(p.step, m), a.scratch(p.residual, m), a.scratch(p.matrix, m * m);
-    a.take(p.basis, m), a.take(p.place, m + 1);
+    a.take(p.basis, m + more), a.take(p.place, wide);
+    a.scratch(p.low, more > 0 ? wide : 0), a.scratch(p.high, more > 0 ? wide : 0), a.take(p.follower, n.loads);
+    a.take(p.line, more), a.take(p.best_line, more);
   }
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/dual.hpp>
 #include <clutchwork/components/envelope.hpp>
 #include <clutchwork/workspace/signals.hpp>
 
@@ -142,9 +143,11 @@ struct Shared {
   T *by_rate = nullptr, *by_state = nullptr, *by_shared = nullptr;  ///< of the shared rates
   T *reach = nullptr, *inverse = nullptr, *rhs = nullptr;  ///< answer of the motion to a shared state; Schur complement
   int* pivot = nullptr;                                    ///< of its inversion
+  int* piece = nullptr;                                    ///< smooth piece of each process
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
+    a.keep(p.piece, n.processes, 0, (1ll << 31) - 1);
     const auto nx = n.shared, nd = nx > 0 ? n.directions : 0;
     a.take(p.heat, nd), a.take(p.heat_rate, nd), a.take(p.heat_time, nd), a.take(p.heat_share, nd);
     a.take(p.stage_rate, nd), a.take(p.stage_torque, nd), a.take(p.torque_by, nd * nx), a.take(p.by_rate, nd * nx);
@@ -168,6 +171,44 @@ struct Stages {
     a.take(p.inverse, n.blocks), a.scratch(p.own, n.states), a.take(p.pivot, n.states);
   }
   static constexpr int step_rows = 20;
+};
+
+/// What one evaluation of the whole motion reads and makes, over a scalar S.
+template <class S>
+struct Whole {
+  S *y = nullptr, *d = nullptr;                           ///< speeds and states; what `evaluate` gives
+  S* input = nullptr;                                     ///< of each reference
+  S *rate = nullptr, *torque = nullptr, *heat = nullptr;  ///< of each branch
+  int time = -1;                                          ///< column of the derivatives that is time, -1: none
+  S *coupling = nullptr, *followed = nullptr;             ///< of contacts that follow loads: matrix, torques
+  int* pivot = nullptr;                                   ///< of its factor
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    const auto unknowns = n.full ? n.speeds + n.states : 0, nd = n.full ? n.directions : 0;
+    a.scratch(p.y, unknowns), a.scratch(p.d, unknowns), a.scratch(p.input, n.full ? n.references : 0);
+    a.scratch(p.rate, nd), a.scratch(p.torque, nd), a.scratch(p.heat, nd);
+    a.scratch(p.coupling, n.loads * n.loads), a.scratch(p.followed, n.loads), a.take(p.pivot, n.loads);
+  }
+};
+
+/// The full form: docs/theory/coupled.md.
+template <class T>
+struct Full {
+  static constexpr int chunk = 8;  ///< columns of the Jacobian at a time
+  Whole<T> plain;
+  Whole<Dual<T, chunk>> some;
+  Whole<Dual<T, 1>> along;
+  T *jacobian = nullptr, *factor = nullptr;  ///< by rows, of all unknowns
+  int* pivot = nullptr;
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    const auto unknowns = n.full ? n.speeds + n.states : 0;
+    Whole<T>::lay_out(p.plain, a, n), Whole<Dual<T, chunk>>::lay_out(p.some, a, n);
+    Whole<Dual<T, 1>>::lay_out(p.along, a, n);
+    a.scratch(p.jacobian, unknowns * unknowns), a.scratch(p.factor, unknowns * unknowns), a.take(p.pivot, unknowns);
+  }
 };
 
 }  // namespace clutchwork

@@ -16,20 +16,24 @@ struct LineGuard {
 /// What the guards need at one end of a step.
 template <class T>
 struct Edge {
-  T* rate;        ///< rate of each branch
-  T* slope;       ///< its time derivative
-  T* multiplier;  ///< torque of each locked contact
-  T* drift;       ///< its time derivative
-  T* capacity;    ///< static torque of each locked contact
-  T* swing;       ///< size of its time derivative where its load bends over time, else zero
-  T* noise;       ///< round-off of the torque of each locked contact
-  T* room;        ///< what each dependent set has left of its limit load, as a share of the load
+  T* rate;               ///< rate of each branch
+  T* slope;              ///< its time derivative
+  T* multiplier;         ///< torque of each locked contact
+  T* drift;              ///< its time derivative
+  T* capacity;           ///< static torque of each locked contact
+  T* swing;              ///< size of its time derivative where its load bends over time, else zero
+  T* noise;              ///< round-off of the torque of each locked contact
+  T *load, *load_drift;  ///< each load, and its time derivative
+  T *clearance,
+      *closing;  ///< of each load whose contact slips: how far its line is above the other; how fast that changes
+  T* room;       ///< what each dependent set has left of its limit load, as a share of the load
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.rate, n.directions), a.take(p.slope, n.directions), a.take(p.multiplier, n.contacts);
     a.take(p.drift, n.contacts), a.take(p.capacity, n.contacts), a.take(p.swing, n.contacts);
-    a.take(p.noise, n.contacts), a.take(p.room, n.contacts);
+    a.take(p.noise, n.contacts), a.take(p.room, n.contacts), a.take(p.load, n.loads), a.take(p.load_drift, n.loads),
+        a.take(p.clearance, n.loads), a.take(p.closing, n.loads);
   }
 };
 
@@ -39,10 +43,13 @@ struct Guards {
   int *switching = nullptr, *chattering = nullptr;  ///< branches with laws that switch, or that jump with the slip
   int *bounded = nullptr, *faulty = nullptr;        ///< contacts whose laws can be left; contacts that can fail
   int *load = nullptr, *near = nullptr;  ///< contacts whose loads may pass zero; those that may in the present step
+  int* gap = nullptr;                    ///< stops that are open
   int* limit = nullptr;                  ///< carriers that may break away: scratch
+  int* process = nullptr;                ///< processes that switch between pieces
   double* load_size = nullptr;           ///< largest size that the load of a contact may have, 0: not known
   double* turned_at = nullptr;           ///< [s] when the load of a contact passed zero last
   int n_lines = 0, n_switching = 0, n_chattering = 0, n_bounded = 0, n_faulty = 0, n_loads = 0, n_near = 0;
+  int n_processes = 0, n_gaps = 0;
   int n_undirected = 0;  ///< open contacts at rest
   int reversals = 0;     ///< of slips that chatter
   int strained = 0;      ///< explicit steps in a row at the limit of their stability
@@ -53,7 +60,8 @@ struct Guards {
     a.take(p.line, 3 * n.directions + n.contacts), a.take(p.switching, n.directions), a.take(p.chattering, n.contacts);
     a.take(p.bounded, n.contacts), a.keep(p.faulty, n.contacts, 0, n.contacts - 1);
     a.keep(p.load, n.contacts, 0, n.contacts - 1), a.take(p.near, n.contacts), a.take(p.limit, n.contacts);
-    a.take(p.load_size, n.contacts), a.take(p.turned_at, n.contacts);
+    a.take(p.load_size, n.contacts), a.take(p.turned_at, n.contacts), a.take(p.process, n.processes);
+    a.take(p.gap, n.contacts);
   }
 };
 
@@ -77,14 +85,14 @@ struct Output {
   T* torque = nullptr;                               ///< of every direction
   T *v = nullptr, *dv = nullptr, *turned = nullptr;  ///< of each speed: value, time derivative, angle since the start
   T *angle = nullptr, *prescribed_angle = nullptr;
-  T* power = nullptr;                     ///< of each direction and source, as cubics
+  T* power = nullptr;                     ///< of each direction, source, supply and meter, as cubics
   T *whole = nullptr, *halves = nullptr;  ///< work of each branch over a step and its halves
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.torque, n.directions), a.scratch(p.v, n.speeds), a.scratch(p.dv, n.speeds), a.scratch(p.turned, n.speeds);
     a.scratch(p.angle, n.nodes), a.scratch(p.prescribed_angle, n.prescribed);
-    a.scratch(p.power, 4 * (n.directions + n.prescribed)), a.scratch(p.whole, n.directions);
+    a.scratch(p.power, 4 * (n.directions + n.prescribed + n.supplies + n.meters)), a.scratch(p.whole, n.directions);
     a.scratch(p.halves, n.directions);
   }
 };
@@ -94,12 +102,13 @@ struct EventBuffer {
   static constexpr int room = 256;
   double* at = nullptr;
   int n = 0;
-  int* crowd = nullptr;  ///< events of each direction, then knots of each signal, within the last microsecond
+  int* crowd = nullptr;  ///< within the last microsecond: events of each direction, knots of each signal, of processes
   double crowd_time = -infinity;
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    a.keep(p.crowd, n.directions + n.signals, 0, 1 << 30), a.take(p.at, event_size * (room + 2 * n.contacts));
+    a.keep(p.crowd, n.directions + n.signals + n.processes, 0, 1 << 30),
+        a.take(p.at, event_size * (room + 2 * n.contacts));
   }
 };
 

@@ -23,26 +23,28 @@ struct Signals {
   Signal* signal = nullptr;
   int n_refs = 0, n_varying = 0;
   int *ref_signal = nullptr, *varying = nullptr;
-  T *u = nullptr, *du = nullptr;  ///< value of each reference; its time derivative where it is a signal
+  T *u = nullptr, *du = nullptr;  ///< value of each reference; its time derivative where it is a signal or a rate
   double time = -infinity;        ///< [s] of the values
   double next_knot = infinity;    ///< [s]
   bool expected = false;          ///< values may be set between calls
   T *prescribed = nullptr, *prescribed_slope = nullptr, *prescribed_before = nullptr;
 
   // references that are no signals: shared states first, then rates and heats of directions
-  int *shared_ref = nullptr, *direction_ref = nullptr;
+  int *shared_ref = nullptr, *direction_ref = nullptr, *rate_ref = nullptr;
   int n_shared_refs = 0, n_direction_refs = 0;
+  int n_rate_refs = 0;  ///< rates of elements, which torques may read in the full form; direction_ref has them too
   T* shared_slope = nullptr;  ///< time derivative of each reference to a shared state, else zero
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.shared_ref, n.references), a.take(p.direction_ref, n.references), a.take(p.shared_slope, n.references);
+    a.take(p.rate_ref, n.references);
     a.take(p.signal, n.signals), a.take(p.ref_signal, n.references), a.take(p.varying, n.references);
     a.take(p.u, n.references), a.take(p.du, n.references), a.take(p.prescribed_before, n.prescribed);
   }
 };
 
-/// An active component: one direction, one torque.
+/// An active component: one direction, one torque; an element of several ways is as many of them, one after another.
 template <class T>
 struct Branch {
   const T* params;
@@ -55,10 +57,12 @@ struct Branch {
   int kind, law;      ///< law is -1 for a torque element
   int direction;      ///< number among elements, then contacts
   int state, states;  ///< own states: offset and number
+  int ways;           ///< number of ways of which this is the first, most often 1; 0: another way of the one before
   int piece;          ///< smooth piece of the element or of the law
   int sign;           ///< direction of slip of a contact
   bool pressed;       ///< a contact with a load; a freewheel without one still blocks
   bool compliant;     ///< a contact whose law never sticks: smooth over signed slip
+  bool follows;       ///< a contact whose torque follows a load
   bool shaped;        ///< a contact whose torque per load is not the coefficient itself
 };
 

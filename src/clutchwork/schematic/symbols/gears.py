@@ -8,7 +8,7 @@ from typing import Any
 
 from clutchwork.schematic.look import BODY, GREY, INK, LOCKED, OPEN, PLATE, SHAFT, STATE, THIN, TINY, Look
 from clutchwork.schematic.pen import Pen
-from clutchwork.schematic.symbols.contacts import halo, ink, lining
+from clutchwork.schematic.symbols.contacts import CONTACTS, halo, ink, lining
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT, Drawn, Symbol, wall
 
 # rows of a planetary set
@@ -54,6 +54,61 @@ def double_planetary(pen: Pen, shown: Drawn) -> None:
         pen.line((x, y), (x, end), (0.0, end), look=TOOTH)
     pen.line((-5.5, 0.0), (5.5, 0.0), look=TOOTH)
     _members(pen, shown, 5.5)
+
+
+def compound_planetary(pen: Pen, shown: Drawn) -> None:
+    """Ring, sun, and between them two wheels of a planet on one pin."""
+    for x, tall in ((-4.5, 7.5), (4.5, 4.5)):
+        pen.line((x, -tall), (x, tall), look=TOOTH)
+        for y in (-tall, tall):
+            pen.line((x - 3.0, y), (x + 3.0, y), look=TOOTH)
+    pen.line((-4.5, 0.0), (4.5, 0.0), look=TOOTH)
+    for x, y, end in ((4.5, 6.9, RING), (-4.5, -9.9, SUN)):
+        pen.line((x - 3.0, y), (x + 3.0, y), look=TOOTH)
+        pen.line((x, y), (x, end), (0.0, end), look=TOOTH)
+    _members(pen, shown, 0.0)
+
+
+def ravigneaux(pen: Pen, shown: Drawn) -> None:
+    """Ring, long planet with the large sun, short planet with the small one."""
+    pins = shown.pins
+    pen.line((-7.0, 3.0), (9.0, 3.0), look=TOOTH)
+    for x, low, high in ((-6.0, -3.0, 9.0), (6.0, -4.5, 1.0)):
+        pen.line((x, low), (x, high), look=TOOTH)
+        for y in (low, high):
+            pen.line((x - 3.0, y), (x + 3.0, y), look=TOOTH)
+    for x, y, port in ((-6.0, 11.4, "ring"), (-6.0, -5.4, "large_sun"), (6.0, -6.9, "small_sun")):
+        pen.line((x - 3.0, y), (x + 3.0, y), look=TOOTH)
+        pen.line((x, y), (x, pins.get(port, 0.0)), (0.0, pins.get(port, 0.0)), look=TOOTH)
+    pen.circle(-6.0, 3.0, 1.5, look=INK._replace(fill=INK.colour))
+    pen.line((0.0, 3.0), (0.0, pins.get("carrier", 0.0)), look=TOOTH)
+    for port, letter in (("ring", "R"), ("carrier", "C"), ("large_sun", "L"), ("small_sun", "S")):
+        out(pen, shown, port, 0.0, letter)
+
+
+def chain(pen: Pen, shown: Drawn) -> None:
+    """Two sprockets with a chain around them."""
+    for y in (PITCH / 2, -PITCH / 2):
+        pen.circle(0.0, y, 6.0, look=Look(width=1.2, fill="#DDE3EA"))
+    for x in (-6.0, 6.0):
+        pen.line((x, PITCH / 2), (x, -PITCH / 2), look=INK._replace(width=1.6, dash="dash"))
+    for y, port in ((PITCH / 2, "input"), (-PITCH / 2, "output")):
+        out(pen, shown, port, 0.0)
+        if port in shown.fixed:
+            wall(pen, RIGHT, 0.0, shown, y, 6.0)
+    out(pen, shown, "support", 0.0)
+
+
+def belt(pen: Pen, shown: Drawn) -> None:
+    """Two pulleys with a belt around them."""
+    halo(pen, shown)
+    for y in (PITCH / 2, -PITCH / 2):
+        pen.circle(0.0, y, 6.0, look=Look(width=1.2, fill="#DDE3EA"))
+    crossed = -1.0 if getattr(shown.element, "crossed", False) else 1.0
+    for x in (-6.0, 6.0):
+        pen.line((x, PITCH / 2), (x * crossed, -PITCH / 2), look=ink(shown, 1.6))
+    for port in ("base", "follower"):
+        out(pen, shown, port, 0.0)
 
 
 def _members(pen: Pen, shown: Drawn, axle: float) -> None:
@@ -155,6 +210,16 @@ GEARS = {
     "gear": Symbol(pair, 16.0, 33.0, 33.0, PAIR),
     "planetary": Symbol(planetary, 20.0, 22.0, 22.0, SETS),
     "double_planetary": Symbol(double_planetary, 22.0, 22.0, 22.0, SETS),
+    "bevel_gear": Symbol(pair, 16.0, 33.0, 33.0, PAIR),
+    "belt_contact": CONTACTS["clutch"],
+    "belt_drive": Symbol(belt, 16.0, 20.0, 20.0, {"base": PITCH / 2, "follower": -PITCH / 2}),
+    "chain": Symbol(chain, 16.0, 20.0, 20.0, PAIR),
+    "compound_planetary": Symbol(compound_planetary, 20.0, 22.0, 22.0, SETS),
+    "ravigneaux": Symbol(
+        ravigneaux, 20.0, 24.0, 28.0, {"ring": 19.0, "carrier": 6.0, "large_sun": -9.0, "small_sun": -22.0}
+    ),
+    "polygon_sprocket": Symbol(wheel, 18.0, 16.0, 17.0, {"support": 16.0}),
+    "rack_pinion": Symbol(wheel, 18.0, 16.0, 17.0, {"support": 16.0}),
     "rolling_wheel": Symbol(wheel, 18.0, 16.0, 17.0, {"support": 16.0}),
     "dog_clutch": Symbol(dogs),
     "synchroniser": Symbol(synchroniser, 18.0, 21.0, 21.0, {"hub": 0.0, "forward": 14.0, "backward": -14.0}),

@@ -50,6 +50,45 @@ def spring_damper(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -14.0, 14.0)
 
 
+def flexible_shaft(pen: Pen, shown: Drawn) -> None:
+    """Inertias with springs between them."""
+    for x in (-16.0, 0.0, 16.0):
+        pen.box(x - 1.6, -7.0, x + 1.6, 7.0, look=BODY._replace(width=1.0))
+    zigzag(pen, -14.4, -1.6, 0.0, 3.6)
+    zigzag(pen, 1.6, 14.4, 0.0, 3.6)
+    ends(pen, shown, -17.6, 17.6)
+
+
+def nonlinear_spring(pen: Pen, shown: Drawn) -> None:
+    """A spring with a bent line across it."""
+    zigzag(pen, -14.0, 14.0, 0.0, 6.0)
+    pen.line((-11.0, -9.0), (-4.0, -2.5), (4.0, 2.5), (11.0, 9.0), look=THIN)
+    ends(pen, shown, -14.0, 14.0)
+
+
+def jenkins_element(pen: Pen, shown: Drawn) -> None:
+    """A spring in series with two plates that rub."""
+    zigzag(pen, -14.0, 3.0, 0.0)
+    pen.line((3.0, 0.0), (9.0, 0.0), look=INK._replace(width=2.0))
+    for y in (-3.0, 3.0):
+        pen.line((4.0, y), (13.0, y), look=INK._replace(width=1.6))
+    pen.line((13.0, -3.0), (13.0, 3.0))
+    ends(pen, shown, -14.0, 13.0)
+
+
+def torsional_damper(pen: Pen, shown: Drawn) -> None:
+    """A spring with a bent line across it, and a spring in series with plates that rub, in parallel."""
+    for x in (-14.0, 14.0):
+        pen.line((x, -7.0), (x, 7.0), look=INK._replace(width=1.2))
+    zigzag(pen, -14.0, 14.0, 7.0)
+    pen.line((-10.0, 1.5), (-3.0, 5.5), (3.0, 8.5), (10.0, 12.5), look=THIN)
+    zigzag(pen, -14.0, 3.0, -7.0, 3.0)
+    pen.line((3.0, -7.0), (9.0, -7.0), look=INK._replace(width=2.0))
+    for y in (-9.5, -4.5):
+        pen.line((4.0, y), (14.0, y), look=INK._replace(width=1.4))
+    ends(pen, shown, -14.0, 14.0)
+
+
 def wet_drag(pen: Pen, shown: Drawn) -> None:
     """Two plates with oil between them."""
     for x in (-7.0, 7.0):
@@ -79,12 +118,34 @@ def torque(pen: Pen, shown: Drawn) -> None:
     _to_shaft(pen, shown, 10.5)
 
 
-def prescribed(pen: Pen, shown: Drawn) -> None:
-    """Two circles with the letter of the speed."""
+def prescribed(turning: str, moving: str) -> Callable[[Pen, Drawn], None]:
+    """Two circles with the letter of the motion, of a shaft or of a mass."""
+
+    def draw(pen: Pen, shown: Drawn) -> None:
+        pen.circle(0.0, 0.0, 10.5, look=BLANK)
+        pen.circle(0.0, 0.0, 8.6, look=Look(width=0.6))
+        pen.text(0.0, -2.8, turning if shown.line.colour == INK.colour else moving, 9.5)
+        _to_shaft(pen, shown, 10.5)
+
+    return draw
+
+
+def motor(pen: Pen, shown: Drawn) -> None:
+    """A circle with the letter of a machine."""
     pen.circle(0.0, 0.0, 10.5, look=BLANK)
-    pen.circle(0.0, 0.0, 8.6, look=Look(width=0.6))
-    pen.text(0.0, -2.8, "ω" if shown.line.colour == INK.colour else "v", 9.5)
+    pen.text(0.0, -3.2, "M", 10.0)
     _to_shaft(pen, shown, 10.5)
+
+
+def engine(pen: Pen, shown: Drawn) -> None:
+    """A cylinder with its piston and a crank."""
+    pen.box(-11.0, -10.5, 11.0, 10.5, look=BLANK)
+    pen.line((-4.5, 8.5), (-4.5, -0.5), look=INK._replace(width=1.2))
+    pen.line((4.5, 8.5), (4.5, -0.5), look=INK._replace(width=1.2))
+    pen.box(-3.6, 1.5, 3.6, 5.5, look=BODY)
+    pen.line((0.0, 3.0), (2.4, -5.2), look=INK._replace(width=1.4))
+    pen.circle(0.0, -5.6, 3.2, look=Look(width=0.8))
+    _to_shaft(pen, shown, 11.0)
 
 
 def over_speed(points: Callable[[Any], list[Point]]) -> Callable[[Pen, Drawn], None]:
@@ -139,6 +200,42 @@ def _resisting(_: Any) -> list[Point]:
     return [(0.1 * k, -tanh(0.6 * k)) for k in range(-10, 11)]
 
 
+def _eddy(_: Any) -> list[Point]:
+    return [(0.5 * k, -k / (1.0 + 0.25 * k * k)) for k in range(11)]
+
+
+def _retarder(element: Any) -> list[Point]:
+    with suppress(Exception):
+        k, most, power = (float(getattr(element, name)) for name in ("capacity", "max_torque", "max_power"))
+        last = 1.6 * max(
+            min((most / k) ** 0.5, (power / k) ** (1 / 3)), power / most if k * (power / most) ** 2 > most else 0.0
+        )
+        speeds = [last * step / 40 for step in range(1, 41)]
+        return [(0.0, 0.0), *((w, -min(k * w * w, most, power / w)) for w in speeds)]
+    return [(0.0, 0.0), (0.5, -1.0), (1.0, -1.0)]
+
+
+def motion_sensor(pen: Pen, shown: Drawn) -> None:
+    """A dial with a needle, on thin lines, for it carries nothing."""
+    pen.circle(0.0, 0.0, 10.5, look=BLANK)
+    pen.arc(0.0, -3.0, 8.0, 0.15 * pi, 0.85 * pi, look=THIN)
+    pen.line((0.0, -3.0), (4.0, 3.4), look=INK._replace(width=1.2))
+    for side in (LEFT, RIGHT):
+        if side in shown.sides.values():
+            pen.line((side * shown.half, 0.0), (side * 10.5, 0.0), look=THIN)
+        else:
+            wall(pen, side, side * 10.5, shown)
+
+
+def torque_sensor(pen: Pen, shown: Drawn) -> None:
+    """A dial around a shaft that goes through."""
+    pen.circle(0.0, 0.0, 10.5, look=BLANK)
+    pen.arc(0.0, 1.0, 6.5, 0.15 * pi, 0.85 * pi, look=THIN)
+    pen.line((0.0, 2.0), (3.0, 6.6), look=INK._replace(width=1.2))
+    pen.line((-10.5, -3.0), (10.5, -3.0), look=shown.line)
+    ends(pen, shown, -10.5, 10.5)
+
+
 def unknown(pen: Pen, shown: Drawn) -> None:
     """An element that has no symbol of its own: a box, its ports one below the other."""
     tall = max(10.0, *(abs(y) + 6.0 for y in shown.pins.values())) if shown.pins else 10.0
@@ -154,11 +251,25 @@ TORQUES = {
     "spring": Symbol(spring, 18.0, 8.0, 8.0),
     "damper": Symbol(damper, 16.0, 8.0, 8.0),
     "spring_damper": Symbol(spring_damper, 18.0),
+    "nonlinear_spring": Symbol(nonlinear_spring, 18.0, 10.0, 10.0),
+    "jenkins_element": Symbol(jenkins_element, 18.0, 8.0, 8.0),
+    "torsional_damper": Symbol(torsional_damper, 18.0),
+    "flexible_shaft": Symbol(flexible_shaft, 22.0, 8.0, 8.0),
     "wet_drag": Symbol(wet_drag),
     "torque": Symbol(torque, 15.0, 11.0, 11.0),
-    "prescribed_speed": Symbol(prescribed, 15.0, 11.0, 11.0),
+    "prescribed_speed": Symbol(prescribed("ω", "v"), 15.0, 11.0, 11.0),
+    "prescribed_position": Symbol(prescribed("φ", "x"), 15.0, 11.0, 11.0),
+    "prescribed_acceleration": Symbol(prescribed("α", "a"), 15.0, 11.0, 11.0),
+    "electric_motor": Symbol(motor, 15.0, 11.0, 11.0),
+    "motor_torque": Symbol(motor, 15.0, 11.0, 11.0),
+    "engine": Symbol(engine, 15.0, 11.0, 11.0),
+    "engine_torque": Symbol(engine, 15.0, 11.0, 11.0),
     "speed_torque": Symbol(over_speed(_table), 15.0, 11.0, 11.0),
     "linear_torque": Symbol(over_speed(_linear), 15.0, 11.0, 11.0),
     "quadratic_torque": Symbol(over_speed(_quadratic), 15.0, 11.0, 11.0),
+    "eddy_current_brake": Symbol(over_speed(_eddy), 15.0, 11.0, 11.0),
+    "retarder": Symbol(over_speed(_retarder), 15.0, 11.0, 11.0),
+    "motion_sensor": Symbol(motion_sensor, 15.0, 11.0, 11.0),
+    "torque_sensor": Symbol(torque_sensor, 15.0, 11.0, 11.0),
     "resisting_torque": Symbol(over_speed(_resisting), 15.0, 11.0, 11.0),
 }

@@ -58,7 +58,7 @@ def low_pass(signal: Signal, cutoff: float) -> Filtered:
     for piece, end in zip(pieces, [*(piece.start for piece in pieces[1:]), None], strict=True):
         if end is not None and end <= 0.0:
             continue
-        piece = _moved(piece, 0.0) if piece.start < 0.0 or not made else piece
+        piece = moved(piece, 0.0) if piece.start < 0.0 or not made else piece
         made.append(_filtered(piece, rate, state))
         state = piece_value(made[-1], end) if end is not None else state
     return Filtered(tuple(made))
@@ -69,7 +69,7 @@ def _passes(piece: Segment, rate: float) -> bool:
     return len(piece.waves) < 2 and all(complex(rate - decay, omega) != 0 for _, omega, _, decay in piece.waves)
 
 
-def _moved(piece: Segment, start: float) -> Segment:
+def moved(piece: Segment, start: float) -> Segment:
     """The same function written about another start; one that begins later is held constant before."""
     if piece.start > start:
         return Segment(start, piece_value(piece, piece.start))

@@ -49,6 +49,7 @@ struct Rodas5P {
   /// Fold the states of the branches into effective dampings and factor. docs/theory/integrators.md
   template <class Form, class T = typename Form::Scalar>
   static CLUTCHWORK_INLINE Truth<T> factor(Form& form, T scale) {
+    if constexpr (Form::full) return form.factor_whole(scale, form.n());
     const Truth<T> regular = factor_motion(form, scale);
     if constexpr (!Form::small) {
       if (regular && form.ws.sys.shared > 0) return factor_border(form, scale, [&](T* b) { solve_motion(form, b); });
@@ -59,6 +60,7 @@ struct Rodas5P {
   /// b := (scale M - J)^-1 b.
   template <class Form, class T = typename Form::Scalar>
   static CLUTCHWORK_INLINE void solve(Form& form, T* b) {
+    if constexpr (Form::full) return form.solve_whole(b, form.n());
     solve_motion(form, b);
     if constexpr (!Form::small) {
       if (form.ws.sys.shared > 0) solve_border(form, b);

@@ -1,0 +1,56 @@
+#pragma once
+#include <clutchwork/components/bound.hpp>
+#include <clutchwork/components/component.hpp>
+
+/// Losses in a gear mesh from efficiencies and friction over the speed: docs/theory/load-dependent.md.
+namespace clutchwork {
+
+/// Efficiencies and friction of both directions of power at one speed.
+template <class S>
+struct Losses {
+  S ahead, back;                    ///< [1] efficiency where the input drives, and where the output does
+  S friction_ahead, friction_back;  ///< [N m] at the input
+
+  /// What holds against slip in a direction, over the torque of the mesh on its input. docs/theory/load-dependent.md
+  /// (4)
+  Bound<S> bound(int direction) const {
+    const S gain = S(1) / ahead - S(1), loss = S(1) - back, sign = S(direction);
+    const S weak = select(value(back) > 0, back * friction_back, S(0));
+    return {{-sign * gain, sign * loss}, {friction_ahead / ahead, weak}};
+  }
+};
+
+/// A loss table in the pool: rows of speed, two efficiencies, two frictions; linear between rows and beyond them.
+template <class T>
+struct LossTable {
+  const Curve<T>& list;
+  static constexpr int columns = 5;
+
+  int rows() const { return int(common(list.count)) / columns; }
+  double at(const double* points, int row, int column) const {
+    return points[3 * (int(common(list.first)) + row * columns + column)];
+  }
+  bool fits() const {
+    const int count = int(common(list.count));
+    return count > 0 && count % columns == 0;
+  }
+  /// Speeds at which one line follows another.
+  int edges() const { return rows() > 2 ? rows() - 2 : 0; }
+  double edge(const double* points, int i) const { return at(points, i + 1, 0); }
+
+  template <class S>
+  Losses<S> on(const double* points, int piece, const S& speed) const {
+    if (rows() == 1) {
+      auto same = [&](int column) { return S(at(points, 0, column)); };
+      return {same(1), same(2), same(3), same(4)};
+    }
+    const double start = at(points, piece, 0), length = at(points, piece + 1, 0) - start;
+    auto line = [&](int column) {
+      const double first = at(points, piece, column), rise = (at(points, piece + 1, column) - first) / length;
+      return S(first) + (speed - S(start)) * S(rise);
+    };
+    return {line(1), line(2), line(3), line(4)};
+  }
+};
+
+}  // namespace clutchwork

@@ -1,0 +1,20 @@
+#pragma once
+#include <clutchwork/components/component.hpp>
+
+namespace clutchwork {
+
+/// What rigid stops have in common: no load, no way of their own.
+struct RigidStop {
+  static constexpr bool one_way = false;
+
+  template <class P, class S>
+  static S load(const P&, const At<S>&) {
+    return S(0);
+  }
+  template <class P>
+  static auto rest_speed(const P& p) {
+    return p.rest_speed;
+  }
+};
+
+}  // namespace clutchwork

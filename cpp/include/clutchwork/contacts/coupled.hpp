@@ -1,0 +1,220 @@
+#pragma once
+#include <clutchwork/components/bound.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/workspace/settings.hpp>
+
+/// Torques of contacts at rest and in slip where some of them follow loads that all of them make:
+/// docs/theory/load-dependent.md.
+namespace clutchwork {
+
+/// One problem of n contacts. Each sticks, or slips with the torque of one of its bounds; that of a contact which
+/// follows a load is a line over the load. Views into memory of the caller.
+template <class T>
+struct CoupledProblem {
+  int n = 0, loads = 0;
+  T* mobility = nullptr;  ///< n x n: slip accelerations by torques
+  T* gradient = nullptr;  ///< n: slip accelerations without these torques
+  T* weight = nullptr;    ///< n: a little mobility of its own, so that torques of dependent contacts are unique
+  T *lower = nullptr, *upper = nullptr;  ///< n, of those without load
+  int* load = nullptr;                   ///< n: number of its load, -1: none
+  int* sliding = nullptr;                ///< n: 1 forward, -1 backward: it slips already, 0: it may stick
+  T* reach = nullptr;                    ///< loads x n: load by the torques
+  T* given = nullptr;                    ///< loads: without these torques
+  Bound<T>* bound = nullptr;             ///< loads x 2: against slip backward, then forward
+
+  // the solution
+  T* x = nullptr;        ///< n: torques
+  T* slope = nullptr;    ///< n: slip accelerations
+  T* now = nullptr;      ///< loads
+  int* state = nullptr;  ///< n: 0 sticks, 1 slips forward, -1 backward
+  int* line = nullptr;   ///< n: of the bound that it slips with
+  T* matrix = nullptr;   ///< n x n
+  T* trial = nullptr;    ///< n
+  int* pivot = nullptr;  ///< n
+  int* next = nullptr;   ///< 2 n: what state and line change to
+
+  const Bound<T>& against(int k, int direction) const { return bound[2 * load[k] + (direction > 0 ? 1 : 0)]; }
+};
+
+/// Loads and slip accelerations of the torques x.
+template <class T>
+void follow(CoupledProblem<T>& p) {
+  for (int l = 0; l < p.loads; ++l) p.now[l] = p.given[l] + dot(p.n, p.reach + l * p.n, p.x);
+  for (int i = 0; i < p.n; ++i) p.slope[i] = p.gradient[i] + dot(p.n, p.mobility + i * p.n, p.x);
+}
+
+/// Torque of a contact that slips, or how far its slip acceleration is from zero where it sticks, at the present x.
+template <class T>
+T missing(const CoupledProblem<T>& p, int i, bool regular) {
+  if (p.state[i] == 0) return -(p.slope[i] + (regular ? p.weight[i] * p.x[i] : T(0)));
+  if (p.load[i] < 0) return (p.state[i] > 0 ? p.lower[i] : p.upper[i]) - p.x[i];
+  return T(-p.state[i]) * p.against(i, p.state[i]).on(p.line[i], p.now[p.load[i]]) - p.x[i];
+}
+
+/// Torques of the present states: one linear system, refined. False: it is singular.
+/// docs/theory/load-dependent.md (8)
+template <class T>
+bool solve_states(CoupledProblem<T>& p) {
+  const int n = p.n;
+  for (int i = 0; i < n; ++i) {
+    T* row = p.matrix + i * n;
+    if (p.state[i] == 0) {
+      for (int j = 0; j < n; ++j) row[j] = p.mobility[i * n + j];
+      row[i] += p.weight[i];
+      continue;
+    }
+    for (int j = 0; j < n; ++j) row[j] = T(0);
+    if (p.load[i] >= 0) {
+      const T slope = p.against(i, p.state[i]).slope[p.line[i]] * T(p.state[i]);
+      for (int j = 0; j < n; ++j) row[j] = slope * p.reach[p.load[i] * n + j];
+    }
+    row[i] += T(1);
+  }
+  if (!factor_lu(n, p.matrix, p.pivot)) return false;
+  // from any start; the last steps take out the weight, as long as that brings the torques closer
+  double before = infinity;
+  for (int step = 0; step < 5; ++step) {
+    follow(p);
+    double size = 0;
+    for (int i = 0; i < n; ++i) p.trial[i] = missing(p, i, step < 2), size = larger(size, abs(value(p.trial[i])));
+    if (step >= 2 && !(size < before)) break;
+    if (step >= 2) before = size;
+    solve_lu(n, p.matrix, p.pivot, p.trial);
+    for (int i = 0; i < n; ++i) p.x[i] += p.trial[i];
+  }
+  follow(p);
+  double sum = 0;
+  for (int i = 0; i < n; ++i) sum += value(p.x[i]) * 0 + value(p.slope[i]) * 0;
+  return sum == 0;
+}
+
+/// Round-off of a torque, of a slip acceleration and of a load of contact i.
+template <class T>
+struct Rounding {
+  double torque = 0, slope = 0;
+};
+template <class T>
+Rounding<T> rounding(const CoupledProblem<T>& p, int i) {
+  Rounding<T> made;
+  made.slope = abs(value(p.gradient[i]));
+  for (int j = 0; j < p.n; ++j) {
+    made.slope = larger(made.slope, abs(value(p.mobility[i * p.n + j] * p.x[j])));
+    made.torque = larger(made.torque, abs(value(p.x[j])));
+  }
+  for (int l = 0; l < p.loads; ++l) made.torque = larger(made.torque, abs(value(p.given[l])));
+  return {1e-11 * made.torque, 1e-11 * made.slope};
+}
+
+/// State and line that contact i should have at the present torques. docs/theory/load-dependent.md (9)
+template <class T>
+void wanted(const CoupledProblem<T>& p, int i, int& state, int& line) {
+  const Rounding<T> noise = rounding(p, i);
+  T low = p.lower[i], high = p.upper[i];
+  state = p.state[i], line = p.line[i];
+  if (p.load[i] >= 0) {
+    const T load = p.now[p.load[i]];
+    const Bound<T>&ahead = p.against(i, 1), &behind = p.against(i, -1);
+    low = -ahead.at(load), high = behind.at(load);
+    const int going = state != 0 ? state : value(p.x[i]) > 0 ? -1 : 1;
+    const Bound<T>& own = p.against(i, going);
+    const double gain = value(own.on(1 - line, load)) - value(own.on(line, load));
+    if (state == 0 || gain > noise.torque) line = own.line_at(load);
+  }
+  if (p.sliding[i] != 0) return;
+  if (state == 0) {
+    if (value(p.x[i]) > value(high) + noise.torque) state = -1;
+    if (value(p.x[i]) < value(low) - noise.torque) state = 1;
+  } else if (value(p.slope[i]) * state < -noise.slope) {
+    state = 0;
+  }
+}
+
+/// All that want another state or line get it, or from `single` on the first alone. How many wanted one.
+template <class T>
+int change_states(CoupledProblem<T>& p, bool single) {
+  int changes = 0;
+  for (int i = 0; i < p.n; ++i) wanted(p, i, p.next[2 * i], p.next[2 * i + 1]);
+  for (int i = 0; i < p.n; ++i) {
+    if (p.next[2 * i] == p.state[i] && p.next[2 * i + 1] == p.line[i]) continue;
+    const bool counts = p.next[2 * i] != p.state[i] || p.state[i] != 0;
+    if (!counts || !single || changes == 0) p.state[i] = p.next[2 * i], p.line[i] = p.next[2 * i + 1];
+    changes += counts;
+  }
+  return changes;
+}
+
+/// The next of all combinations of states and lines; false: that was the last.
+template <class T>
+bool count_on(CoupledProblem<T>& p) {
+  for (int i = 0; i < p.n; ++i) {
+    const int lines = p.load[i] >= 0 ? 2 : 1;
+    if (p.state[i] != 0 && p.line[i] + 1 < lines) return ++p.line[i], true;
+    p.line[i] = 0;
+    if (p.sliding[i] == 0) {
+      if (p.state[i] == 0) return p.state[i] = 1, true;
+      if (p.state[i] == 1) return p.state[i] = -1, true;
+      p.state[i] = 0;
+    }
+  }
+  return false;
+}
+
+/// How many combinations there are, at most `most`.
+template <class T>
+long combinations(const CoupledProblem<T>& p, long most) {
+  long all = 1;
+  for (int i = 0; i < p.n && all < most; ++i) {
+    const int lines = p.load[i] >= 0 ? 2 : 1;
+    all *= p.sliding[i] != 0 ? lines : 1 + 2 * lines;
+  }
+  return all;
+}
+
+inline constexpr long most_combinations = 4096;
+
+template <class T>
+void start_states(CoupledProblem<T>& p) {
+  for (int i = 0; i < p.n; ++i) {
+    p.state[i] = p.sliding[i], p.x[i] = T(0);
+    if (p.sliding[i] == 0) p.line[i] = 0;
+  }
+}
+
+/// Policy iteration from all at rest: each round solves for the torques and gives the contact that is farthest from it
+/// the state that they ask for, or all of them. False: it does not settle.
+template <class T>
+bool iterate_states(CoupledProblem<T>& p, bool single) {
+  start_states(p);
+  for (int round = 0; round < 40 * p.n + 60; ++round) {
+    if (!solve_states(p)) return false;
+    if (change_states(p, single) == 0) return true;
+  }
+  return false;
+}
+
+/// All combinations, those at rest first; false: none fits.
+template <class T>
+bool enumerate_states(CoupledProblem<T>& p) {
+  if (combinations(p, most_combinations) >= most_combinations) return false;
+  for (int i = 0; i < p.n; ++i) p.line[i] = 0;
+  start_states(p);
+  do {
+    if (!solve_states(p)) continue;
+    bool fits = true;
+    for (int i = 0; i < p.n && fits; ++i) {
+      int state, line;
+      wanted(p, i, state, line);
+      fits = state == p.state[i] && (state == 0 || line == p.line[i]);
+    }
+    if (fits) return true;
+  } while (count_on(p));
+  return false;
+}
+
+/// Torques, states and lines that fit together. False: there are none, or they were not found.
+template <class T>
+bool solve(CoupledProblem<T>& p) {
+  return iterate_states(p, false) || iterate_states(p, true) || enumerate_states(p);
+}
+
+}  // namespace clutchwork

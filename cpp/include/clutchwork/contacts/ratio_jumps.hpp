@@ -1,0 +1,70 @@
+#pragma once
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/contacts/impulses.hpp>
+#include <clutchwork/contacts/ratios.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// Jumps of the ratios of transmissions. docs/theory/varying-ratios.md
+namespace clutchwork {
+
+/// Impulses along both directions of a transmission that give its rates the changes c1 and c2.
+template <class T>
+void impulses_for(T p11, T p12, T p22, T c1, T c2, T& j1, T& j2) {
+  const T det = p11 * p22 - p12 * p12;
+  j1 = j2 = T(0);
+  if (value(det) > 1e-20 * value(p11 * p22)) {
+    j1 = (p22 * c1 - p12 * c2) / det, j2 = (p11 * c2 - p12 * c1) / det;
+  } else if (value(p11) > value(p22)) {
+    j1 = c1 / p11;
+  } else if (value(p22) > 0) {
+    j2 = c2 / p22;
+  }
+}
+
+/// The ratio of a transmission has jumped: the limit of a fast change, in which it acts alone, the others kept. The
+/// square of its second rate goes with the inverse of the mobility of its row. docs/theory/varying-ratios.md (12)
+template <class T>
+void jump_ratio(Workspace<T>& ws, int a, T ratio) {
+  Ratios<T>& r = ws.ratios;
+  const int d = first_of(ws, a), nv = int(ws.sys.speeds);
+  span_rows(ws, a), leave_directions(ws);
+  const T *x1 = r.white.val + d * nv, *x2 = x1 + nv;
+  const T p11 = dot(nv, x1, x1), p12 = dot(nv, x1, x2), p22 = dot(nv, x2, x2);
+  auto mobility = [&](T i) { return p11 - T(2) * i * p12 + i * i * p22; };
+  const T r1 = rate_of(ws, d), r2 = rate_of(ws, d + 1), before = mobility(r.value[a]), after = mobility(ratio);
+  r.value[a] = ratio;
+  if (!(value(before) > 0) || !(value(after) > 0)) return;
+  const T to = r2 * sqrt(before / after);
+  T j1, j2, *x = ws.decision.speed;
+  impulses_for(p11, p12, p22, ratio * to - r1, to - r2, j1, j2);
+  for (int i = 0; i < nv; ++i) x[i] = j1 * x1[i] + j2 * x2[i];
+  backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
+  for (int k = 0; k < r.rank; ++k) r.share[k] = -(j1 * r.part[d * r.n + k] + j2 * r.part[(d + 1) * r.n + k]);
+  torques_of_rows(ws, [&](auto&& carry) { carry(d, j1), carry(d + 1, j2); });
+  auto own = [&](int e) { return e == d ? j1 : e == d + 1 ? j2 : T(0); };
+  meter_impulse(ws, x, [](int) { return T(0); }, [&](int e) { return impulse_of_row(ws, e) + own(e); });
+  for (int i = 0; i < nv; ++i) ws.v[i] += x[i];
+  for (int p = 0; p < ws.sys.prescribed; ++p) {
+    T impulse = -impulse_on_source(ws, p) - j1 * prescribed_share(ws, d, p) - j2 * prescribed_share(ws, d + 1, p);
+    for (int i = 0; i < nv; ++i) impulse += T(ws.sys.mass_prescribed[i * ws.sys.prescribed + p]) * x[i];
+    ws.prescribed_work[p] += impulse * ws.in.prescribed[p];
+  }
+}
+
+/// Ratios that have jumped, one after another.
+template <class T>
+void jump_ratios(Workspace<T>& ws, double tolerance) {
+  Ratios<T>& r = ws.ratios;
+  if (!ratios_jump(ws)) return;
+  for (int a = 0; a < r.n; ++a) r.value[a] = r.before[a];
+  for (int a = 0; a < r.n; ++a) {
+    const T ratio = ratio_now(ws, a).v;
+    write_rows(ws);
+    follower_of(ws, a) < 0 && value(ratio - r.before[a]) != 0 ? jump_ratio(ws, a, ratio) : void(r.value[a] = ratio);
+  }
+  write_rows(ws), move_followers(ws);
+  part_moved(ws, tolerance);
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,86 @@
+#pragma once
+#include <clutchwork/component.hpp>
+#include <clutchwork/components/speed_ratio.hpp>
+
+namespace clutchwork::elements {
+
+/// Fluid coupling: torque k(slow/fast) fast^2 from the fast to the slow shaft. Pieces: the intervals of the table with
+/// the base as the fast shaft, then with the follower. docs/theory/coupled.md
+struct FluidCoupling : declared::FluidCoupling {
+  template <class T>
+  struct Params {
+    Curve<T> speed_ratio;         ///< 1
+    Curve<T> capacity;            ///< N m s2/rad2
+    Curve<T> performance_number;  ///< 1
+    T density;                    ///< [kg/m3]
+    T diameter;                   ///< [m]
+  };
+
+  template <class T, class S>
+  static void torques(const Params<T>& p, const At<S>& at, OwnTorques<S> torque) {
+    const List ratios = list_of(p.speed_ratio, at.points);
+    const bool by_base = at.piece < ratios.count;
+    const S fast = by_base ? at.rates[Way::base] : at.rates[Way::follower], &slip = at.rates[Way::slip];
+    torque[Way::base] = torque[Way::follower] = S(0);
+    torque[Way::slip] = S(0);
+    if (fast == S(0)) return;
+    const S above = (by_base ? slip : -slip) / fast;
+    const S k = over_ratio(ratios, at.piece % ratios.count, above, [&](int i) { return factor(p, at.points, i); });
+    torque[Way::slip] = k * fast * abs(fast) * S(by_base ? 1 : -1);
+  }
+  template <class T, class S>
+  static void state_rates(const Params<T>&, const At<S>&, S*) {}
+
+  template <class T>
+  static bool fits(const Params<T>& p) {
+    const int n = int(common(p.speed_ratio.count)), k = int(common(p.capacity.count));
+    return n >= 2 && (k == n || (k == 1 && int(common(p.performance_number.count)) == n));
+  }
+
+  /// Who: 0 leaves its piece to lower ratios, 1 to higher ones.
+  template <class T, class S>
+  static S margin(const Params<T>& p, const At<S>& at, int& who) {
+    const List ratios = list_of(p.speed_ratio, at.points);
+    const int piece = at.piece % ratios.count;
+    const bool by_base = at.piece < ratios.count;
+    const S fast = by_base ? at.rates[Way::base] : at.rates[Way::follower];
+    const S slow = by_base ? at.rates[Way::follower] : at.rates[Way::base];
+    const S slip = by_base ? at.rates[Way::slip] : -at.rates[Way::slip];
+    const S size = abs(fast) + S(1e-9), turn = S(fast < S(0) ? -1 : 1) / size;
+    const S low = (slow - S(piece == 0 ? -1.0 : ratios[piece - 1]) * fast) * turn;
+    const S high = -(slip + S(1.0 - ratios[piece]) * fast) * turn;
+    who = high < low ? 1 : 0;
+    return smaller(low, high);
+  }
+  template <class T, class S>
+  static int cross(const Params<T>& p, const At<S>& at, int who, S*) {
+    const int n = int(common(p.speed_ratio.count)), piece = at.piece % n, side = at.piece - piece;
+    if (who == 1) return piece + 1 < n ? at.piece + 1 : piece + (side == 0 ? n : 0);
+    return piece > 0 ? at.piece - 1 : side == 0 ? n : 0;
+  }
+  template <class T>
+  static bool turns(const Params<T>&, int) {
+    return false;
+  }
+  template <class T, class S>
+  static int settle(const Params<T>& p, const At<S>& at) {
+    int who;
+    if (value(margin(p, at, who)) >= 0) return at.piece;
+    const List ratios = list_of(p.speed_ratio, at.points);
+    const double base = value(at.rates[Way::base]), follower = value(at.rates[Way::follower]);
+    const bool by_base = abs(base) >= abs(follower);
+    const double fast = by_base ? base : follower, slow = by_base ? follower : base;
+    return ratio_piece(ratios, fast == 0 ? 0.0 : slow / fast) + (by_base ? 0 : ratios.count);
+  }
+
+ private:
+  /// k at point i.
+  template <class T>
+  static T factor(const Params<T>& p, const double* points, int i) {
+    if (common(p.capacity.count) > 1) return T(list_of(p.capacity, points)[i]);
+    const T d = p.diameter;
+    return T(list_of(p.performance_number, points)[i]) * p.density * d * d * d * d * d;
+  }
+};
+
+}  // namespace clutchwork::elements

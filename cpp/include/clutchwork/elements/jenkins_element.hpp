@@ -1,0 +1,135 @@
+#pragma once
+#include <clutchwork/component.hpp>
+#include <clutchwork/components/elastic_contact.hpp>
+#include <clutchwork/components/stretch.hpp>
+
+namespace clutchwork::elements {
+
+/// Spring in series with dry friction whose limit is a table over the twist, and grows with the square of a speed.
+/// docs/theory/compliance.md (14)
+struct JenkinsElement : declared::JenkinsElement {
+  template <class T>
+  struct Params {
+    T stiffness;       ///< [N m/rad]
+    Curve<T> limit;    ///< rad -> N m
+    T speed_friction;  ///< [N m s2/rad2]
+  };
+  // on each piece of the limit it sticks, or slides one way or the other
+  enum Mode : int { sticks, ahead, behind };
+
+  static int mode(int piece) { return piece % 3; }
+  static int segment(int piece) { return piece / 3; }
+  static int side(int piece) { return mode(piece) == behind ? -1 : 1; }
+  static int piece_of(int segment, int mode) { return 3 * segment + mode; }
+  template <class T>
+  static bool follows_speed(const Params<T>& p) {
+    return value(p.speed_friction) > 0;
+  }
+
+  /// A limit that is one number needs no twist.
+  template <class T>
+  static int count(const Params<T>& p) {
+    return int(value(p.limit.count)) > 1 ? 2 : 1;
+  }
+  template <class T, class S>
+  static S limit(const Params<T>& p, const At<S>& at) {
+    const S v = at.input[Input::speed], more = p.speed_friction * v * v;
+    if (count(p) == 1) return S(at.points[3 * int(value(p.limit.first)) + 1]) + more;
+    return curve_value(p.limit, at.points, at.state[twist], segment(at.piece)) + more;
+  }
+  /// Torque of the spring: its state where it sticks.
+  template <class T, class S>
+  static S spring(const Params<T>& p, const At<S>& at) {
+    return mode(at.piece) == sticks ? at.state[friction_torque] : T(side(at.piece)) * limit(p, at);
+  }
+  /// Rate of the spring over the rate of the twist, at a constant speed.
+  template <class T, class S>
+  static T growth(const Params<T>& p, const At<S>& at) {
+    if (mode(at.piece) == sticks) return p.stiffness;
+    return T(side(at.piece) * piece_slope(p.limit, at.points, segment(at.piece)));
+  }
+  template <class T, class S>
+  static S torque(const Params<T>& p, const At<S>& at) {
+    return -spring(p, at);
+  }
+  template <class T, class S>
+  static S heat(const Params<T>& p, const At<S>& at) {
+    return spring(p, at) * at.rate * (T(1) - growth(p, at) / p.stiffness);
+  }
+  template <class T, class S>
+  static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
+    rates[friction_torque] = growth(p, at) * at.rate;
+    // what the speed does to the limit: while it slides the state is shown and nothing else, so it may come after
+    if (mode(at.piece) != sticks && follows_speed(p))
+      rates[friction_torque] += (spring(p, at) - at.state[friction_torque]) / T(after);
+    if (count(p) > 1) rates[twist] = at.rate;
+  }
+
+  template <class T, class S>
+  static S margin(const Params<T>& p, const At<S>& at, int& who) {
+    LeastGuard<S> guards;
+    const int k = segment(at.piece), m = mode(at.piece);
+    if (count(p) > 1) {
+      each_end(p.limit, at.points, at.state[twist], k,
+               [&](const S& room, int next) { guards.watch(room, piece_of(next, m)); });
+    }
+    if (m == sticks) {
+      const S size = S(largest(p, at.points));
+      guards.watch((limit(p, at) - at.state[friction_torque]) / size, piece_of(k, ahead));
+      guards.watch((limit(p, at) + at.state[friction_torque]) / size, piece_of(k, behind));
+    } else if (follows_speed(p)) {
+      guards.watch(lead(p, at), piece_of(k, sticks));
+    }
+    who = guards.who;
+    return S(guards.least) + guards.change;
+  }
+  /// Sliding ends where the limit grows faster than the spring: where the slip turns, behind a knot, with the speed.
+  template <class T>
+  static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
+    const int next = who == turned ? piece_of(segment(at.piece), sticks) : who;
+    const At<T> there{at.rate, at.state, at.input, mode(at.piece) == sticks ? next : at.piece, at.points};
+    state[friction_torque] = spring(p, there);
+    return mode(at.piece) == sticks ? next : kept(p, at, next);
+  }
+  template <class T>
+  static bool turns(const Params<T>& p, int piece) {
+    return mode(piece) != sticks && !follows_speed(p);
+  }
+  template <class T>
+  static int settle(const Params<T>& p, const At<T>& at) {
+    const int k = segment(at.piece), m = mode(at.piece);
+    return kept(p, at, piece_of(count(p) > 1 ? stretch_of(p.limit, at.points, value(at.state[twist]), k) : k, m));
+  }
+
+ private:
+  static constexpr double after = 1e-4;  // [s]
+
+  /// A piece, and where it slides whether it goes on: the spring would grow faster than the limit. Where the limit
+  /// follows a speed, its guard tells.
+  template <class T>
+  static int kept(const Params<T>& p, const At<T>& at, int piece) {
+    if (mode(piece) == sticks || follows_speed(p)) return piece;
+    const double faster = side(piece) * value(p.stiffness) - piece_slope(p.limit, at.points, segment(piece));
+    return faster * value(at.rate) >= 0 ? piece : piece_of(segment(piece), sticks);
+  }
+  /// How much faster the spring would grow than the limit, over its stiffness; the drift of the input is that of the
+  /// speed.
+  template <class T, class S>
+  static S lead(const Params<T>& p, const At<S>& at) {
+    const S v = at.input[Input::speed];
+    const double faster = side(at.piece) * value(p.stiffness) - piece_slope(p.limit, at.points, segment(at.piece));
+    S found = T(faster) * at.rate / p.stiffness;
+    if constexpr (requires { v.d[0]; }) found -= T(2) * p.speed_friction * v.v * v.d[0] / p.stiffness;
+    return found;
+  }
+  /// The largest limit of the table: what counts as far from it.
+  template <class T>
+  static double largest(const Params<T>& p, const double* points) {
+    double most = 0;
+    for (int i = 0; i < int(value(p.limit.count)); ++i)
+      most = larger(most, points[3 * (int(value(p.limit.first)) + i) + 1]);
+    return most > 0 ? most : 1.0;
+  }
+};
+
+}  // namespace clutchwork::elements

@@ -1,0 +1,58 @@
+#pragma once
+#include <clutchwork/component.hpp>
+
+namespace clutchwork::elements {
+
+/// Slope and position on a road; piece i ends at point i of its elevation. docs/theory/vehicle.md (5)
+struct Road : declared::Road {
+  template <class T>
+  struct Params {
+    Curve<T> elevation;  ///< m -> m
+  };
+
+  template <class T, class S>
+  static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
+    const double up = slope_on(p, at.points, at.piece);
+    rates[slope] = S(0);
+    rates[position] = at.input[Input::speed] / T(sqrt(1 + up * up));
+  }
+
+  /// Way to the nearer end of the piece.
+  template <class T, class S>
+  static S margin(const Params<T>& p, const At<S>& at, int& who) {
+    const int n = int(common(p.elevation.count)), piece = at.piece < n ? at.piece : n;
+    const Real<S>* x = at.points + 3 * int(common(p.elevation.first));
+    const S back = piece > 0 ? at.state[position] - S(x[3 * (piece - 1)]) : S(1e300);
+    const S on = piece < n ? S(x[3 * piece]) - at.state[position] : S(1e300);
+    who = value(on) < value(back) ? forward : backward;
+    return who == forward ? on : back;
+  }
+  template <class T>
+  static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
+    const int n = int(common(p.elevation.count));
+    const Real<T>* points = at.points + 3 * int(common(p.elevation.first));
+    auto x = [&](int i) { return points[3 * i]; };
+    int piece = at.piece < n ? at.piece : n;
+    // the point itself, so that round-off does not lead back over it
+    const double passed = x(who == forward ? piece : piece - 1);
+    if (abs(value(state[position]) - passed) < 1e-9 * (1 + abs(passed))) state[position] = T(passed);
+    if (who == forward) {
+      for (++piece; piece < n && value(state[position]) > x(piece);) ++piece;
+    } else {
+      for (--piece; piece > 0 && value(state[position]) < x(piece - 1);) --piece;
+    }
+    state[slope] = T(slope_on(p, at.points, piece));
+    return piece;
+  }
+
+ private:
+  /// Slope of a piece; the road is level outside of its points.
+  template <class T>
+  static double slope_on(const Params<T>& p, const double* points, int piece) {
+    const int n = int(common(p.elevation.count));
+    return piece > 0 && piece < n ? points[3 * (int(common(p.elevation.first)) + piece) - 1] : 0.0;
+  }
+  enum Who : int { forward, backward };
+};
+
+}  // namespace clutchwork::elements

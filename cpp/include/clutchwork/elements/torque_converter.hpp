@@ -1,0 +1,135 @@
+#pragma once
+#include <clutchwork/component.hpp>
+#include <clutchwork/components/speed_ratio.hpp>
+
+namespace clutchwork::elements {
+
+/// Torque converter. Pieces: the intervals of the table while the impeller drives; the same while the turbine overruns
+/// it; the turbine alone, its impeller turning back; neither. docs/theory/coupled.md
+struct TorqueConverter : declared::TorqueConverter {
+  template <class T>
+  struct Params {
+    Curve<T> speed_ratio;     ///< 1
+    Curve<T> torque_ratio;    ///< 1
+    Curve<T> capacity;        ///< N m s2/rad2
+    Curve<T> k_factor;        ///< rad/s
+    Curve<T> coast_capacity;  ///< N m s2/rad2
+    T lag;                    ///< [s]
+  };
+  enum Who : int { down, up, back, stop };
+
+  template <class T, class S>
+  static void torques(const Params<T>& p, const At<S>& at, OwnTorques<S> torque) {
+    const S taken = value(p.lag) > 0 ? at.state[impeller_torque] : statically(p, at);
+    torque[Way::impeller] = -taken;
+    torque[Way::turbine] = multiplied(p, at) * taken;
+    torque[Way::slip] = S(0);
+  }
+  template <class T, class S>
+  static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
+    if (value(p.lag) > 0) rates[impeller_torque] = (statically(p, at) - at.state[impeller_torque]) / p.lag;
+  }
+  template <class T>
+  static int count(const Params<T>& p) {
+    return value(p.lag) > 0 ? 1 : 0;
+  }
+  template <class T>
+  static bool fits(const Params<T>& p) {
+    auto size = [](const Curve<T>& c) { return int(common(c.count)); };
+    const int n = size(p.speed_ratio), coast = size(p.coast_capacity);
+    const bool drive = size(p.capacity) == n || (size(p.capacity) == 1 && size(p.k_factor) == n - 1);
+    return n >= 2 && size(p.torque_ratio) == n && drive && (coast == n || coast == 1);
+  }
+
+  template <class T, class S>
+  static S margin(const Params<T>& p, const At<S>& at, int& who) {
+    const List ratios = list_of(p.speed_ratio, at.points);
+    const S &w = at.rates[Way::impeller], &t = at.rates[Way::turbine], &slip = at.rates[Way::slip];
+    const S size = abs(w) + abs(t) + S(1e-9);
+    const int n = ratios.count, i = at.piece % n;
+    S least = S(1e300);
+    auto watch = [&](const S& guard, int number) {
+      if (guard < least) least = guard, who = number;
+    };
+    if (at.piece < n) {
+      watch(w, stop);
+      if (i > 0) watch(t - S(ratios[i - 1]) * w, down);
+      watch(-(slip + S(1.0 - ratios[i]) * w), up);
+    } else if (at.piece < 2 * n) {
+      i > 0 && ratios[i - 1] > 0 ? watch(w - S(ratios[i - 1]) * t, down) : watch(w, back);
+      watch(slip - S(1.0 - ratios[i]) * t, up);
+    } else if (at.piece == 2 * n) {
+      watch(-w, back), watch(t, stop);
+    } else {
+      watch(-w, back), watch(-t, stop);
+    }
+    return least / size;
+  }
+  template <class T, class S>
+  static int cross(const Params<T>& p, const At<S>& at, int who, S*) {
+    const List ratios = list_of(p.speed_ratio, at.points);
+    const int n = ratios.count, last = n - 1, alone = 2 * n, none = 2 * n + 1;
+    if (at.piece == none) return who == stop ? alone : 0;
+    if (at.piece == alone) return who == stop ? none : n + ratio_piece(ratios, 0);
+    if (who == back) return alone;
+    if (who == stop) return none;
+    if (who == down) return at.piece - 1;
+    if (at.piece % n < last) return at.piece + 1;
+    return at.piece == last ? n + last : last;
+  }
+  template <class T>
+  static bool turns(const Params<T>&, int) {
+    return false;
+  }
+  template <class T, class S>
+  static int settle(const Params<T>& p, const At<S>& at) {
+    int who = 0;
+    if (value(margin(p, at, who)) >= 0) return at.piece;
+    const List ratios = list_of(p.speed_ratio, at.points);
+    const double w = value(at.rates[Way::impeller]), t = value(at.rates[Way::turbine]);
+    const int n = ratios.count;
+    if (w < 0) return t > 0 ? 2 * n : 2 * n + 1;
+    if (value(at.rates[Way::slip]) > 0) return n + ratio_piece(ratios, w / t);
+    return w > 0 ? ratio_piece(ratios, t / w) : 0;
+  }
+
+ private:
+  /// Torque that the impeller takes up at rest of the oil; below zero where the turbine drives it.
+  template <class T, class S>
+  static S statically(const Params<T>& p, const At<S>& at) {
+    const List ratios = list_of(p.speed_ratio, at.points);
+    const S &w = at.rates[Way::impeller], &t = at.rates[Way::turbine], &slip = at.rates[Way::slip];
+    const int n = ratios.count;
+    if (at.piece > 2 * n || (at.piece < n ? w : t) == S(0)) return S(0);
+    if (at.piece == 2 * n) {
+      // as if the impeller stood
+      const int i = ratio_piece(ratios, 0);
+      return -over_ratio(ratios, i, S(-1), [&](int k) { return coasting(p, at.points, k); }) * t * t;
+    }
+    if (at.piece < n)
+      return w * w * over_ratio(ratios, at.piece, slip / w, [&](int k) { return driving(p, at.points, k); });
+    return -t * t * over_ratio(ratios, at.piece - n, -slip / t, [&](int k) { return coasting(p, at.points, k); });
+  }
+  /// Torque of the turbine over that of the impeller.
+  template <class T, class S>
+  static S multiplied(const Params<T>& p, const At<S>& at) {
+    const List ratios = list_of(p.speed_ratio, at.points);
+    const S& w = at.rates[Way::impeller];
+    if (at.piece >= ratios.count || w == S(0)) return S(1);
+    const List m = list_of(p.torque_ratio, at.points);
+    return over_ratio(ratios, at.piece, at.rates[Way::slip] / w, [&](int k) { return m[k]; });
+  }
+  /// k at point i.
+  template <class T>
+  static double driving(const Params<T>& p, const double* points, int i) {
+    if (common(p.capacity.count) > 1) return list_of(p.capacity, points)[i];
+    const List k = list_of(p.k_factor, points);
+    return i < k.count ? 1 / (k[i] * k[i]) : 0.0;
+  }
+  template <class T>
+  static double coasting(const Params<T>& p, const double* points, int i) {
+    return common(p.coast_capacity.count) > 1 ? list_of(p.coast_capacity, points)[i] : driving(p, points, i);
+  }
+};
+
+}  // namespace clutchwork::elements

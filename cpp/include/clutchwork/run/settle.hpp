@@ -1,0 +1,31 @@
+#pragma once
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/pieces.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// The smooth pieces on which the elements are: docs/theory/events.md, rule 12.
+namespace clutchwork {
+
+/// The elements are on the pieces that hold their rates, states and inputs.
+template <class T>
+void find_pieces(Workspace<T>& ws) {
+  for (int d = 0; d < ws.sys.elements; ++d) {
+    if (ws.sys.element_way[d] != 0) continue;
+    const int edges = edge_count(ws, d);
+    if (edges > 0) ws.piece[d] += piece_of(ws, d, value(rate_of(ws, d))) - ws.piece[d] % (edges + 1);
+    if (!is_settling(ws.sys.element_kind[d])) continue;
+    const Branch<T> b = make_branch(ws, d, 0);
+    ws.piece[d] = settled_piece(ws, b, PresentRates<T>(ws, b).at);
+  }
+}
+
+/// The same inside a phase, where inputs have jumped and rates have not.
+template <class T>
+void settle_pieces(Workspace<T>& ws) {
+  for (int i = 0; i < ws.guard.n_switching; ++i) {
+    Branch<T>& b = ws.branch[ws.guard.switching[i]];
+    if (b.law < 0) ws.piece[b.direction] = b.piece = settled_piece(ws, b, PresentRates<T>(ws, b).at);
+  }
+}
+
+}  // namespace clutchwork

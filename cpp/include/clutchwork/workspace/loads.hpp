@@ -1,0 +1,53 @@
+#pragma once
+#include <clutchwork/components/bound.hpp>
+#include <clutchwork/workspace/arena.hpp>
+#include <clutchwork/workspace/settings.hpp>
+
+/// Contacts whose capacity follows the torque of a gear row, their load: docs/theory/load-dependent.md.
+namespace clutchwork {
+
+/// Of each load.
+template <class T>
+struct Loads {
+  int* of = nullptr;                            ///< of each contact: the number of its load, -1: none
+  int* line = nullptr;                          ///< of the bound with which its contact slips
+  T *by_torque = nullptr, *by_slope = nullptr;  ///< by the torques of all directions, prescribed accelerations
+  T *by_branch = nullptr,
+    *by_prescribed = nullptr;          ///< the same in the present mode, torques of held contacts included
+  T* outer = nullptr;                  ///< without the torques of the locked contacts
+  T *now = nullptr, *drift = nullptr;  ///< where torques were looked at last; its time derivative
+  int n_sliding = 0;
+  int jammed = -1;                            ///< contact that is to stop at once
+  int *sliding = nullptr, *branch = nullptr;  ///< loads whose contacts slip, and the branches of those
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.take(p.of, n.contacts), a.keep(p.line, n.loads, 0, 1), a.scratch(p.by_torque, n.loads * n.directions);
+    a.scratch(p.by_slope, n.loads * n.prescribed), a.scratch(p.by_branch, n.loads * n.directions);
+    a.scratch(p.by_prescribed, n.loads * n.prescribed), a.scratch(p.outer, n.loads), a.take(p.now, n.loads),
+        a.scratch(p.drift, n.loads);
+    a.take(p.sliding, n.loads), a.take(p.branch, n.loads);
+  }
+};
+
+/// Memory of the decision where contacts follow loads: contacts/coupled.hpp.
+template <class T>
+struct CoupledMemory {
+  T *mobility = nullptr, *gradient = nullptr, *weight = nullptr, *lower = nullptr, *upper = nullptr;
+  T *reach = nullptr, *given = nullptr, *x = nullptr, *slope = nullptr, *now = nullptr;
+  T *matrix = nullptr, *trial = nullptr;
+  Bound<T>* bound = nullptr;
+  int *load = nullptr, *sliding = nullptr, *state = nullptr, *line = nullptr, *pivot = nullptr, *next = nullptr;
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    const auto nc = n.loads > 0 ? n.contacts : 0, m = n.loads;
+    a.scratch(p.mobility, nc * nc), a.scratch(p.gradient, nc), a.scratch(p.weight, nc), a.scratch(p.lower, nc);
+    a.scratch(p.upper, nc), a.scratch(p.reach, m * nc), a.scratch(p.given, m), a.scratch(p.x, nc);
+    a.scratch(p.slope, nc), a.scratch(p.now, m), a.scratch(p.matrix, nc * nc), a.scratch(p.trial, nc);
+    a.take(p.bound, 2 * m), a.take(p.load, nc), a.take(p.sliding, nc), a.take(p.state, nc), a.take(p.line, nc);
+    a.take(p.pivot, nc), a.take(p.next, 2 * nc);
+  }
+};
+
+}  // namespace clutchwork

@@ -1,0 +1,44 @@
+"""What all prescribed motions have in common."""
+
+from __future__ import annotations
+
+from clutchwork.declare import Component, Node, Signal, family, port
+from clutchwork.signals.constant import Constant
+
+
+class MotionError(ValueError):
+    """A motion from which no speed follows: quantity, message, value and remedy of the mistake."""
+
+    def __init__(self, quantity: str, message: str, value: str, remedy: str) -> None:
+        super().__init__(message)
+        self.quantity, self.message, self.value, self.remedy = quantity, message, value, remedy
+
+
+@family
+class Motion(Component):
+    """A motion that is given, whatever torque it takes."""
+
+    shaft: Node = port("shaft whose motion is given")
+    base: Node | None = port("member that takes the reaction and that the motion is measured from", default=None)
+
+    def speed_signal(self) -> Signal:
+        """The speed that the shaft is given, over time; `MotionError` where it has none."""
+        raise NotImplementedError
+
+    def start_angle(self) -> float | None:
+        """Angle [rad] or position [m] from the base at the start; None: that of the shaft."""
+        return None
+
+    def _started(self) -> tuple[float, float]:
+        """Angle and speed from the base at the start, as shaft and base say."""
+        angle, speed = (self.base.angle, self.base.speed or 0.0) if self.base else (0.0, 0.0)
+        return self.shaft.angle - angle, (speed if self.shaft.speed is None else self.shaft.speed) - speed
+
+    def _unit(self, rotation: str) -> str:
+        """A unit of the shaft, or of a mass."""
+        return rotation.replace("rad", "m") if self.shaft.domain.value == "translation" else rotation
+
+
+def as_signal(given: object) -> Signal:
+    """A signal, or a number as one."""
+    return given if isinstance(given, Signal) else Constant(float(given))  # type: ignore[arg-type]

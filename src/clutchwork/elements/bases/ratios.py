@@ -1,0 +1,37 @@
+"""Ratios that vary: docs/theory/varying-ratios.md."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+from clutchwork.declare import Found, HeatFlow, Node, Rate, Signal, ThermalNode
+from clutchwork.signals.bases.waveform import value
+
+# coefficients by port
+Rates: TypeAlias = Mapping[str, float | Fraction]
+
+
+def at_start(ratio: Any) -> float:
+    """Value of an input at the start: of a signal, a number, a process or (process, state)."""
+    if isinstance(ratio, Signal):
+        return value(ratio, 0.0)
+    if isinstance(ratio, int | float):
+        return float(ratio)
+    process, name = ratio if isinstance(ratio, tuple) else (ratio, "")
+    names = [state.name for state in type(process).states]
+    return float(process.initial_states()[names.index(name) if name else 0])
+
+
+def angle_of(node: Node | None) -> float:
+    """Angle of a shaft at the start [rad]."""
+    return float(node.angle or 0.0) if node is not None else 0.0
+
+
+def ratio_problems(ratio: Any) -> Found:
+    """A ratio that depends on the motion at once, so that its own rate of change would depend on the torque."""
+    if not isinstance(ratio, Node | Rate | HeatFlow | ThermalNode):
+        return []
+    remedy = "let it pass a RatioActuator, whose state has a rate of its own"
+    return [("ratio", "follows the motion without a lag", remedy)]

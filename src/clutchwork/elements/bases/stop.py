@@ -1,0 +1,21 @@
+"""What rigid stops have in common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from clutchwork.declare import family
+from clutchwork.elements.bases.heating import Heating
+from clutchwork.laws.coulomb import Coulomb
+
+if TYPE_CHECKING:
+    from clutchwork.declare import Law
+
+
+@family
+class Stop(Heating):
+    """A contact that exists at the ends of a way alone; `initial_states` is its position at the start."""
+
+    # it has no load, so its coefficient does not matter
+    friction: ClassVar[Law] = Coulomb(static=0.1, kinetic=0.1)  # type: ignore[misc]
+    tolerance: ClassVar[float] = 0.0

@@ -1,0 +1,116 @@
+"""Torque of a combustion engine over grids of speeds and throttles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from clutchwork.declare import (
+    Component,
+    Found,
+    Node,
+    Role,
+    SignalLike,
+    State,
+    choice,
+    component,
+    flag,
+    numbers,
+    option,
+    param,
+    port,
+    signal,
+)
+from clutchwork.elements.bases.grids import shape_problems
+
+STATES = (
+    State("opening", "1", "throttle that has come through"),
+    State("idle", "1", "integral of the idle control"),
+    State("boost", "1", "share of the full boost"),
+    State("crank", "rad", "crank angle"),
+)
+
+
+@component(
+    Role.TORQUE,
+    states=STATES,
+    hooks=("edges", "edge", "margin", "cross", "turns", "settle", "pace", "count", "fits"),
+)
+class EngineTorque(Component):
+    """Torque over speed and throttle with idle control, limiter, boost and ripple, less what it holds at rest.
+
+    Use it to build engines of your own; `Engine` makes its grids from curves and adds a contact with the torque at
+    rest, which is left out here. All tables hold over the one grid of abs(speed), and are held beyond it.
+    """
+
+    jumps: ClassVar[bool] = True
+
+    shaft: Node = port("crankshaft, which a positive torque accelerates")
+    base: Node | None = port("member that takes the reaction and that the speed is measured from", default=None)
+    speeds: Sequence[float] = numbers(
+        "rad/s", "grid of abs(speed), from 0", rising="strictly", at_least=0.0, example=(0.0, 3.0, 10.0)
+    )
+    throttles: Sequence[float] = numbers(
+        "1", "grid of throttles, from 0", rising="strictly", at_least=0.0, example=(0.0, 1.0)
+    )
+    torques: Sequence[Sequence[float]] = numbers(
+        "N m", "torque, a row over the throttles for each speed", example=((-0.5, 4.0), (-0.6, 6.0), (-1.0, 5.0))
+    )
+    deficit: Sequence[float] = numbers(
+        "N m", "torque that full boost adds at full throttle, one for each speed", example=(0.0, 1.0, 2.0)
+    )
+    stall_speed: float = param("rad/s", "speed below which nothing burns", default=0.0, at_least=0.0)
+    lag: float = param(
+        "s", "time constant of the throttle, 0: none", default=0.0, at_least=0.0, fixed=True, example=0.1
+    )
+    governed: bool = flag("whether the idle speed is controlled", default=False)
+    idle_speed: float = param("rad/s", "speed at idle", default=1.0, above=0.0)
+    idle_gain: float = param("s/rad", "throttle over the missing speed", default=0.0, at_least=0.0)
+    idle_integral: float = param("1/rad", "rate of the throttle over the missing speed", default=0.0, at_least=0.0)
+    idle_limit: float = param("1", "largest throttle of the idle control", default=1.0, above=0.0)
+    limiter: str = choice("how the speed is limited", choices=("none", "band", "cut"), default="none")
+    max_speed: float = param("rad/s", "speed that it is limited to", default=1e9, above=0.0)
+    limit_band: float = param("rad/s", "band below it, or hysteresis of the cut", default=1.0, above=0.0)
+    charged: bool = flag("whether it has boost", default=False)
+    boost_lag: float = param("s", "time constant of the boost", default=1.0, above=0.0)
+    ripples: bool = flag("whether its torque follows the crank angle", default=False)
+    orders: Sequence[float] = numbers(
+        "1", "orders of the ripple, periods in a revolution", rising="strictly", example=(2.0,)
+    )
+    amplitudes: Sequence[float] = numbers("1", "amplitude of each over the burning part", example=(0.5,))
+    phases: Sequence[float] = numbers("rad", "phase of each", example=(0.0,))
+    throttle: SignalLike = signal("1", "throttle, 0 closed, 1 open")
+    initial_opening: float = option("1", "throttle that has come through at the start", default=0.0, at_least=0.0)
+    initial_idle: float = option("1", "integral of the idle control at the start", default=0.0, at_least=0.0)
+    initial_boost: float = option("1", "boost at the start", default=0.0, at_least=0.0)
+    initial_crank: float = option("rad", "crank angle at the start", default=0.0)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        rows, columns = len(self.speeds), len(self.throttles)
+        found: Found = []
+        for name, grid in (("speeds", self.speeds), ("throttles", self.throttles)):
+            if grid[0] != 0.0:
+                found.append((name, f"starts at {grid[0]:g}", "let it start at 0"))
+        if columns < 2:
+            found.append(("throttles", "has a single number", "give at least the closed and the open throttle"))
+        found += shape_problems("torques", self.torques, self.speeds, self.throttles)
+        if len(self.deficit) != rows:
+            found.append(("deficit", f"has {len(self.deficit)} values for {rows} speeds", "give one for each speed"))
+        for name, values in (("amplitudes", self.amplitudes), ("phases", self.phases)):
+            if len(values) != len(self.orders):
+                fault = f"has {len(values)} values for {len(self.orders)} orders"
+                found.append((name, fault, "give one for each order"))
+        return found
+
+    def _used(self) -> tuple[bool, ...]:
+        return (self.lag > 0.0, bool(self.governed), bool(self.charged), bool(self.ripples))
+
+    def own_states(self) -> tuple[State, ...]:
+        """Those that the engine has."""
+        return tuple(state for state, used in zip(self.states, self._used(), strict=True) if used)
+
+    def initial_states(self) -> tuple[float, ...]:
+        """Their values at the start."""
+        starts = (self.initial_opening, self.initial_idle, self.initial_boost, self.initial_crank)
+        return tuple(float(start) for start, used in zip(starts, self._used(), strict=True) if used)

@@ -1,0 +1,18 @@
+"""Angle, speed and acceleration between two shafts."""
+
+from __future__ import annotations
+
+from clutchwork.declare import Component, Node, Role, component, port
+
+
+@component(Role.SENSOR)
+class MotionSensor(Component):
+    """Angle, speed and acceleration of one shaft against another, as signals of the run: follower - base.
+
+    Use it for the twist of a whole line, the slip between shafts that nothing joins, or a relative angle that a file,
+    an exported model or a fit needs by name. It changes nothing: no torque, no step. At an event the signal has both
+    limits; the acceleration after it is the right one. The angle starts as the difference of the angles at the start.
+    """
+
+    base: Node | None = port("side that motion is counted from", default=None)
+    follower: Node = port("side whose motion counts positive")

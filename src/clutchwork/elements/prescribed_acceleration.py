@@ -1,0 +1,25 @@
+"""Prescribed acceleration of a shaft."""
+
+from __future__ import annotations
+
+from clutchwork.declare import Role, Signal, SignalLike, component, signal
+from clutchwork.elements.bases.motion import Motion, MotionError, as_signal
+from clutchwork.signals.bases.motions import SignalError, integral
+
+
+@component(Role.MOTION)
+class PrescribedAcceleration(Motion):
+    """Source that accelerates a shaft or a mass exactly as wanted, whatever torque that takes.
+
+    Use it for a measured acceleration, a shaken base, a braking of given deceleration. It starts with the speed of the
+    shaft; its speed is the exact integral. Pulses and functions are refused: give the speed.
+    """
+
+    acceleration: SignalLike = signal("rad/s2", "wanted acceleration relative to the base", units=("m/s2",))
+
+    def speed_signal(self) -> Signal:
+        """Integral of the acceleration."""
+        try:
+            return integral(as_signal(self.acceleration), self._started()[1])
+        except SignalError as error:
+            raise MotionError("acceleration", error.message, "", error.remedy) from None

@@ -1,0 +1,41 @@
+"""Mesh of a wheel and a rack, of a screw and its nut."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from clutchwork.declare import Found, Node, Role, component, exact, numbers, param, port
+from clutchwork.elements.bases.meshing import SLIP, Meshing, table_problems
+
+
+@component(Role.CONTACT, hooks=("bound", "edges", "edge", "fits"), ways=SLIP)
+class RackMesh(Meshing):
+    """Mesh between a shaft and a mass with losses that follow the torque which it transmits: sticks exactly, by load.
+
+    It is the part of `RackPinion` and `Leadscrew` that makes their friction; use those, or this one in elements of
+    your own. Speed of the mass = radius times speed of the shaft relative to the support.
+    """
+
+    shaft: Node = port("shaft of the wheel or screw", domain="rotation")
+    mass: Node = port("mass that it moves", domain="translation")
+    support: Node | None = port("member that carries the shaft and takes its reaction", default=None, domain="rotation")
+    radius: float = param("m", "travel of the mass per angle of the shaft", above=0.0)
+    loss_table: Sequence[Sequence[float]] = numbers(
+        "1",
+        "rows of speed of the shaft [rad/s], efficiency where the shaft drives, efficiency where the mass drives,"
+        " friction [N m] at the shaft of either",
+        example=((0.0, 0.95, 0.94, 0.0, 0.0),),
+    )
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        return table_problems("loss_table", self.loss_table)
+
+    def directions(self) -> Mapping[str, Mapping[str, float]]:
+        """Speed of the shaft over the support."""
+        return {"slip": {"shaft": 1, "support": -1}}
+
+    def rows(self) -> list[dict[str, Fraction]]:
+        """Coefficients of the speeds whose sum is zero; the torque of the first row is the load."""
+        return [{"shaft": Fraction(1), "mass": -1 / exact(self.radius), "support": Fraction(-1)}]

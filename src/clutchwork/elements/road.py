@@ -1,0 +1,30 @@
+"""Road under a vehicle."""
+
+from __future__ import annotations
+
+from clutchwork.declare import Component, Points, Role, SignalLike, State, component, curve, option, signal
+
+
+@component(
+    Role.PROCESS,
+    states=(
+        State("slope", "1", "rise over horizontal way where the vehicle is"),
+        State("position", "m", "horizontal way along the road"),
+    ),
+    hooks=("margin", "cross"),
+)
+class Road(Component):
+    """Slope of a road by its elevation, a table over the horizontal position of what drives on it.
+
+    Use it as the `slope` of a `Vehicle`. The position follows the speed, `d position/dt = speed cos(a)` with
+    `a = atan(slope)`, so that the height is that of the table. Between two points the slope is constant, at a point it
+    jumps: an event. Before the first point and behind the last one the road is level.
+    """
+
+    elevation: Points = curve("m", "m", "height over horizontal position", example=((0.0, 0.0), (100.0, 5.0)))
+    speed: SignalLike = signal("m/s", "mass that drives on it")
+    initial_position: float = option("m", "position at the start", default=0.0)
+
+    def initial_states(self) -> tuple[float, ...]:
+        """Slope and position [m] at the start."""
+        return (0.0, self.initial_position)

@@ -1,0 +1,26 @@
+"""Torque and power through a rigid connection of two shafts."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from clutchwork.declare import Component, Node, Role, component, port
+
+
+@component(Role.GEAR)
+class TorqueSensor(Component):
+    """Rigid connection of two shafts that gives torque, speed, power and energy through it as signals of the run.
+
+    Use it where a rigid line is to be cut open: between gearbox and propeller shaft, in one branch of a gear set.
+    Torque is that on the follower, power that which flows from base to follower, energy its integral since the start,
+    summed up with the work of all elements, impulses included. Both shafts turn as one, and what their inertias take is
+    seen: the torque is the reaction of the rigid line. The torque of springs, clutches and gears is a signal of their
+    own already.
+    """
+
+    base: Node = port("side that power comes from where it counts positive")
+    follower: Node = port("side that power goes to")
+
+    def rows(self) -> list[dict[str, Fraction]]:
+        """Both turn as one."""
+        return [{"base": Fraction(-1), "follower": Fraction(1)}]

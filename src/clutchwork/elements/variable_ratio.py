@@ -1,0 +1,67 @@
+"""Continuously variable transmission."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from clutchwork.declare import Found, Node, Role, SignalLike, component, option, port, signal
+from clutchwork.declare.node import Part
+from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.ratios import ratio_problems
+from clutchwork.elements.clutch import Clutch
+from clutchwork.elements.variable_gear import VariableGear
+from clutchwork.laws.coulomb import Coulomb
+
+
+@component(Role.COMPOSITE)
+class VariableRatio(Heating):
+    """Transmission whose ratio varies: speed of the input = ratio times speed of the output, relative to the support.
+
+    Use it for a CVT, a toroidal drive, a hydrostatic drive without losses. The ratio is a signal, or the state of a
+    process that follows a command, such as a controller's. Power goes through without loss; while the ratio changes it
+    accelerates both sides, with the torque that users read as `torque`, on the input. A jump of the ratio keeps the
+    energy, not the momentum. At ratio 0 the input stands.
+
+    With a `capacity`, torque at the input, it slips when more is asked of it, as a belt does, and grips again.
+
+    Equations: docs/theory/varying-ratios.md.
+    """
+
+    input: Node = port("shaft whose speed is ratio times that of the output")
+    output: Node = port("other shaft")
+    support: Node | None = port("member that carries it and takes the reaction", default=None)
+    ratio: SignalLike = signal("1", "speed of the input over speed of the output", example=2.0)
+    capacity: SignalLike | None = signal(
+        "N m", "largest torque at the input, unlimited by default", default=None, units=("N",), at_least=0.0
+    )
+    tolerance: float = option(
+        "rad/s", "slip below which it may grip; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
+    )
+    locked: bool = option("1", "grips at the start, by an impulse if necessary", default=True, flag=True)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        return ratio_problems(self.ratio)
+
+    def parts(self) -> Iterator[Part]:
+        """The gear; with a capacity also what slips, and the shaft without inertia between them."""
+        if self.capacity is None:
+            yield VariableGear(self.name, input=self.input, output=self.output, support=self.support, ratio=self.ratio)
+            return
+        between = Node(f"{self.name}.shaft", self.input.domain)
+        yield between
+        yield VariableGear(
+            f"{self.name}.gear", input=between, output=self.output, support=self.support, ratio=self.ratio
+        )
+        yield Clutch(
+            self.name,
+            base=between,
+            follower=self.input,
+            friction=Coulomb(static=1.0, kinetic=1.0),
+            gain=1.0,
+            normal_force=self.capacity,
+            tolerance=self.tolerance,
+            locked=self.locked,
+            heat=self.heat,
+            heat_share=self.heat_share,
+        )

@@ -1,0 +1,49 @@
+"""Worm gear."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from clutchwork.declare import Component, Found, Node, Role, component, option, param, port
+from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.meshing import screw_efficiencies, screw_problems
+from clutchwork.elements.mesh import Mesh
+
+
+@component(Role.COMPOSITE)
+class WormGear(Heating):
+    """Worm gear with the sliding friction of its flanks; self-locking where the lead angle is small.
+
+    Use it for hoists, steering and seat drives. With `rho = atan(coefficient/cos(normal_angle))` its efficiency is
+    `tan(lead)/tan(lead + rho)` where the worm drives, and `tan(lead - rho)/tan(lead)` where the wheel does. Where that
+    is not above zero, lead <= rho, no load at the wheel starts the worm, and lowering must be driven.
+    """
+
+    worm: Node = port("worm shaft, whose speed is ratio times that of the wheel")
+    wheel: Node = port("worm wheel")
+    support: Node | None = port("member that carries both and takes the reaction", default=None)
+    ratio: float = param("1", "speed of the worm over speed of the wheel", example=30.0)
+    lead_angle: float = param("rad", "lead angle of the worm", above=0.0, below=1.5707963, example=0.1)
+    friction_coefficient: float = param("1", "of the flanks", at_least=0.0, example=0.05)
+    normal_angle: float = param("rad", "pressure angle in the normal section", default=0.349, at_least=0.0, below=1.5)
+    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        if self.ratio == 0:
+            return [("ratio", "is zero", "give a number other than zero")]
+        return screw_problems(self.lead_angle, self.friction_coefficient, self.normal_angle)
+
+    def parts(self) -> Iterable[Component]:
+        """The mesh with its friction."""
+        ahead, back = screw_efficiencies(self.lead_angle, self.friction_coefficient, self.normal_angle)
+        ends: dict[str, Any] = {"input": self.worm, "output": self.wheel, "support": self.support}
+        own: dict[str, Any] = {
+            "tolerance": self.tolerance,
+            "locked": self.locked,
+            "heat": self.heat,
+            "heat_share": self.heat_share,
+        }
+        return (Mesh(self.name, ratio=self.ratio, loss_table=((0.0, ahead, back, 0.0, 0.0),), **ends, **own),)

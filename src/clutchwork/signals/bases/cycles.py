@@ -1,0 +1,28 @@
+"""Speed cycles of stages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from clutchwork.base.errors import UseError
+from clutchwork.signals.table import Table
+
+
+def drive_cycle(stages: Sequence[tuple[float, float, float]], *, start: float = 0.0) -> Table:
+    """A speed over time as a table, for a `Driver`: from rest to a speed, which is held, and on to the next one.
+
+    Parameters: stages, rows of the speed [m/s], the time to reach it [s] and the time that it is held [s]; start, time
+    at which the first one begins [s]. A cycle from a file is a `Column`.
+    """
+    points, time = [(float(start), 0.0)], float(start)
+    for number, (speed, reach, hold) in enumerate(stages, 1):
+        if not (reach > 0.0 and hold >= 0.0):
+            fault = f"stage {number} takes {reach:g} s to {speed:g} m/s and holds it for {hold:g} s"
+            raise UseError(
+                "drive_cycle", [f"{fault}: give a time above zero to reach it, and none below zero to hold it"]
+            )
+        time += reach
+        points.append((time, float(speed)))
+        time += hold
+        points += [(time, float(speed))] if hold else []
+    return Table(points)

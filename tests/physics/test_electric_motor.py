@@ -1,0 +1,207 @@
+"""The electric motor in four quadrants: envelope, lag before the clip, losses, derating; closed forms and SciPy."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import clutchwork as cw
+
+FINE = {"rtol": 1e-9, "atol": 1e-11}
+DRIVES, BRAKES = [(0.0, 200.0), (100.0, 180.0), (300.0, 60.0)], [(0.0, 150.0), (300.0, 90.0)]
+MOTOR, GENERATOR = 2e4, 1.5e4
+POLYNOMIAL = {"no_load_loss": 20.0, "drag_loss": 0.3, "iron_loss": 2e-3, "copper_loss": 0.02}
+SPEEDS, TORQUES = (10.0, 100.0, 300.0), (20.0, 100.0, 200.0)
+ETA = ((0.6, 0.7, 0.65), (0.8, 0.9, 0.92), (0.85, 0.95, 0.93))
+WATTS = ((5.0, 90.0, 300.0), (20.0, 120.0, 380.0), (60.0, 200.0, 500.0))
+ENVELOPE = {
+    "max_torque": DRIVES,
+    "max_power": MOTOR,
+    "generator_torque": BRAKES,
+    "generator_power": GENERATOR,
+}
+
+
+def _limits(w, share=1.0):
+    """Least and largest torque at a speed."""
+
+    def most(points, power):
+        return share * min(np.interp(abs(w), *zip(*points, strict=True)), power / max(abs(w), 1e-9))
+
+    drives, brakes = most(DRIVES, MOTOR), most(BRAKES, GENERATOR)
+    return (-brakes, drives) if w >= 0.0 else (-drives, brakes)
+
+
+def _loss(w, torque):
+    p = POLYNOMIAL
+    polynomial = p["no_load_loss"] + p["drag_loss"] * abs(w) + p["iron_loss"] * w**2
+    return polynomial + p["copper_loss"] * torque**2
+
+
+def _bilinear(table, w, torque):
+    across = [np.interp(abs(torque), TORQUES, row) for row in table]
+    return float(np.interp(abs(w), SPEEDS, across))
+
+
+def _driveline(speed, command, inertia=0.5, **more):
+    d = cw.Driveline()
+    d.add(cw.ElectricMotor("m", shaft=d.shaft("s", inertia=inertia, speed=speed), command=command, **more))
+    return d
+
+
+def _prescribed(w0, w1, command, **more):
+    d = cw.Driveline()
+    shaft = d.shaft("s")
+    d.add(cw.PrescribedSpeed("drive", shaft=shaft, speed=cw.Ramp(height=w1 - w0, duration=1.0, offset=w0)))
+    d.add(cw.ElectricMotor("m", shaft=shaft, command=command, **more))
+    return d.simulate(1.0, times=np.linspace(0.0, 1.0, 301), **FINE)
+
+
+@pytest.mark.parametrize("command", [900.0, 70.0, -70.0, -900.0])
+def test_envelope_holds_in_four_quadrants(command):
+    run = _prescribed(-400.0, 400.0, command, **ENVELOPE, **POLYNOMIAL)
+    w, torque = run["s.speed"], run["m.torque"]
+    # a speed that is zero to round-off stands between two quadrants
+    moving = np.abs(w) > 1e-6
+    known = np.array([np.clip(command, *_limits(x)) for x in w])
+    np.testing.assert_allclose(torque[moving], known[moving], rtol=1e-12)
+    loss = np.array([_loss(*pair) for pair in zip(w, torque, strict=True)])
+    # what it draws is work and losses
+    np.testing.assert_allclose(run["m.electric_power"], torque * w + loss, rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(run["m.power"], torque * w, rtol=1e-12, atol=1e-9)
+    assert run.units["m.electric_power"] == "W"
+
+
+@pytest.mark.parametrize("command", [150.0, -150.0])
+@pytest.mark.parametrize("sort", ["efficiencies", "losses"])
+def test_losses_of_a_map(command, sort):
+    table = ETA if sort == "efficiencies" else WATTS
+    axes = {"speeds": SPEEDS, "torques": TORQUES}
+    run = _prescribed(-350.0, 350.0, command, **ENVELOPE, no_load_loss=20.0, **axes, **{sort: table})
+    for w, torque, drawn in zip(run["s.speed"], run["m.torque"], run["m.electric_power"], strict=True):
+        power, found = torque * w, _bilinear(table, w, torque)
+        drawn_by_eta = power / found if power > 0.0 else power * found
+        known = 20.0 + (power + found if sort == "losses" else drawn_by_eta)
+        assert drawn == pytest.approx(known, rel=1e-10, abs=1e-7)
+
+
+def test_the_command_lags_first_and_is_clipped_then():
+    """So it leaves its limit late, when what has come through is below it."""
+    lag, limit = 0.1, 100.0
+    command = cw.Table([(0.0, 250.0), (0.5, 250.0), (0.5, 0.0)])
+    times = np.linspace(0.0, 1.0, 1001)
+    run = _driveline(0.0, command, max_torque=limit, lag=lag).simulate(1.0, times=times, **FINE)
+    request = np.where(
+        times < 0.5,
+        250.0 * (1 - np.exp(-times / lag)),
+        250.0 * (1 - math.exp(-0.5 / lag)) * np.exp(-(times - 0.5) / lag),
+    )
+    np.testing.assert_allclose(run["m.request"], request, atol=1e-6)
+    np.testing.assert_allclose(run["m.torque"], np.minimum(request, limit), atol=1e-6)
+    # the impulse: limit between both instants, exponentials outside of them
+    on, off = -lag * math.log(1 - limit / 250.0), 0.5 + lag * math.log(250.0 * (1 - math.exp(-0.5 / lag)) / limit)
+    before = 250.0 * (on - lag * (1 - math.exp(-on / lag)))
+    after = limit * lag * (1 - math.exp(-(1.0 - off) / lag))
+    assert run["s.speed"][-1] == pytest.approx((before + limit * (off - on) + after) / 0.5, rel=1e-9)
+
+
+def test_energy_that_it_draws_is_work_and_heat():
+    d = _driveline(150.0, cw.Sine(amplitude=260.0, frequency=0.7), lag=0.03, **ENVELOPE, **POLYNOMIAL)
+    run = d.simulate(3.0, times=np.linspace(0.0, 3.0, 30001), **FINE)
+    energy, drawn = run.energy, run["m.electric_energy"]
+    assert abs(energy.residual) <= 1e-8 * energy.turnover
+    assert energy.sources["m"] == drawn[-1]
+    assert energy.sources["m"] - energy.heat["m"] == pytest.approx(energy.kinetic, rel=1e-8)
+    # trapezoids of 0.1 ms
+    power = run["m.electric_power"]
+    known = np.concatenate([[0.0], np.cumsum(np.diff(run.time) * 0.5 * (power[1:] + power[:-1]))])
+    np.testing.assert_allclose(drawn, known, atol=1e-6 * np.ptp(known))
+    assert run["m.electric_power"].min() < 0.0 < run["m.electric_power"].max()
+
+
+def test_steady_temperature_under_derating():
+    """C dT/dt = copper loss - G (T - ambient), with the torque that is left: a root of one variable."""
+    derating, ambient, cooling = [(320.0, 1.0), (420.0, 0.0)], 300.0, 4.0
+    d = cw.Driveline()
+    shaft = d.shaft("s")
+    d.add(cw.PrescribedSpeed("drive", shaft=shaft, speed=50.0))
+    d.add(
+        cw.ElectricMotor(
+            "m",
+            shaft=shaft,
+            command=1e3,
+            max_torque=100.0,
+            copper_loss=0.08,
+            derating=derating,
+            thermal_mass=50.0,
+            cooling=cooling,
+            ambient=ambient,
+        )
+    )
+    run = d.simulate(300.0, **FINE)
+
+    def torque(warm):
+        return 100.0 * np.interp(warm, *zip(*derating, strict=True))
+
+    warm = brentq(lambda x: 0.08 * torque(x) ** 2 - cooling * (x - ambient), 320.0, 420.0, xtol=1e-12)
+    assert run["m.temperature"][-1] == pytest.approx(warm, rel=1e-9)
+    assert run["m.torque"][-1] == pytest.approx(torque(warm), rel=1e-7)
+    assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_motors_against_scipy(seed):
+    g = np.random.default_rng(seed)
+    lag, inertia, w0 = g.uniform(0.01, 0.2), g.uniform(0.2, 1.0), g.uniform(-250.0, 250.0)
+    amplitude, frequency, phase = g.uniform(50.0, 400.0), g.uniform(0.3, 2.0), g.uniform(0.0, 6.0)
+    mass, cooling = g.uniform(20.0, 60.0), g.uniform(1.0, 10.0)
+    derating = [(310.0, 1.0), (350.0, 0.7), (420.0, 0.2)]
+    command = cw.Sine(amplitude=amplitude, frequency=frequency, phase=phase)
+    more = {"thermal_mass": mass, "cooling": cooling, "ambient": 300.0, "derating": derating, "lag": lag}
+    run = _driveline(w0, command, inertia, **ENVELOPE, **POLYNOMIAL, **more).simulate(
+        2.0, times=np.linspace(0.0, 2.0, 101), **FINE
+    )
+    assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
+
+    def slope(t, y):
+        w, request, warm = y
+        torque = float(np.clip(request, *_limits(w, np.interp(warm, *zip(*derating, strict=True)))))
+        wanted = amplitude * math.sin(2 * math.pi * frequency * t + phase)
+        return torque / inertia, (wanted - request) / lag, (_loss(w, torque) - cooling * (warm - 300.0)) / mass
+
+    known = solve_ivp(
+        slope, (0.0, 2.0), (w0, 0.0, 300.0), t_eval=run.time, rtol=1e-10, atol=1e-10, max_step=2e-3, method="DOP853"
+    )
+    # steps of 2 ms across kinks leave some 1e-6 of full scale
+    np.testing.assert_allclose(run["s.speed"], known.y[0], atol=1e-6 * np.abs(known.y[0]).max())
+    np.testing.assert_allclose(run["m.request"], known.y[1], atol=1e-6 * np.abs(known.y[1]).max())
+    np.testing.assert_allclose(run["m.temperature"], known.y[2], atol=1e-6 * 300.0)
+
+
+def test_a_motor_without_limits_that_can_be_reached_is_a_torque():
+    run = _driveline(0.0, 12.0, max_torque=1e6).simulate(2.0, **FINE)
+    assert run["s.speed"][-1] == pytest.approx(48.0, rel=1e-12)
+    assert "m.request" not in run.names
+    assert run["m.electric_energy"][-1] == pytest.approx(run["m.work"][-1], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"max_torque": [(-10.0, 5.0), (10.0, 5.0)]}, r"starts at -10"),
+        ({"losses": ((1.0,),)}, r"needs speeds and torques"),
+        ({"speeds": SPEEDS, "torques": TORQUES}, r"belongs to a map"),
+        ({"speeds": SPEEDS, "torques": TORQUES, "losses": ((1.0, 2.0),)}, r"must have 3 rows of 3 numbers"),
+        ({"speeds": (0.0,), "torques": (1.0,), "efficiencies": ((1.2,),)}, r"exceeds 1"),
+        ({"derating": [(300.0, 1.0)]}, r"has no temperature"),
+        ({"cooling": 2.0}, r"needs a winding of its own"),
+    ],
+    ids=str,
+)
+def test_mistakes_are_named(values, words):
+    with pytest.raises(cw.ModelError, match=words):
+        _driveline(0.0, 1.0, **({"max_torque": 100.0} | values)).assemble()

@@ -1,0 +1,248 @@
+"""Gears whose friction follows their load: closed forms of efficiency, self-locking, differentials, shared rest."""
+
+from __future__ import annotations
+
+import os
+from math import atan, cos, pi, tan
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import clutchwork as cw
+from support.lossy_chains import chain, misses
+
+TIGHT = {"rtol": 1e-9, "atol": 1e-11}
+CASES = int(os.environ.get("CLUTCHWORK_CASES", "60"))
+
+
+def residual(run):
+    # nothing turns over where all stays at rest
+    return abs(run.energy.residual) / max(run.energy.turnover, 1e-9)
+
+
+@pytest.mark.parametrize("speed", [10.0, -10.0])
+@pytest.mark.parametrize("torque", [4.0, -4.0])
+def test_efficiency_in_four_quadrants(speed, torque):
+    """The acceleration of two inertias at constant torques; i, J and efficiencies as in the closed form."""
+    ratio, j1, j2, ahead, back = 3.0, 0.2, 1.5, 0.9, 0.8
+    d = cw.Driveline("pair")
+    a, b = d.shaft("a", inertia=j1, speed=speed), d.shaft("b", inertia=j2)
+    d.add(cw.LossyGear("gear", input=a, output=b, ratio=ratio, efficiency=ahead, backward_efficiency=back))
+    d.add(cw.Torque("drive", shaft=a, torque=torque))
+    run = d.simulate(0.1, **TIGHT)
+    # the torque that reaches the input costs 1/efficiency more where the input drives
+    h = 1 / ahead if torque * speed > 0 else back
+    assert run["a.acceleration"][0] == pytest.approx(torque / (j1 + h * j2 / ratio**2), rel=1e-12)
+    assert run["gear.mode"][0] == np.sign(speed)
+    assert residual(run) < 1e-8
+
+
+def test_a_loss_table_is_linear_between_its_rows_and_beyond():
+    """Friction alone, over the speed: exponentials between the rows."""
+    d = cw.Driveline("coast")
+    a, b = d.shaft("a", inertia=1.0, speed=30.0), d.shaft("b", inertia=1e-12)
+    rows = ((0.0, 1.0, 1.0, 1.0, 1.0), (10.0, 1.0, 1.0, 2.0, 2.0), (20.0, 1.0, 1.0, 5.0, 5.0))
+    d.add(cw.LossyGear("gear", input=a, output=b, ratio=1.0, loss_table=rows))
+    run = d.simulate(12.0, **TIGHT)
+    # slopes 0.3 above 10 rad/s, where the friction is 0.3 w - 1, and 0.1 below, where it is 0.1 w + 1
+    first = np.log((0.3 * 30 - 1) / (0.3 * 10 - 1)) / 0.3
+    stop = first + np.log((0.1 * 10 + 1) / 1.0) / 0.1
+    assert run.events.of("gear")[0].time == pytest.approx(stop, rel=1e-8)
+    assert run["a.speed"][-1] == 0.0
+
+
+def test_against_scipy_between_the_flips():
+    """One gear in slip whose load changes its sign with a sine: the same motion by another integrator."""
+    j1, j2, ratio, ahead, back = 0.3, 2.0, 2.0, 0.7, 0.6
+    d = cw.Driveline("flips")
+    a, b = d.shaft("a", inertia=j1, speed=50.0), d.shaft("b", inertia=j2)
+    d.add(cw.LossyGear("gear", input=a, output=b, ratio=ratio, efficiency=ahead, backward_efficiency=back))
+    d.add(cw.Torque("drive", shaft=a, torque=cw.Sine(amplitude=5.0, frequency=1.0)))
+    d.add(cw.Torque("load", shaft=b, torque=-0.5))
+    run = d.simulate(2.0, **TIGHT)
+
+    def rate(t, y):
+        # N = J2 w'/i^2 + load/i, T = h N: the larger loss of both branches
+        drive, load = 5.0 * np.sin(2 * pi * t), 0.5 / ratio
+        for h in (1 / ahead, back):
+            acceleration = (drive - h * load) / (j1 + h * j2 / ratio**2)
+            passed = j2 / ratio**2 * acceleration + load
+            if (passed >= 0) == (h > 1):
+                return [acceleration]
+        raise AssertionError
+
+    # the solver is kept short over the kinks, which it cannot see
+    other = solve_ivp(rate, (0, 2.0), [50.0], rtol=1e-10, atol=1e-10, max_step=1e-3)
+    assert run["a.speed"][-1] == pytest.approx(other.y[0, -1], rel=1e-8)
+    assert not run.events.of("gear")
+
+
+@pytest.mark.parametrize("first", range(0, CASES, 20))
+def test_random_chains_keep_the_law_of_the_modelica_library(first):
+    """Loss torques over the torques at the ports, which follow from the accelerations and not from the loads."""
+    for seed in range(first, first + 20):
+        made = chain(seed)
+        run = made.driveline.simulate(1.5, **TIGHT)
+        assert run.status == "done", f"{seed}: {run.message}"
+        assert max(misses(run, made).values()) < 1e-8, seed
+        assert residual(run) < 1e-8, seed
+
+
+@pytest.mark.parametrize(("coefficient", "holds"), [(0.12, True), (0.05, False)])
+def test_a_worm_locks_itself_below_the_friction_angle(coefficient, holds):
+    """The load at the wheel starts it or never does; lowering must be driven with -(h_back) N."""
+    lead, ratio, load = 0.1, 30.0, -20.0
+    rho = atan(coefficient / cos(0.349))
+    assert (lead <= rho) == holds
+    d = cw.Driveline("hoist")
+    a, b = d.shaft("worm", inertia=1e-3), d.shaft("wheel", inertia=0.5)
+    d.add(cw.WormGear("gear", worm=a, wheel=b, ratio=ratio, lead_angle=lead, friction_coefficient=coefficient))
+    d.add(cw.Torque("load", shaft=b, torque=cw.Ramp(height=load, duration=1.0)))
+    d.add(cw.Torque("motor", shaft=a, torque=cw.Ramp(height=-0.5, duration=1.0, start=1.0)))
+    run = d.simulate(2.0, **TIGHT)
+    event = run.events.of("gear")[0]
+    if holds:
+        # the worm must give what its flanks hold beyond the load
+        driven = -load / ratio * tan(lead - rho) / tan(lead)
+        assert event.time == pytest.approx(1.0 - driven / 0.5, rel=1e-9)
+        assert np.all(run["wheel.speed"][run.time < event.time] == 0.0)
+    else:
+        assert event.time < 1e-6
+    assert residual(run) < 1e-8
+
+
+def test_a_worm_that_cannot_follow_its_load_jams():
+    """J_worm + h J_wheel/i^2 < 0: when the load turns round, the gear stops at once, and all its energy is heat."""
+    d = cw.Driveline("jam")
+    a, b = d.shaft("worm", inertia=1e-3, speed=100.0), d.shaft("wheel", inertia=2.0)
+    d.add(cw.WormGear("gear", worm=a, wheel=b, ratio=30.0, lead_angle=0.05, friction_coefficient=0.15))
+    d.add(cw.Torque("motor", shaft=a, torque=cw.Ramp(height=-0.5, duration=1.0, offset=0.5)))
+    d.add(cw.BearingFriction("bearing", shaft=a, torque=0.01, friction=cw.Coulomb(static=1.0, kinetic=1.0)))
+    run = d.simulate(1.0, **TIGHT)
+    event = run.events.of("gear")[0]
+    assert (event.before, event.after, event.cause) == ("forward", "locked", "jam")
+    # nothing goes on to the wheel once the motor gives no more than the bearing takes
+    assert event.time == pytest.approx(0.98, abs=1e-9)
+    assert event.energy_after == 0.0
+    assert run["worm.speed"][-1] == 0.0
+    assert residual(run) < 1e-8
+
+
+def test_a_leadscrew_lifts_from_its_efficiency_on():
+    weight, lead, radius, coefficient = 490.5, 0.005, 0.01, 0.15
+    angle = atan(lead / (2 * pi * radius))
+    d = cw.Driveline("table")
+    screw, table = d.shaft("screw", inertia=1e-4), d.mass("table", mass=50.0)
+    d.add(cw.Leadscrew("nut", screw=screw, mass=table, lead=lead, radius=radius, friction_coefficient=coefficient))
+    d.add(cw.Torque("weight", shaft=table, torque=-weight))
+    d.add(cw.Torque("motor", shaft=screw, torque=cw.Ramp(height=2.0, duration=1.0)))
+    run = d.simulate(1.0, **TIGHT)
+    needed = weight * radius * tan(angle + atan(coefficient / cos(0.349)))
+    assert run.events.of("nut")[0].time == pytest.approx(needed / 2.0, rel=1e-9)
+    assert residual(run) < 1e-8
+
+
+def test_a_planetary_set_loses_nothing_as_a_block_and_by_its_rolling_power_else():
+    ratio, efficiency = 2.6, 0.95
+    d = cw.Driveline("set")
+    sun, ring, carrier = d.shaft("sun", inertia=1e-9), d.shaft("ring", inertia=1.0), d.shaft("carrier", inertia=5.0)
+    d.add(cw.LossyPlanetary("set", sun=sun, ring=ring, carrier=carrier, ratio=ratio, efficiency=efficiency))
+    d.add(cw.Torque("drive", shaft=sun, torque=10.0))
+    d.add(cw.BearingFriction("brake", shaft=ring, torque=1e3, friction=cw.Coulomb(static=1.0, kinetic=1.0)))
+    run = d.simulate(0.5, **TIGHT)
+    assert run["set.torque_support"][-1] == pytest.approx(10.0 * (1 + efficiency * ratio), rel=1e-6)
+    # the power that rolls in the meshes is that of the sun over the carrier
+    rolling = 10.0 * (run["sun.speed"][-1] - run["carrier.speed"][-1])
+    assert -run["set.power"][-1] == pytest.approx((1 - efficiency) * rolling, rel=1e-6)
+    d = cw.Driveline("block")
+    sun, ring, carrier = (d.shaft(name, inertia=1.0, speed=5.0) for name in ("sun", "ring", "carrier"))
+    d.add(cw.LossyPlanetary("set", sun=sun, ring=ring, carrier=carrier, ratio=ratio, efficiency=efficiency))
+    shares = (1.0, ratio, 1.0 + ratio)
+    # torques in the ratio of a block that is not loaded inside
+    for node in (sun, ring, carrier):
+        d.add(cw.Torque(f"t_{node.name}", shaft=node, torque=1.0))
+    run = d.simulate(1.0, **TIGHT)
+    assert np.all(run["set.mode"] == 0)
+    assert run.energy.heat["set"] == 0.0
+    assert shares[0] + shares[1] == pytest.approx(shares[2])
+
+
+def test_gear_and_bearing_hold_together_until_both_are_at_their_limit():
+    """A brake at the output presses the gear: both together hold (1/efficiency) times the brake, less its own share."""
+    ahead, ratio, brake, bearing = 0.6, 2.0, 3.0, 0.7
+    d = cw.Driveline("held")
+    a, b = d.shaft("a", inertia=0.4), d.shaft("b", inertia=1.0)
+    d.add(cw.LossyGear("gear", input=a, output=b, ratio=ratio, efficiency=ahead))
+    law = cw.Coulomb(static=1.0, kinetic=1.0)
+    d.add(cw.BearingFriction("brake", shaft=b, torque=brake, friction=law))
+    d.add(cw.BearingFriction("bearing", shaft=a, torque=bearing, friction=law))
+    d.add(cw.Torque("drive", shaft=a, torque=cw.Ramp(height=10.0, duration=1.0)))
+    run = d.simulate(1.0, **TIGHT)
+    starts = [event for event in run.events if event.before == "locked"]
+    assert {event.element for event in starts} == {"gear", "brake", "bearing"}
+    # N = brake/ratio, T = N/efficiency
+    limit = bearing + brake / ratio / ahead
+    assert all(event.time == pytest.approx(limit / 10.0, rel=1e-9) for event in starts)
+    held = run.time < starts[0].time
+    assert np.all(np.abs(run["gear.torque"][held]) <= run["gear.capacity"][held] + 1e-9)
+    assert residual(run) < 1e-8
+
+
+@pytest.mark.parametrize("bias", [1.0, 2.5, 4.0])
+def test_the_bias_of_a_torque_sensing_differential(bias):
+    d = cw.Driveline("axle")
+    case, left, right = d.shaft("case", inertia=0.1), d.shaft("left", inertia=0.5), d.shaft("right", inertia=0.5)
+    d.add(cw.Differential("diff", carrier=case, left=left, right=right, bias=bias))
+    d.add(cw.Torque("drive", shaft=case, torque=100.0))
+    d.add(cw.Damper("ice", base=d.housing, follower=left, damping=1.0))
+    d.add(cw.Damper("asphalt", base=d.housing, follower=right, damping=10.0))
+    run = d.simulate(20.0, **TIGHT)
+    assert run["diff.torque_right"][-1] / run["diff.torque_left"][-1] == pytest.approx(bias, rel=1e-9)
+    assert run["left.speed"][-1] > run["right.speed"][-1]
+    assert residual(run) < 1e-8
+
+
+def test_preload_holds_both_sides_without_torque():
+    d = cw.Driveline("axle")
+    case, left, right = d.shaft("case", inertia=0.1), d.shaft("left", inertia=0.5), d.shaft("right", inertia=0.5)
+    d.add(cw.Differential("diff", carrier=case, left=left, right=right, preload=20.0))
+    d.add(cw.Torque("pull", shaft=left, torque=cw.Ramp(height=100.0, duration=1.0)))
+    run = d.simulate(1.0, **TIGHT)
+    # the common motion takes half: the friction must give T/2, with equal inertias
+    assert run.events.of("diff")[0].time == pytest.approx(0.4, rel=1e-9)
+
+
+def test_wheel_and_differential_that_can_only_slip_together_are_one_event():
+    """One wheel on ice: it slips when its share, less the friction of the differential, exceeds what the ice holds."""
+    radius, mass, inertia, share, ice, asphalt = 0.3, 1000.0, 0.5, 0.2, 300.0, 4000.0
+    d = cw.Driveline("start")
+    case = d.shaft("case", inertia=0.01)
+    car = d.mass("car", mass=mass)
+    law = cw.Coulomb(static=1.0, kinetic=0.9)
+    sides = []
+    for name, grip in (("left", ice), ("right", asphalt)):
+        shaft, tread = d.shaft(name, inertia=inertia), d.mass(f"{name}_tread")
+        sides.append(shaft)
+        d.add(cw.RollingWheel(f"{name}_wheel", shaft=shaft, mass=tread, radius=radius))
+        d.add(cw.Clutch(f"{name}_tyre", base=tread, follower=car, friction=law, gain=1.0, normal_force=grip))
+    d.add(cw.Differential("diff", carrier=case, left=sides[0], right=sides[1], share=share, locked=True))
+    d.add(cw.Torque("drive", shaft=case, torque=cw.Ramp(height=1000.0, duration=1.0)))
+    run = d.simulate(1.0, **TIGHT)
+    starts = [event for event in run.events if event.before == "locked"]
+    assert {event.element for event in starts} == {"diff", "left_tyre"}
+    assert len({event.time for event in starts}) == 1
+    # torque T of the case: a = T/(radius (m + (2 J + Jc)/r^2)); at the limit T_c (1/2 - share) = ice r + J a/r
+    effective = mass * radius + (2 * inertia + 0.01) / radius
+    case_share = 1 - 0.01 / radius / effective
+    limit = ice * radius / (case_share * (0.5 - share) - inertia / radius / effective)
+    assert starts[0].time == pytest.approx(limit / 1000.0, rel=1e-9)
+
+
+def test_a_loop_of_rigid_gears_with_losses_is_named():
+    d = cw.Driveline("loop")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.LossyGear("lossy", input=a, output=b, ratio=2.0, efficiency=0.9))
+    d.add(cw.Gear("twin", input=a, output=b, ratio=2.0))
+    with pytest.raises(cw.ModelError, match=r'"lossy".*closes a loop of rigid parts with .*"twin"'):
+        d.simulate(1.0)

@@ -1,0 +1,185 @@
+"""Ratios that vary: closed forms, SciPy, energy, events beside them. docs/theory/varying-ratios.md"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import clutchwork as cw
+from support.runs import TIGHT
+
+J1, J2 = 0.4, 1.5
+
+
+def two(ratio, speed=50.0, **more):
+    """Two inertias with a ratio between them."""
+    d = cw.Driveline("two")
+    a, b = d.shaft("a", inertia=J1), d.shaft("b", inertia=J2, speed=speed)
+    d.add(cw.VariableRatio("v", input=a, output=b, ratio=ratio, **more))
+    return d, a, b
+
+
+def clean(run):
+    """The energy balance closes."""
+    energy = run.energy
+    assert abs(energy.residual) <= 1e-8 * max(energy.turnover, 0.5 * J2 * 50.0**2)
+
+
+SMOOTH = {
+    "ramp": (cw.Ramp(offset=3.0, height=-2.0, duration=1.0), lambda t: 3.0 - 2.0 * np.minimum(t, 1.0)),
+    "sine": (
+        cw.Sine(amplitude=0.8, frequency=2.0, offset=1.5),
+        lambda t: 1.5 + 0.8 * np.sin(4.0 * np.pi * np.asarray(t)),
+    ),
+    "through zero": (cw.Table([(0.0, 1.0), (1.0, -1.0)]), lambda t: np.interp(t, [0.0, 1.0], [1.0, -1.0])),
+}
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+def test_free_inertias_keep_their_energy_while_the_ratio_moves(name):
+    signal, ratio = SMOOTH[name]
+    run = two(signal)[0].simulate(1.5, dt=0.01, rtol=1e-9)
+    i, w = ratio(run.time), run["b.speed"]
+    energy = (i**2 * J1 + J2) * w**2
+    # relative to it; the error of a run of some hundred steps at rtol 1e-9
+    assert np.ptp(energy) <= 2e-8 * energy[0]
+    assert np.max(abs(run["a.speed"] - i * w)) <= 1e-7 * np.max(abs(w))
+    clean(run)
+
+
+def test_a_ramp_under_torques_as_scipy_has_it():
+    d, a, b = two(cw.Ramp(offset=3.0, height=-2.0, duration=1.0))
+    d.add(cw.Torque("drive", shaft=a, torque=50.0))
+    d.add(cw.Torque("load", shaft=b, torque=-20.0))
+    run = d.simulate(1.0, dt=0.01, rtol=1e-9)
+
+    def slope(t, w, term=1.0):
+        i = 3.0 - 2.0 * t
+        return (i * 50.0 - 20.0 + term * 2.0 * i * J1 * w) / (i * i * J1 + J2)
+
+    exact, without = (
+        solve_ivp(slope, (0.0, 1.0), [50.0], rtol=1e-11, atol=1e-11, args=(term,)).y[0, -1] for term in (1.0, 0.0)
+    )
+    assert run["b.speed"][-1] == pytest.approx(exact, rel=1e-8)
+    # what the term of the rate makes is no small matter
+    assert abs(exact - without) > 0.05 * exact
+    # the torque that users read is that on the input, and power goes through
+    assert np.allclose(run["v.torque"], J1 * run["a.acceleration"] - 50.0, rtol=1e-9, atol=1e-9)
+    assert np.allclose(run["v.torque"] * run["a.speed"], -run["v.output.torque"] * run["b.speed"], rtol=1e-8)
+    clean(run)
+
+
+@pytest.mark.parametrize("to", [0.5, 0.0, -1.0])
+def test_a_jump_keeps_the_energy_and_not_the_momentum(to):
+    run = two(cw.Step(offset=2.0, height=to - 2.0, start=0.5))[0].simulate(1.0, dt=0.1, rtol=1e-9)
+    expected = 50.0 * np.sqrt((4.0 * J1 + J2) / (to**2 * J1 + J2))
+    assert run["b.speed"][-1] == pytest.approx(expected, rel=1e-12)
+    assert run["a.speed"][-1] == pytest.approx(to * expected, rel=1e-12, abs=1e-12)
+    clean(run)
+
+
+def test_a_jump_is_the_limit_of_a_fast_ramp():
+    def after(ratio):
+        d, a, b = two(ratio)
+        c = d.shaft("c", inertia=0.3)
+        d.add(cw.VariableRatio("other", input=b, output=c, ratio=1.7))
+        d.add(cw.Torque("drive", shaft=a, torque=30.0))
+        return d.simulate(0.3, **TIGHT)["c.speed"][-1]
+
+    jump = after(cw.Step(offset=2.0, height=-1.4, start=0.1))
+    errors = [abs(after(cw.Ramp(offset=2.0, height=-1.4, start=0.1, duration=h)) - jump) for h in (1e-3, 1e-4)]
+    assert errors[1] < 0.2 * errors[0] < 1e-2
+
+
+def test_a_clutch_beside_a_jump_slips_after_it():
+    d, a, _b = two(cw.Step(offset=2.0, height=-1.0, start=0.5))
+    e = d.shaft("e", inertia=0.2, speed=100.0)
+    d.add(
+        cw.Clutch(
+            "c",
+            base=e,
+            follower=a,
+            friction=cw.Coulomb(static=1.0, kinetic=1.0),
+            gain=40.0,
+            normal_force=1.0,
+            locked=True,
+        )
+    )
+    run = d.simulate(1.5, dt=0.05, rtol=1e-9)
+    assert [(event.before, event.after) for event in run.events.changes()] == [
+        ("locked", "backward"),
+        ("backward", "locked"),
+    ]
+    clean(run)
+
+
+def test_it_slips_beyond_its_capacity_and_grips_again():
+    d, a, _b = two(cw.Ramp(offset=3.0, height=-2.0, duration=1.0), capacity=30.0)
+    d.add(cw.Torque("drive", shaft=a, torque=cw.Table([(0.0, 10.0), (0.5, 50.0), (1.0, 0.0)])))
+    run = d.simulate(4.0, dt=0.01, rtol=1e-9)
+    i = 3.0 - 2.0 * np.minimum(run.time, 1.0)
+    assert [event.after for event in run.events.changes()] == ["forward", "locked"]
+    slip = run["a.speed"] - i * run["b.speed"]
+    assert np.allclose(run["v.slip"], slip, atol=1e-6)
+    slides = run["v.mode"] != 0
+    assert np.allclose(run["v.torque"][slides], -30.0)
+    assert np.max(abs(slip[~slides])) <= 1e-6
+    assert run.energy.heat["v"] > 100.0
+    clean(run)
+
+
+def test_a_shaft_without_inertia_follows():
+    d = cw.Driveline("massless")
+    a, b = d.shaft("a", inertia=0.0), d.shaft("b", inertia=J2, speed=50.0)
+    d.add(cw.VariableRatio("v", input=a, output=b, ratio=cw.Ramp(offset=3.0, height=-2.0, duration=1.0)))
+    d.add(cw.Torque("drive", shaft=a, torque=50.0))
+    run = d.simulate(1.0, dt=0.1, rtol=1e-9)
+    # the mean ratio is 2, and no inertia makes a term of the rate
+    assert run["b.speed"][-1] == pytest.approx(50.0 + 2.0 * 50.0 / J2, rel=1e-10)
+    assert np.allclose(run["v.torque"], -50.0)
+    clean(run)
+
+
+def test_two_shafts_without_inertia_are_refused():
+    d = cw.Driveline("massless")
+    a, b = d.shaft("a", inertia=0.0), d.shaft("b", inertia=0.0)
+    d.add(cw.VariableRatio("v", input=a, output=b, ratio=2.0))
+    found = [str(problem) for problem in d.check()]
+    assert any('joins shaft "a" and shaft "b" without inertia' in one for one in found), found
+
+
+def test_speeds_that_contradict_the_ratio_are_refused():
+    d = cw.Driveline("start")
+    a, b = d.shaft("a", inertia=1.0, speed=90.0), d.shaft("b", inertia=1.0, speed=50.0)
+    d.add(cw.VariableRatio("v", input=a, output=b, ratio=2.0))
+    (problem,) = d.check()
+    assert "has the ratio 2 at the start, which contradicts the initial speed" in str(problem)
+
+
+def test_beside_a_prescribed_speed():
+    d = cw.Driveline("bench")
+    a, b = d.shaft("a", inertia=J1), d.shaft("b", inertia=J2)
+    d.add(cw.PrescribedSpeed("motor", shaft=a, speed=cw.Ramp(offset=20.0, height=30.0, duration=1.0)))
+    d.add(cw.VariableRatio("v", input=a, output=b, ratio=cw.Ramp(offset=1.0, height=1.0, duration=1.0)))
+    run = d.simulate(1.0, dt=0.05, rtol=1e-9)
+    t = run.time
+    assert np.allclose(run["b.speed"], (20.0 + 30.0 * t) / (1.0 + t), rtol=1e-9)
+    # the source carries both inertias
+    assert run["motor.work"][-1] == pytest.approx(
+        0.5 * J1 * (50.0**2 - 20.0**2) + 0.5 * J2 * (25.0**2 - 20.0**2), rel=1e-8
+    )
+    clean(run)
+
+
+def test_a_ratio_that_follows_through_a_lag():
+    d = cw.Driveline("lag")
+    a, b = d.shaft("a", inertia=J1), d.shaft("b", inertia=J2, speed=50.0)
+    lag = d.add(cw.RatioActuator("lag", command=cw.Step(offset=2.0, height=-1.0, start=0.1), lag=0.2))
+    d.add(cw.VariableRatio("v", input=a, output=b, ratio=lag))
+    run = d.simulate(1.0, dt=0.05, rtol=1e-9)
+    i = 2.0 - np.where(run.time > 0.1, 1.0 - np.exp(-np.maximum(run.time - 0.1, 0.0) / 0.2), 0.0)
+    energy = (i**2 * J1 + J2) * run["b.speed"] ** 2
+    assert np.allclose(run["a.speed"], i * run["b.speed"], rtol=1e-7)
+    assert np.ptp(energy) <= 2e-8 * energy[0]
+    clean(run)
