@@ -39,24 +39,26 @@ void take_mode(Workspace<Lanes<R>>& ws, const Workspace<double>& run) {
   auto slope = [&](const double* at) { return ws.in.du + (at - run.in.du); };
   for (int k = 0; k < run.n_rates; ++k) {
     const Branch<double>& b = run.branch[k];
-    ws.branch[k] = {ws.params + (b.params - run.params),
-                    b.law < 0 ? nullptr : ws.params + (b.law_params - run.params),
-                    input(b.input),
-                    slope(b.input_slope),
-                    b.law < 0 ? nullptr : input(b.law_input),
-                    b.law < 0 ? nullptr : slope(b.law_input_slope),
-                    b.inputs,
-                    b.law_inputs,
-                    b.kind,
-                    b.law,
-                    b.direction,
-                    b.state,
-                    b.states,
-                    b.piece,
-                    b.sign,
-                    b.pressed,
-                    b.compliant,
-                    b.shaped};
+    ws.branch[k] = {.params = ws.params + (b.params - run.params),
+                    .law_params = b.law < 0 ? nullptr : ws.params + (b.law_params - run.params),
+                    .input = input(b.input),
+                    .input_slope = slope(b.input_slope),
+                    .law_input = b.law < 0 ? nullptr : input(b.law_input),
+                    .law_input_slope = b.law < 0 ? nullptr : slope(b.law_input_slope),
+                    .inputs = b.inputs,
+                    .law_inputs = b.law_inputs,
+                    .kind = b.kind,
+                    .law = b.law,
+                    .direction = b.direction,
+                    .state = b.state,
+                    .states = b.states,
+                    .ways = b.ways,
+                    .piece = b.piece,
+                    .sign = b.sign,
+                    .pressed = b.pressed,
+                    .compliant = b.compliant,
+                    .follows = b.follows,
+                    .shaped = b.shaped};
     ws.jacobian.block[k] = run.jacobian.block[k];
   }
 }
