@@ -102,7 +102,7 @@ template <class E, class P, class F>
 void over_pieces(const P& p, check::Random& g, F&& visit) {
   if constexpr (Kinked<E>) {
     for (int piece = 0; piece <= E::edges(p); ++piece) visit(piece);
-  } else if constexpr (SwitchingLaw<E>) {
+  } else if constexpr (SwitchingLaw<E> && !TorqueElement<E>) {
     int count = 1;
     if constexpr (Sized<E>) count = E::count(p);
     const int all = (1 << count) - 1;
@@ -112,6 +112,8 @@ void over_pieces(const P& p, check::Random& g, F&& visit) {
     if constexpr (requires { E::behind; }) {
       for (int piece = 2; piece <= E::behind; ++piece) visit(piece);
     }
+  } else if constexpr (TorqueElement<E> && requires { E::behind; }) {
+    for (int piece = 0; piece <= E::behind; ++piece) visit(piece);
   } else {
     visit(0);
   }
