@@ -1,4 +1,4 @@
-"""Linear systems of drivelines with ratios that vary, against differences. docs/theory/linearisation.md (12)"""
+"""Linear systems of drivelines with ratios that vary, against differences. docs/theory/linearisation.md (10)"""
 
 from __future__ import annotations
 

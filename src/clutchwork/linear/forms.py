@@ -1,4 +1,4 @@
-"""Derivatives of signals from those of the output row: docs/theory/linearisation.md (10)."""
+"""Derivatives of signals from those of the output row: docs/theory/linearisation.md (11)."""
 
 from __future__ import annotations
 

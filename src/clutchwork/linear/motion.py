@@ -85,7 +85,7 @@ class Motion:
     def tied_slopes(self) -> Array:
         """What a change of the base columns makes of the accelerations of the ties, the slopes of all else apart.
 
-        docs/theory/linearisation.md (12)
+        docs/theory/linearisation.md (10)
         """
         ties, (_, by_state, by_signal, now) = self.ties, self.local.split(self.local.ratio_slope)
         held = by_state @ self.s + by_signal @ self.i

@@ -1,4 +1,4 @@
-"""Ratios that vary, at an instant: docs/theory/linearisation.md (12)."""
+"""Ratios that vary, at an instant: docs/theory/linearisation.md (10)."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ struct Losses {
   S friction_ahead, friction_back;  ///< [N m] at the input
 
   /// What holds against slip in a direction, over the torque of the mesh on its input. docs/theory/load-dependent.md
-  /// (4)
+  /// (3)
   Bound<S> bound(int direction) const {
     const S gain = S(1) / ahead - S(1), loss = S(1) - back, sign = S(direction);
     const S weak = select(value(back) > 0, back * friction_back, S(0));

@@ -52,7 +52,7 @@ T missing(const CoupledProblem<T>& p, int i, bool regular) {
 }
 
 /// Torques of the present states: one linear system, refined. False: it is singular.
-/// docs/theory/load-dependent.md (8)
+/// docs/theory/load-dependent.md (9)
 template <class T>
 bool solve_states(CoupledProblem<T>& p) {
   const int n = p.n;
@@ -105,7 +105,7 @@ Rounding<T> rounding(const CoupledProblem<T>& p, int i) {
   return {1e-11 * made.torque, 1e-11 * made.slope};
 }
 
-/// State and line that contact i should have at the present torques. docs/theory/load-dependent.md (9)
+/// State and line that contact i should have at the present torques. docs/theory/load-dependent.md (10)
 template <class T>
 void wanted(const CoupledProblem<T>& p, int i, int& state, int& line) {
   const Rounding<T> noise = rounding(p, i);

@@ -130,7 +130,7 @@ int range_of(const LoadedLimit<T>& limit, int f) {
 inline constexpr int most_tried = 4;
 
 /// The largest factor over all choices of lines; the solution is that of the best one. docs/theory/load-dependent.md
-/// (10)
+/// (11)
 template <class T>
 T solve_loaded(LoadedLimit<T>& limit) {
   int *line = limit.ws.set.line, *best = limit.ws.set.best_line;

@@ -6,7 +6,7 @@
 namespace clutchwork::elements {
 
 /// Spring in series with dry friction whose limit is a table over the twist, and grows with the square of a speed.
-/// docs/theory/compliance.md (14)
+/// docs/theory/compliance.md (10)
 struct JenkinsElement : declared::JenkinsElement {
   template <class T>
   struct Params {

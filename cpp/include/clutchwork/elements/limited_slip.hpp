@@ -18,7 +18,7 @@ struct LimitedSlip : declared::LimitedSlip {
   static S load(const Params<T>&, const At<S>&) {
     return S(1);
   }
-  /// The gear row puts minus half the torque of the carrier on each side: docs/theory/load-dependent.md (12)
+  /// The gear row puts minus half the torque of the carrier on each side: docs/theory/load-dependent.md (5)
   template <class T, class S>
   static Bound<S> bound(const Params<T>& p, const At<S>&, int) {
     return {{S(p.drive * T(-2)), S(p.coast * T(2))}, {S(p.preload), S(p.preload)}};

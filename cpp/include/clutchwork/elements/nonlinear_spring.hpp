@@ -5,7 +5,7 @@
 
 namespace clutchwork::elements {
 
-/// Spring whose torque is a table over its twist, and a damper beside it. docs/theory/compliance.md (13)
+/// Spring whose torque is a table over its twist, and a damper beside it. docs/theory/compliance.md (9)
 struct NonlinearSpring : declared::NonlinearSpring {
   template <class T>
   struct Params {

@@ -126,7 +126,7 @@ void whole_torque(const FullForm<T>& form, const Whole<S>& e, int k) {
 }
 
 /// Torques of the contacts in slip that follow loads: each is a line over its load, and the loads are sums of all
-/// torques. docs/theory/load-dependent.md (6)
+/// torques. docs/theory/load-dependent.md (8)
 template <class T, class S>
 [[gnu::noinline]] void whole_loads(const FullForm<T>& form, const Whole<S>& e) {
   const Workspace<T>& ws = form.ws;

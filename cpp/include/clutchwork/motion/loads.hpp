@@ -10,7 +10,7 @@
 namespace clutchwork {
 
 /// Once per run: the loads by the torques of all directions and by prescribed accelerations.
-/// docs/theory/load-dependent.md (3)
+/// docs/theory/load-dependent.md (6)
 template <class T>
 void prepare_loads(Workspace<T>& ws) {
   const System& sys = ws.sys;
@@ -39,7 +39,7 @@ void prepare_loads(Workspace<T>& ws) {
 }
 
 /// The same in the present mode, by the torques of its branches: those of the carriers follow from them.
-/// docs/theory/load-dependent.md (5)
+/// docs/theory/load-dependent.md (7)
 template <class T>
 void map_loads(Workspace<T>& ws) {
   const System& sys = ws.sys;

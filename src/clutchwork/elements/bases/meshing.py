@@ -107,7 +107,7 @@ class Lossy(Heating):
 def screw_efficiencies(lead_angle: float, coefficient: float, normal_angle: float) -> tuple[float, float]:
     """Efficiency where the screw drives and where it is driven, by lead angle, friction and normal angle [rad].
 
-    docs/theory/load-dependent.md (11)
+    docs/theory/load-dependent.md (4)
     """
     rho = atan(coefficient / cos(normal_angle))
     return tan(lead_angle) / tan(lead_angle + rho), tan(lead_angle - rho) / tan(lead_angle)

@@ -1,4 +1,4 @@
-"""A shaft by its modes: docs/theory/compliance.md (9) to (12)."""
+"""A shaft by its modes: docs/theory/compliance.md (5) to (8)."""
 
 from __future__ import annotations
 
