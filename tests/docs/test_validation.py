@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 import clutchwork as cw
+from clutchwork.declare.node import Domain
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from support import samples
 from support.pages import code, page, table
@@ -39,27 +41,74 @@ def test_every_file_of_tests_opens_with_what_it_shows() -> None:
     assert [path.name for path, opening in openings.items() if marks.get(path.suffix, opening) != opening] == []
 
 
-def _fields(*roles: Role) -> list[tuple[str, str, str]]:
-    """(kind, field, meaning) of every field of the elements of some roles."""
-    return [(cls.kind, item.name, spec.doc) for cls in samples.declared(*roles) for item, spec in specs(cls)]
+def _named(claim: str) -> set[str]:
+    """Classes that the bullet of a claim names."""
+    bullet = re.search(rf"^- \*\*{claim}\*\*(.*?)(?=^- |\Z)", PAGE, re.DOTALL | re.MULTILINE)
+    assert bullet
+    return {name for name in code(bullet[1]) if name in dir(cw)}
+
+
+def _heat(cls: Any) -> float:
+    """What an element and all inside of it lose in a run of an example."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        run = samples.driveline(cls).simulate(0.1)
+    assert len(run) > 1, cls
+    return sum(abs(line.heat) for line in run.losses().lines if line.element.partition(".")[0] == "x")
 
 
 def _gears() -> None:
-    """A rigid element has ports and constant numbers that make up its ratio, and no more."""
+    """A rigid element has ports and constant numbers that make up its ratio, and no more; it has no heat."""
     allowed = ("ratio", "radius", "teeth", "module")
     for cls in REGISTRY[Role.GEAR].values():
         assert all(item.name.startswith(allowed) for item, spec in specs(cls) if spec.what != "port"), cls
+        assert _heat(cls) == 0.0, cls
+    # those that lose, and those that have play, are named
+    whole = [cls for cls in samples.declared(Role.COMPOSITE) if any("bound" in part.hooks for part in _parts(cls))]
+    play = [cls for kind, cls in REGISTRY[Role.CONTACT].items() | REGISTRY[Role.TORQUE].items() if "backlash" in kind]
+    # a differential where its locking torque is asked for
+    assert {cls.__name__ for cls in [*whole, *play]} | {"Differential"} == _named("Gears")
 
 
-def _backlash() -> None:
-    found = {kind for kind, _, doc in _fields(*samples.ELEMENT_ROLES) if "backlash" in doc}
-    assert found == {"dog_clutch", "synchroniser"}
+def _parts(cls: Any) -> list[Any]:
+    """The elements inside of one."""
+    element = next(element for element in samples.driveline(cls).elements if type(element) is cls)
+    return [part for part in element.parts() if isinstance(part, cw.Element)]
 
 
-def _collisions() -> None:
-    """No element joins masses or shafts by anything that has a gap, but teeth."""
-    gaps = {kind for kind, name, _ in _fields(Role.TORQUE, Role.CONTACT) if name in ("gap", "clearance", "restitution")}
-    assert gaps <= {"dog_clutch"}
+def _varying_ratios() -> None:
+    """A transmission has no heat of its own."""
+    known = [cls for cls in samples.declared(Role.TORQUE) if "ratio" in cls.hooks]
+    assert known
+    for cls in known:
+        assert _heat(cls) == 0.0, cls
+
+
+def _impacts() -> None:
+    """Restitutions are numbers, and what is locked beside a stop slips after an impact."""
+    stops = [cls for cls in samples.declared(Role.CONTACT) if "end" in cls.hooks]
+    found = {spec.what for cls in stops for item, spec in specs(cls) if "restitution" in item.name}
+    assert found == {"param"}
+    d = cw.Driveline()
+    a, b, c = d.shaft("a", inertia=1.0, speed=1.0), d.shaft("b", inertia=1.0), d.shaft("c", inertia=1.0)
+    d.add(cw.Backlash("play", base=a, follower=b, gap=0.2))
+    law = cw.Coulomb(static=0.2, kinetic=0.1)
+    d.add(cw.Clutch("c1", base=b, follower=c, friction=law, gain=1.0, pressure=1.0, locked=True))
+    run = d.simulate(0.2)
+    event = next(event for event in run.events if event.cause == "impact")
+    assert run.at([event.time, event.time])["c.speed"] == pytest.approx([0.0, 0.0])
+    assert run.at([event.time, event.time])["b.speed"] == pytest.approx([0.0, 0.5])
+    assert _named("Impacts") == {"ElasticBacklash", "ElasticGap"}
+
+
+def _sideways() -> None:
+    """A member has one speed."""
+    assert [domain.value for domain in Domain] == ["rotation", "translation"]
+    d = cw.Driveline()
+    d.shaft("a", inertia=1.0)
+    d.mass("b", mass=1.0)
+    speeds = [name for name in d.simulate(0.1).names if name.endswith(".speed")]
+    assert speeds == ["a.speed", "b.speed"]
 
 
 def _massless() -> None:
@@ -84,8 +133,9 @@ def _shares() -> None:
 
 CLAIMS: dict[str, Callable[[], Any]] = {
     "Gears": _gears,
-    "Backlash": _backlash,
-    "Collisions": _collisions,
+    "Ratios that vary": _varying_ratios,
+    "Impacts": _impacts,
+    "Sideways motion": _sideways,
     "Massless contacts": _massless,
     "Shares": _shares,
 }
