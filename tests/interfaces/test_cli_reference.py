@@ -115,7 +115,7 @@ def test_words_find_what_has_them(capsys: pytest.CaptureFixture[str]) -> None:
     assert "temperature_table" in told
     assert "friction_map" in told
     assert "coulomb" not in told
-    assert "see also: spring_damper, diaphragm_spring" in printed(capsys, "elements", "spring")
+    assert "see also: nonlinear_spring, spring_damper, diaphragm_spring" in printed(capsys, "elements", "spring")
 
 
 def test_units(capsys: pytest.CaptureFixture[str]) -> None:

@@ -33,8 +33,8 @@ def ours(function: Any) -> bool:
 
 # what calls return, and what declarations are made of: nobody calls these
 MADE_HERE = {
-    cw.Domain, cw.Element, cw.EnergyBalance, cw.Event, cw.Events, cw.Hint, cw.Hints, cw.Law, cw.Linear, cw.Moment,
-    cw.Problem, cw.Signal, cw.State, cw.Sweep, cw.System, cw.Trajectory,
+    cw.Domain, cw.Element, cw.EnergyBalance, cw.Event, cw.Events, cw.Hint, cw.Hints, cw.Law, cw.Linear, cw.Loss,
+    cw.Losses, cw.Moment, cw.Problem, cw.Signal, cw.State, cw.Sweep, cw.System, cw.Trajectory,
 }  # fmt: skip
 
 

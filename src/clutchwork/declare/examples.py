@@ -16,6 +16,7 @@ ENDS = {
     "carrier": "output",
     "forward": "load",
     "backward": "output",
+    "wheel": "load",
     "mass": "car",
     "cold": "air",
     "inlet": "air",

@@ -140,7 +140,7 @@ class Engine(Component):
         found: Found = []
         if any(abs(remainder(order, 0.5)) > 1e-9 for order in self.orders):
             found.append(
-                ("orders", "holds one that is no multiple of 1/2", "its mean over two revolutions would not be 0")
+                ("orders", "holds one that is not a multiple of 1/2", "its mean over two revolutions would not be 0")
             )
         for name, values in (("amplitudes", self.amplitudes), ("phases", self.phases)):
             if (values is None and name == "amplitudes") or (values is not None and len(values) != len(self.orders)):

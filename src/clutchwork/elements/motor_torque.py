@@ -75,7 +75,7 @@ class MotorTorque(Heating):
     derating: Points = curve(
         "K", "1", "factor on all limits over the temperature", at_least=0.0, example=((300.0, 1.0), (400.0, 0.5))
     )
-    scale: float = param("N m", "torque against which round-off is told", default=1.0, above=0.0, units=("N",))
+    scale: float = param("N m", "torque that round-off is measured against", default=1.0, above=0.0, units=("N",))
     command: SignalLike = signal("N m", "wanted torque", units=("N",))
     temperature: SignalLike | None = signal(
         "K", "temperature that derates it, that of its `heat` node by default", default=None, otherwise=293.15

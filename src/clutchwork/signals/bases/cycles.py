@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from clutchwork.base.errors import UseError
+from clutchwork.declare.calls import explained
 from clutchwork.signals.table import Table
 
 
+@explained("cw.drive_cycle", stages="[(10.0, 5.0, 3.0)]")
 def drive_cycle(stages: Sequence[tuple[float, float, float]], *, start: float = 0.0) -> Table:
     """A speed over time as a table, for a `Driver`: from rest to a speed, which is held, and on to the next one.
 
@@ -19,7 +21,7 @@ def drive_cycle(stages: Sequence[tuple[float, float, float]], *, start: float = 
         if not (reach > 0.0 and hold >= 0.0):
             fault = f"stage {number} takes {reach:g} s to {speed:g} m/s and holds it for {hold:g} s"
             raise UseError(
-                "drive_cycle", [f"{fault}: give a time above zero to reach it, and none below zero to hold it"]
+                "cw.drive_cycle", [f"{fault}: give a time above zero to reach it, and none below zero to hold it"]
             )
         time += reach
         points.append((time, float(speed)))
