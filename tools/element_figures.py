@@ -41,6 +41,7 @@ class Example:
     name: str  # of the element
     given: tuple[str, ...]  # fields that have a value
     signals: tuple[tuple[str, str], ...]  # those of the element, with units
+    parts: tuple[tuple[str, str], ...]  # name and kind of all that it is made of, itself first
 
 
 def example(cls: Any, source: str) -> Example:
@@ -54,7 +55,8 @@ def example(cls: Any, source: str) -> Example:
         kept.write_text(json.dumps(_performed(cls, source, kept.with_suffix(".svg"))), encoding="utf-8")
     said = json.loads(kept.read_text(encoding="utf-8"))
     signals = tuple((name, unit) for name, unit in said["signals"])
-    return Example(kept.with_suffix(".svg"), said["name"], tuple(said["given"]), signals)
+    parts = tuple((name, kind) for name, kind in said["parts"])
+    return Example(kept.with_suffix(".svg"), said["name"], tuple(said["given"]), signals, parts)
 
 
 @cache
@@ -72,7 +74,15 @@ def _performed(cls: Any, source: str, path: Path) -> dict[str, Any]:
     draw(run, element, path)
     given = [item for item in vars(element) if getattr(element, item) is not None]
     own = [(name, unit) for name, unit in run.units.items() if name.startswith(f"{element.name}.")]
-    return {"name": element.name, "given": given, "signals": own}
+    return {"name": element.name, "given": given, "signals": own, "parts": list(_parts(element))}
+
+
+def _parts(element: Any) -> Iterator[tuple[str, str]]:
+    """Name and kind of an element and of all elements inside."""
+    yield element.name, element.kind
+    for part in element.parts():
+        if isinstance(part, clutchwork.Element):
+            yield from _parts(part)
 
 
 def draw(run: Trajectory, element: Any, path: Path) -> None:

@@ -2,44 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import Any
 
 import element_figures
 import element_programs
+import element_results
 from clutchwork.declare.purposes import ELEMENT_ROLES, groups
-from clutchwork.declare.schema import Spec, inputs, specs
-from clutchwork.elements.plate_contact import PlateContact
+from clutchwork.declare.schema import specs
 from reference_fields import entry, linked, summary, table
 
 INTRODUCTION = """# Elements
 
 The components of a driveline. Ports name the shafts that an element joins; `torque` is what it applies to its follower,
 or to its shaft, see [signs](../guide/signs.md). Each page has an example that runs."""
-
-# what the signals of shafts and masses inside of an element mean
-INSIDE = {
-    "speed": "speed of a shaft or mass inside",
-    "angle": "its angle",
-    "position": "its position",
-    "acceleration": "its acceleration",
-}
-# what the signals of a result mean that are not inputs or states
-MEANINGS = {
-    "torque": "torque on its follower, or on its shaft",
-    "slip": "follower minus base, exactly zero while locked",
-    "rate": "follower minus base",
-    "power": "torque times slip or rate, the work done on the driveline",
-    "work": "integral of the power",
-    "heat": "heat that it has made, or taken",
-    "heat_flow": "heat that flows from hot to cold, or to the inlet",
-    "mode": "1 forward, 0 locked, -1 backward, 2 open",
-    "state": "the mode in a word",
-    "capacity": "largest torque that it can hold",
-    "temperature": "temperature",
-    "twist": "follower minus base, the free angle taken off",
-}
 
 
 def pages() -> Iterator[tuple[str, str]]:
@@ -74,7 +50,7 @@ def _page(kind: str, cls: Any) -> Iterator[str]:
     yield sections or _gain(cls)
     yield "## Fields\n"
     yield from table(cls)
-    yield from _results(cls, example)
+    yield from element_results.section(cls, example)
     if _has_linings(cls):
         yield _shared("_linings")
 
@@ -102,50 +78,3 @@ def _has_linings(cls: Any) -> bool:
 
 def _shared(name: str) -> str:
     return (element_programs.WORDS / f"{name}.md").read_text(encoding="utf-8")
-
-
-def _results(cls: Any, example: element_figures.Example) -> Iterator[str]:
-    """The signals that the example reports of the element."""
-    docs = INSIDE | _meanings(PlateContact, *_elements()) | _meanings(cls) | MEANINGS
-    unused = {name for name, spec in _optional(cls) if name not in example.given}
-    yield (
-        f'## Results\n\n`run["{example.name}.torque"]` and so on, of the example:\n'
-        if any(name.endswith(".torque") for name, _ in example.signals)
-        else "## Results\n\nOf the example:\n"
-    )
-    yield "{.fields}\n| signal | unit | |\n|---|---|---|"
-    for name, unit in example.signals:
-        last = name.rpartition(".")[2]
-        if last not in unused:
-            meaning = docs.get(last) or _meanings(cls).get(last.removesuffix("_signal")) or _at_port(last)
-            yield f"| `{name}` | {unit} | {meaning} |"
-    yield ""
-
-
-def _meanings(*known: Any) -> dict[str, str]:
-    """Meanings of the inputs and states of some elements, the first one that has a name gives its meaning."""
-    found: dict[str, str] = {}
-    for cls in known:
-        for item, spec in specs(cls, "signal", "alternative"):
-            found.setdefault(item.name, spec.doc)
-        for state in cls.states:
-            found.setdefault(state.name, state.doc)
-    return found
-
-
-def _elements() -> Iterator[Any]:
-    for kinds in groups(*ELEMENT_ROLES).values():
-        yield from kinds.values()
-
-
-def _optional(cls: type) -> Iterator[tuple[str, Spec]]:
-    """Inputs that count as a number where they are not given, those of plates inside included."""
-    for known in (cls, PlateContact):
-        for names, spec in inputs(known):
-            if spec.otherwise is not None:
-                yield from ((name, spec) for name in names)
-
-
-def _at_port(name: str) -> str:
-    found = re.fullmatch(r"torque_(\w+)", name)
-    return f"torque on the {found[1]}" if found else ""

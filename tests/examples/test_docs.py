@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import re
 import shutil
 import sys
@@ -113,6 +114,18 @@ def test_links_lead_somewhere(path: Path) -> None:
         link for link in links if "://" not in link and "/reference/" not in link and not link.startswith("reference/")
     ]
     assert [link for link in local if not (path.parent / link).exists()] == []
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "docs" / "elements").glob("*.md")), ids=named)
+def test_links_of_words_about_an_element_lead_somewhere_from_its_page(path: Path) -> None:
+    """Its page is made in docs/reference/elements."""
+    links = re.findall(r"\]\(([^):#\s]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8"))
+    # those of other elements are made beside it
+    others = [link for link in links if "/" not in link]
+    assert [link for link in others if not (path.parent / link).exists()] == []
+    place = ROOT / "docs" / "reference" / "elements"
+    known = [Path(os.path.normpath(place / link)) for link in links if "/" in link]
+    assert [str(link) for link in known if not link.exists()] == []
 
 
 def labels(path: Path) -> list[str]:

@@ -201,6 +201,8 @@ class Component(Element):
     lifts: ClassVar[tuple[str, str] | None] = None
     work: ClassVar[Work] = Work.SOURCE  # of a torque element; the work of a contact is always heat
     supply: ClassVar[str] = ""  # of a source with the hook `heat`: what it draws work and heat from, such as "electric"
+    # meaning of its signals by their last word, where that is not the usual one
+    reports: ClassVar[Mapping[str, str]] = {}
     elastic: ClassVar[bool] = False  # joins its ends as a shaft does: counts as rigid in ratios of speeds
     jumps: ClassVar[bool] = False  # a torque element whose torque jumps: its shafts need inertia, as at a contact
 

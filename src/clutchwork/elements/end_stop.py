@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 from clutchwork.declare import HOUSING, Found, Node, Role, component, option, param, port
 from clutchwork.elements.bases.stop import Stop
 
@@ -17,6 +20,8 @@ class EndStop(Stop):
 
     Source of the impact law: J. J. Moreau 1988, doi:10.1007/978-3-7091-2624-0_1.
     """
+
+    reports: ClassVar[Mapping[str, str]] = {"position": "position of the follower over the base"}
 
     base: Node | None = port("side that the position is measured from", default=None)
     follower: Node = port("side whose motion is positive")

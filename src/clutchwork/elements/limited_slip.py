@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from typing import ClassVar
 
 from clutchwork.declare import Node, Role, component, param, port
 from clutchwork.elements.bases.meshing import SLIP, Meshing
@@ -16,6 +17,11 @@ class LimitedSlip(Meshing):
     It is the part of `Differential` that makes its friction; use that one. Slip is left - right, its torque is that
     on the left side.
     """
+
+    reports: ClassVar[Mapping[str, str]] = {
+        "slip": "left minus right, exactly zero while it sticks",
+        "torque": "of the friction, on the left side",
+    }
 
     carrier: Node = port("carrier of the pinions, the driven side")
     left: Node = port("one side")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from typing import ClassVar
 
 from clutchwork.declare import Found, Node, Role, component, exact, numbers, param, port
 from clutchwork.elements.bases.meshing import SLIP, Meshing, table_problems
@@ -19,6 +20,11 @@ class Mesh(Meshing):
     Source: C. Pelchen, C. Schweiger, M. Otter, Modeling and simulating the efficiency of gearboxes and of planetary
     gearboxes, 2nd Modelica Conference, 2002.
     """
+
+    reports: ClassVar[Mapping[str, str]] = {
+        "slip": "speed of the input over the support, exactly zero while it sticks",
+        "torque": "of the friction, along the slip",
+    }
 
     input: Node = port("shaft whose speed is ratio times that of the output")
     output: Node = port("other shaft")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 from clutchwork.declare import Component, Node, Role, component, port
 
 
@@ -13,6 +16,13 @@ class MotionSensor(Component):
     an exported model or a fit needs by name. It changes nothing: no torque, no step. At an event the signal has both
     limits; the acceleration after it is the right one. The angle starts as the difference of the angles at the start.
     """
+
+    reports: ClassVar[Mapping[str, str]] = {
+        "angle": "of the follower against the base",
+        "position": "of the follower against the base",
+        "speed": "its rate: speed of the follower over that of the base",
+        "acceleration": "the rate of that",
+    }
 
     base: Node | None = port("side that motion is counted from", default=None)
     follower: Node = port("side whose motion counts positive")

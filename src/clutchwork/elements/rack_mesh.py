@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from typing import ClassVar
 
 from clutchwork.declare import Found, Node, Role, component, exact, numbers, param, port
 from clutchwork.elements.bases.meshing import SLIP, Meshing, table_problems
@@ -13,9 +14,14 @@ from clutchwork.elements.bases.meshing import SLIP, Meshing, table_problems
 class RackMesh(Meshing):
     """Mesh between a shaft and a mass with losses that follow the torque which it transmits: sticks exactly, by load.
 
-    It is the part of `RackPinion` and `Leadscrew` that makes their friction; use those, or this one in elements of
-    your own. Speed of the mass = radius times speed of the shaft relative to the support.
+    It is the part of `Leadscrew` that makes its friction; use that, or this one for a rack with losses: `RackPinion`
+    has none. Speed of the mass = radius times speed of the shaft relative to the support.
     """
+
+    reports: ClassVar[Mapping[str, str]] = {
+        "slip": "speed of the shaft over the support, exactly zero while it sticks",
+        "torque": "of the friction, along the slip",
+    }
 
     shaft: Node = port("shaft of the wheel or screw", domain="rotation")
     mass: Node = port("mass that it moves", domain="translation")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
+from typing import ClassVar
 
 from clutchwork.declare import Component, Node, Role, component, port
 
@@ -17,6 +19,13 @@ class TorqueSensor(Component):
     seen: the torque is the reaction of the rigid line. The torque of springs, clutches and gears is a signal of their
     own already.
     """
+
+    reports: ClassVar[Mapping[str, str]] = {
+        "torque": "on the follower, from the base",
+        "speed": "of both",
+        "power": "that goes from base to follower",
+        "energy": "that has gone from base to follower since the start",
+    }
 
     base: Node = port("side that power comes from where it counts positive")
     follower: Node = port("side that power goes to")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import ClassVar
 
 from clutchwork.declare import Found, Node, Role, SignalLike, component, option, port, signal
 from clutchwork.declare.node import Part
@@ -26,6 +27,12 @@ class VariableRatio(Heating):
 
     Equations: docs/theory/varying-ratios.md.
     """
+
+    reports: ClassVar[Mapping[str, str]] = {
+        "torque": "on the input",
+        "slip": "input minus ratio times output, exactly zero while it grips",
+        "normal_force": "its capacity",
+    }
 
     input: Node = port("shaft whose speed is ratio times that of the output")
     output: Node = port("other shaft")
