@@ -75,6 +75,17 @@ def test_a_grade_below_the_coefficient_holds_for_ever(slope: float, moves: bool)
     assert (abs(at_end(run, "car.speed")) > 0.0) == moves
 
 
+@pytest.mark.parametrize(("speed", "wind"), [(20.0, 0.0), (-20.0, 0.0), (5.0, 12.0), (-5.0, -12.0)])
+def test_air_from_either_side_drags_from_the_first_row_on(speed: float, wind: float) -> None:
+    """Force and linear system of the start itself: -rho A u abs(u)/2 and its slope."""
+    d = cw.Driveline("air")
+    car = d.mass("car", mass=1000.0, speed=speed)
+    d.add(cw.AirDrag("air", shaft=car, area=0.7, density=1.2, wind=wind))
+    through = speed - wind
+    assert d.simulate(1e-3)["air.torque"][0] == pytest.approx(-0.42 * through * abs(through), rel=1e-12)
+    assert cw.linearise(d).A[0, 0] == pytest.approx(-0.84 * abs(through) / 1000.0, rel=1e-12)
+
+
 def test_wind_against_an_independent_solution() -> None:
     """A gust that turns the sign of the speed through the air; SciPy at rtol 1e-12."""
     area, coefficient = 2.5, 0.002

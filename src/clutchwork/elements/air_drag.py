@@ -6,7 +6,7 @@ from clutchwork.declare import Node, Role, SignalLike, component, param, port, s
 from clutchwork.elements.bases.heating import Heating
 
 
-@component(Role.TORQUE, hooks=("margin", "cross", "turns"))
+@component(Role.TORQUE, hooks=("margin", "cross", "turns", "settle"))
 class AirDrag(Heating):
     """Force `-density/2 area u abs(u)` with `u` the speed less the wind.
 

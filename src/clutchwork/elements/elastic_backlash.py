@@ -12,7 +12,7 @@ from clutchwork.elements.bases.heating import Heating
 @component(
     Role.TORQUE,
     states=(State("twist", "rad", "follower - base, 0 in the middle of the gap", span=1e-7),),
-    hooks=("margin", "cross", "turns", "heat"),
+    hooks=("margin", "cross", "turns", "settle", "heat"),
 )
 class ElasticBacklash(Heating):
     """Elastic shaft or tooth with play: no torque inside the gap, a spring and a damper beyond it.

@@ -12,7 +12,7 @@ from clutchwork.elements.bases.heating import Heating
 @component(
     Role.TORQUE,
     states=(State("gap", "rad", "distance left between base and follower, below 0: pressed", span=1e-7),),
-    hooks=("margin", "cross", "turns", "heat"),
+    hooks=("margin", "cross", "turns", "settle", "heat"),
 )
 class ElasticGap(Heating):
     """Spring and damper between two bodies that push while they touch and never pull.

@@ -36,6 +36,11 @@ struct AirDrag : declared::AirDrag {
   static bool turns(const Params<T>&, int) {
     return false;
   }
+  template <class T>
+  static int settle(const Params<T>&, const At<T>& at) {
+    const double u = value(at.rate - at.input[Input::wind]);
+    return u == 0 ? at.piece : u < 0 ? behind : ahead;
+  }
 };
 
 }  // namespace clutchwork::elements

@@ -73,6 +73,12 @@ struct ElasticBacklash : declared::ElasticBacklash {
   static bool turns(const Params<T>&, int) {
     return false;
   }
+  /// A flank that is pressed stays so until its guard says otherwise.
+  template <class T>
+  static int settle(const Params<T>& p, const At<T>& at) {
+    const int s = value(depth(p, at, 1)) > 0 ? 1 : value(depth(p, at, -1)) > 0 ? -1 : side(at.piece);
+    return s == 0 ? int(apart) : piece_of(s, contact(p, at, s).touch());
+  }
 };
 
 }  // namespace clutchwork::elements

@@ -57,6 +57,12 @@ struct ElasticGap : declared::ElasticGap {
   static bool turns(const Params<T>&, int) {
     return false;
   }
+  /// What is pressed stays so until its guard says otherwise.
+  template <class T>
+  static int settle(const Params<T>& p, const At<T>& at) {
+    if (at.piece == apart && value(at.state[gap]) >= 0) return apart;
+    return pressed + int(contact(p, at).touch());
+  }
 };
 
 }  // namespace clutchwork::elements
