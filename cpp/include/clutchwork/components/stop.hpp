@@ -11,10 +11,6 @@ struct RigidStop {
   static S load(const P&, const At<S>&) {
     return S(0);
   }
-  template <class P>
-  static auto rest_speed(const P& p) {
-    return p.rest_speed;
-  }
 };
 
 }  // namespace clutchwork

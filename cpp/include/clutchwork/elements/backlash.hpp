@@ -21,6 +21,10 @@ struct Backlash : declared::Backlash, RigidStop {
   static T restitution(const Params<T>& p, int) {
     return p.restitution;
   }
+  template <class T>
+  static T rest_speed(const Params<T>& p) {
+    return p.rest_speed;
+  }
 };
 
 }  // namespace clutchwork::elements

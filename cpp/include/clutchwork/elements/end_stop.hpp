@@ -23,6 +23,10 @@ struct EndStop : declared::EndStop, RigidStop {
   static T restitution(const Params<T>& p, int side) {
     return side < 0 ? p.lower_restitution : p.upper_restitution;
   }
+  template <class T>
+  static T rest_speed(const Params<T>& p) {
+    return p.rest_speed;
+  }
 };
 
 }  // namespace clutchwork::elements

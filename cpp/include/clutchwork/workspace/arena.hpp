@@ -40,9 +40,9 @@ struct Sizes {
         directions(s.elements + s.contacts),
         references(s.n_input_refs + s.prescribed),
         signals(s.inputs),
-        loads(s.loads),
         processes(s.processes),
         transmissions(s.transmissions),
+        loads(s.loads),
         few(is_few(s)),
         full(s.full != nullptr && s.full[0] != 0) {
     const auto nv = speeds, nc = contacts;
