@@ -77,7 +77,7 @@ def test_without_values_too(drawn: tuple[cw.Driveline, Schematic]) -> None:
     bare = d.draw(values=False)
     assert schematics.overlaps(bare.sheet) == []
     names = {piece.name for piece in bare.sheet.pieces} | {f"heat of {p.name}" for p in bare.sheet.pieces}
-    letters = {"R", "C", "S", "ω", "v"}
+    letters = {"R", "C", "S", "ω", "v", "η"}
     assert set(schematics.texts(bare.sheet)) - letters <= names
     assert len(schematics.texts(full.sheet)) > len(schematics.texts(bare.sheet))
 

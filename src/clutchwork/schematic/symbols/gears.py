@@ -219,7 +219,6 @@ GEARS = {
         ravigneaux, 20.0, 24.0, 28.0, {"ring": 19.0, "carrier": 6.0, "large_sun": -9.0, "small_sun": -22.0}
     ),
     "polygon_sprocket": Symbol(wheel, 18.0, 16.0, 17.0, {"support": 16.0}),
-    "rack_pinion": Symbol(wheel, 18.0, 16.0, 17.0, {"support": 16.0}),
     "rolling_wheel": Symbol(wheel, 18.0, 16.0, 17.0, {"support": 16.0}),
     "dog_clutch": Symbol(dogs),
     "synchroniser": Symbol(synchroniser, 18.0, 21.0, 21.0, {"hub": 0.0, "forward": 14.0, "backward": -14.0}),

@@ -9,13 +9,14 @@ from clutchwork.schematic.symbols.contacts import CONTACTS
 from clutchwork.schematic.symbols.gears import GEARS
 from clutchwork.schematic.symbols.heat import FLOW, FLOWS, PROCESS, PROCESSES
 from clutchwork.schematic.symbols.hydrodynamic import HYDRODYNAMIC
+from clutchwork.schematic.symbols.meshes import MESHES
 from clutchwork.schematic.symbols.play import PLAY
 from clutchwork.schematic.symbols.ratios import RATIOS
 from clutchwork.schematic.symbols.symbol import Symbol
 from clutchwork.schematic.symbols.torques import TORQUES, unknown
 from clutchwork.schematic.symbols.vehicles import VEHICLES
 
-OWN = {**CONTACTS, **GEARS, **RATIOS, **TORQUES, **PLAY, **HYDRODYNAMIC, **FLOWS, **PROCESSES, **VEHICLES}
+OWN = {**CONTACTS, **GEARS, **MESHES, **RATIOS, **TORQUES, **PLAY, **HYDRODYNAMIC, **FLOWS, **PROCESSES, **VEHICLES}
 
 
 def symbol_of(element: Any) -> Symbol:

@@ -68,7 +68,7 @@ def nonlinear_spring(pen: Pen, shown: Drawn) -> None:
 
 def jenkins_element(pen: Pen, shown: Drawn) -> None:
     """A spring in series with two plates that rub."""
-    zigzag(pen, -14.0, 3.0, 0.0)
+    zigzag(pen, -14.0, 3.0, 0.0, 6.0)
     pen.line((3.0, 0.0), (9.0, 0.0), look=INK._replace(width=2.0))
     for y in (-3.0, 3.0):
         pen.line((4.0, y), (13.0, y), look=INK._replace(width=1.6))
