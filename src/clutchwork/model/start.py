@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import Problem
 from clutchwork.declare.node import Domain
 from clutchwork.declare.rational import ONE, ZERO, Echelon, Row, exact, plus, smallest
-from clutchwork.declare.schema import Role
+from clutchwork.declare.schema import Role, specs
 from clutchwork.declare.speech import path_of
-from clutchwork.elements.bases.motion import MotionError
+from clutchwork.elements.bases.motion import Motion, MotionError
 from clutchwork.model.transmissions import start_grips, start_rows
 from clutchwork.signals.bases.waveform import value
 from clutchwork.signals.constant import Constant
@@ -33,7 +34,7 @@ def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], list[tupl
     problems: list[Problem] = []
     for motion in model.role(Role.MOTION):
         try:
-            motions.append((motion, motion.speed_signal()))
+            motions.append((motion, _finite_speed(motion)))
         except MotionError as bad:
             problems.append(Problem(path_of(motion), bad.quantity, bad.message, bad.value, bad.remedy))
             motions.append((motion, Constant(0.0)))
@@ -41,6 +42,15 @@ def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], list[tupl
         return [ZERO] * len(made.independent), motions, problems
     speeds, wrong = initial_speeds(model, made, [value(signal, 0.0) for _, signal in motions])
     return speeds, motions, problems + wrong
+
+
+def _finite_speed(motion: Motion) -> Signal:
+    """The speed that a motion gives, which is finite at the start."""
+    made = motion.speed_signal()
+    if isfinite(speed := value(made, 0.0)):
+        return made
+    quantity = next(item.name for item, _ in specs(type(motion), "signal"))
+    raise MotionError(quantity, "gives a speed at the start that is not finite", f"{speed:g}", "give smaller numbers")
 
 
 def initial_angles(model: Mechanism) -> list[float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from math import isfinite
 from typing import Any, TypeAlias
 
 from clutchwork.declare import Found, HeatFlow, Node, Rate, Signal, ThermalNode
@@ -30,7 +31,9 @@ def angle_of(node: Node | None) -> float:
 
 
 def ratio_problems(ratio: Any) -> Found:
-    """A ratio that depends on the motion at once, so that its own rate of change would depend on the torque."""
+    """A ratio that is not finite, or follows the motion at once, so that its rate of change depends on the torque."""
+    if isinstance(ratio, Signal) and not isfinite(at_start(ratio)):
+        return [("ratio", f"is {at_start(ratio):g} at the start", "give finite and smaller numbers")]
     if not isinstance(ratio, Node | Rate | HeatFlow | ThermalNode):
         return []
     remedy = "let it pass a RatioActuator, whose state has a rate of its own"
