@@ -44,6 +44,11 @@ def test_every_signal_of_every_element_can_be_set(cls: Any) -> None:
             continue
         spec = own.get(name)
         value = allowed(spec) if spec is not None else 280.0 if name.endswith("temperature") else 0.25
+        if system.motions and name in own and name not in sim._outside.signals:
+            # a position that jumps would take an infinite speed; what acts is the speed
+            (problem,) = problems(sim, name, value)
+            assert problem.remedy == "set 'x.speed'"
+            continue
         sim.advance(0.01)
         sim.set(name, value)
         sim.advance(0.01)

@@ -119,6 +119,10 @@ def _of(thing: Any, component: Any, inside: str) -> Iterator[tuple[str, tuple[st
 
 def given_by_others(system: System, name: str) -> Problem | None:
     """Why a signal that another component gives cannot be set; None where it is another name."""
+    for motion in system.motions:
+        speed = f"{motion.name}.speed"
+        if name != speed and name in [f"{motion.name}.{item.name}" for item, _ in specs(type(motion), "signal")]:
+            return Problem(name, "", f"acts by the speed that follows from it, {speed!r}", remedy=f"set {speed!r}")
     linked = next((link for link in system.links if link.name == name), None)
     if linked is None:
         return None
