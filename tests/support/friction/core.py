@@ -47,8 +47,9 @@ def drift(law: cw.Law, history: Drift) -> cw.Driveline:
     )
 
 
-def run(d: cw.Driveline, times: Any, **options: Any) -> Any:
-    """A tight run with samples at given times; published parameters may be warned of."""
+def run(d: cw.Driveline, times: Any, *, steps: bool = False, **options: Any) -> Any:
+    """A tight run with samples at given times or at all steps; published parameters may be warned of."""
+    output = {"output": "steps"} if steps else {"times": times}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", cw.ModelWarning)
-        return d.simulate(float(times[-1]), times=times, **TIGHT | options)
+        return d.simulate(float(times[-1]), **output | TIGHT | options)
