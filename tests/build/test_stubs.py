@@ -36,7 +36,8 @@ RIGHT = """
 same: cw.DiskClutch = d.add(clutch)
 radius: float = same.effective_radius
 pack: cw.ThermalNode | None = same.plates
-worn: cw.Element | cw.ThermalNode = same.part("wear")
+worn: cw.Element | cw.ThermalNode | cw.Node = same.part("wear")
+assert isinstance(worn, cw.Wear)
 word: str = same.direction
 d.add(cw.Wear("w", rate=1e-12, area=1e-3, heat=cw.HeatFlow(same)))
 d.add(cw.DiaphragmSpring("s", force=[(0.0, 5e3), (8e-3, 0.0)], travel=0.0, wear=worn))
@@ -93,6 +94,8 @@ def _call(cls, **more):
 def _value(item, spec):
     if spec.what in VALUES:
         return VALUES[spec.what]
+    if "Sequence[Sequence[" in str(item.type) and spec.example is None:
+        return "((0.1, 0.2), (0.3, 0.4))"
     return "lambda time, readings: 0.0" if spec.what == "function" else repr(samples.value(item.name, spec, {}))
 
 

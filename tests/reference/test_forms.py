@@ -13,7 +13,6 @@ from scipy.integrate import solve_ivp
 import clutchwork as cw
 from clutchwork.signals.bases.waveform import value
 from support.msl import compare
-from support.msl.elements import missing
 from support.msl.model import translate
 from support.msl.pieces import UnsupportedError, at, integral
 from support.msl.signals import first_value, pieces, signal
@@ -274,8 +273,8 @@ def test_a_bearing_that_is_viscous_only() -> None:
     assert w == pytest.approx([5.0 * math.exp(-t / 2.0) for t in TIMES], abs=1e-8)
 
 
-def test_a_lossy_gear_without_efficiencies() -> None:
-    """Ideal, or with a torque of its own that opposes the input."""
+def test_a_lossy_gear_with_and_without_efficiencies() -> None:
+    """Ideal, with a torque of its own that opposes the input, or with less torque at the driven side."""
     elements = {
         "g": {"type": "lossy_gear", "ratio": 2.0, "loss_table": [[0, 1, 1, 0, 0]]},
         "k": {"type": "inertia", "J": 1.0},
@@ -289,8 +288,16 @@ def test_a_lossy_gear_without_efficiencies() -> None:
     run, w, _ = simulated(small(elements, joined, w=4.0))
     assert w == pytest.approx(solved(lambda t, y: [-(0.5 + y[0]) / 2.25], [4.0])[0], abs=1e-8)
     assert translate(case | {"elements": case["elements"] | elements}).contacts == ("g",)
-    elements["g"]["loss_table"] = [[0, 0.9, 0.9, 0, 0]]
-    assert missing(small(elements, joined)) == ["lossy_gear with efficiencies"]
+    elements["g"]["loss_table"] = [[0, 0.9, 0.8, 0, 0]]
+    elements["push"] = {"type": "constant_torque", "tau_constant": 3.0}
+    run, w, _ = simulated(small(elements, [*joined, ["push.flange", "j.flange_a"]], w=4.0))
+    # T into the gear: 2 w' = 3 - T, and w'/2 = 2 (0.9 T) behind it
+    assert w == pytest.approx([4.0 + 3.0 / (2.0 + 0.25 / 0.9) * t for t in TIMES], abs=1e-8)
+    elements["push"] = {"type": "constant_torque", "tau_constant": -3.0}
+    run, w, _ = simulated(small(elements, [*joined, ["push.flange", "j.flange_a"]], w=4.0))
+    # the output drives as long as it turns forward: w'/2 = 2 T/0.8
+    ahead = [t for t in TIMES if 4.0 - 3.0 / (2.0 + 0.25 * 0.8) * t > 0.0]
+    assert w[: len(ahead)] == pytest.approx([4.0 - 3.0 / (2.0 + 0.25 * 0.8) * t for t in ahead], abs=1e-8)
 
 
 COLUMNS = {
