@@ -88,7 +88,7 @@ def _tables(known: dict[str, Any]) -> Iterator[str]:
 
 
 def _alone(known: dict[str, Any]) -> Iterator[str]:
-    yield "\n## What is ours alone\n"
+    yield "\n## What is different here\n"
     for part in parts():
         if part.get("alone") and _first(part, known):
             yield f"- **{part['what']}**: {part['alone']}"

@@ -12,7 +12,7 @@ from clutchwork.elements.bases.ratios import Rates, angle_of
 
 @component(
     Role.TORQUE,
-    states=(State("angle", "rad", "angle of the base, counted from where both yokes are in the plane of the bend"),),
+    states=(State("angle", "rad", "angle of the base, counted from where its yoke lies in the plane of the bend"),),
     hooks=("ratio",),
     ways=(Way("follower", "follower relative to the support"), Way("base", "base relative to the support")),
 )

@@ -180,8 +180,8 @@ void start_states(CoupledProblem<T>& p) {
   }
 }
 
-/// Policy iteration from all at rest: each round solves for the torques and gives the contact that is farthest from it
-/// the state that they ask for, or all of them. False: it does not settle.
+/// Policy iteration from all at rest: each round solves for the torques and gives all contacts the state that they ask
+/// for, or the first of those that want another one. False: it does not settle.
 template <class T>
 bool iterate_states(CoupledProblem<T>& p, bool single) {
   start_states(p);

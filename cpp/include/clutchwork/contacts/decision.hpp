@@ -311,7 +311,7 @@ int steepest(const Workspace<T>& ws) {
 }
 
 /// Whether all candidates together hold, where some depend on others and some follow loads: then they do.
-/// docs/theory/load-dependent.md, rule 2
+/// docs/theory/load-dependent.md, rule 3
 template <class T>
 bool hold_together(Workspace<T>& ws) {
   const System& sys = ws.sys;
@@ -347,7 +347,7 @@ bool hold_together(Workspace<T>& ws) {
 }
 
 /// As settle_contacts where contacts follow loads: torques, loads and modes are found together.
-/// docs/theory/load-dependent.md, rule 1
+/// docs/theory/load-dependent.md, rule 2
 template <class T>
 Verdict settle_coupled(Workspace<T>& ws, int located, double tolerance) {
   int *candidate = ws.decision.candidate, *released = ws.decision.released;

@@ -278,7 +278,7 @@ void find_load(Form& form, Step<Form>& step, Hit& hit) {
 }
 
 /// Where a load passes to the other line of the bound with which its contact slips. docs/theory/load-dependent.md, rule
-/// 3
+/// 1
 template <class Form, class Integrator>
 [[gnu::noinline]] void find_flip(Form& form, Step<Form>& step, Hit& hit) {
   using T = typename Form::Scalar;
