@@ -13,7 +13,6 @@ from clutchwork.declare.rational import MINUS, ONE, ZERO, Row, eliminate, plus, 
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
 from clutchwork.model.structure import follows_load
-from clutchwork.model.transmissions import transmissions
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -36,14 +35,7 @@ def load_arrays(model: Mechanism) -> dict[str, Any]:
 
 
 def load_problems(model: Mechanism) -> Iterator[Problem]:
-    """Contacts whose load is not determined because their gear row depends on others, or a ratio beside varies."""
-    varying = transmissions(model)
-    for contact in model.role(Role.CONTACT) if varying else ():
-        if follows_load(contact):
-            message = f"cannot follow its load beside {path_of(varying[0].component)}, whose ratio varies"
-            yield Problem(
-                path_of(contact), "", message, remedy="use a gear without losses, or one of constant ratio there"
-            )
+    """Contacts whose load is not determined because their gear row depends on others."""
     if any(follows_load(contact) for contact in model.role(Role.CONTACT)):
         for component, others, motion in _motions(model):
             if not motion:

@@ -48,7 +48,10 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
     }
     add(branch_torque_once(ws, b, rate_of(ws, d), ws.state, ws.seen.state_rates), d);
   }
-  if (ws.ratios.inside) accelerate_rows(ws, q);
+  if (!ws.ratios.inside) return;
+  accelerate_rows(ws, q);
+  for (int l = 0; l < sys.loads; ++l)
+    ws.coupled.given[l] += dot(ws.ratios.rank, ws.loads.by_drawn + l * ws.ratios.n, ws.ratios.drawn);
 }
 
 /// Acceleration of a slip for mass-weighted acceleration q.

@@ -203,6 +203,58 @@ void leave_directions(Workspace<T>& ws) {
   }
 }
 
+/// Part of an acceleration, mass-weighted, that makes the rows give `wanted`; nothing else moves.
+/// docs/theory/varying-ratios.md (5)
+template <class T>
+void follow_rows(const Workspace<T>& ws, const T* wanted, T* x) {
+  const Ratios<T>& r = ws.ratios;
+  const int nv = int(ws.sys.speeds);
+  for (int k = 0; k < r.rank; ++k) {
+    T s = wanted[r.order[k]];
+    for (int j = 0; j < k; ++j) s -= r.triangle[k * r.n + j] * r.share[j];
+    r.share[k] = s / r.triangle[k * r.n + k];
+  }
+  for (int k = 0; k < r.rank; ++k) axpy(nv, r.share[k], r.span + k * nv, x);
+}
+
+/// Loads by torques where transmissions do no work: the virtual motion of each keeps their rows too, by a motion along
+/// their span and of the speeds that follow. docs/theory/load-dependent.md (13)
+template <class T>
+void leave_loads(Workspace<T>& ws) {
+  const System& sys = ws.sys;
+  Ratios<T>& r = ws.ratios;
+  const int nv = int(sys.speeds), ne = int(sys.elements), np = int(sys.prescribed), nd = ws.n_directions;
+  T *x = ws.decision.speed, *tied = r.pull;
+  for (int l = 0; l < sys.loads; ++l) {
+    auto rate = [&](int d) {
+      return T(d < ne ? sys.load_element_rate[l * ne + d] : sys.load_contact_rate[l * sys.contacts + d - ne]);
+    };
+    auto without = [&](int d) {
+      T s = rate(d);
+      for (int b = 0; b < r.n; ++b) s -= follower_of(ws, b) < 0 ? T(0) : r.via[d * r.n + b] * tied[b];
+      return s;
+    };
+    for (int a = 0; a < r.n; ++a) tied[a] = rate(first_of(ws, a)) - r.value[a] * rate(first_of(ws, a) + 1);
+    for (int a = 0; a < r.n; ++a)
+      r.wanted[a] = r.value[a] * without(first_of(ws, a) + 1) - without(first_of(ws, a));
+    for (int i = 0; i < nv; ++i) x[i] = ws.loads.momentum[l * nv + i];
+    follow_rows(ws, r.wanted, x);
+    for (int d = 0; d < nd; ++d) {
+      T s = dot(nv, x, r.white.val + d * nv) - without(d);
+      for (int k = 0; k < r.rank; ++k) s -= r.part[d * r.n + k] * r.share[k];
+      ws.loads.beside_torque[l * nd + d] = s;
+    }
+    T* drawn = ws.loads.by_drawn + l * r.n;
+    for (int k = 0; k < r.rank; ++k) drawn[k] = dot(nv, x, r.span + k * nv);
+    for (int p = 0; p < np; ++p) {
+      T s = ws.loads.by_slope[l * np + p];
+      for (int k = 0; k < r.rank; ++k)
+        s += drawn[k] * dot(nv, r.span + k * nv, ws.geometry.prescribed_momentum + p * nv);
+      ws.loads.beside_slope[l * np + p] = s;
+    }
+  }
+}
+
 /// The ratios before what happens now.
 template <class T>
 void keep_ratios(Workspace<T>& ws) {
@@ -234,6 +286,8 @@ class BesideRatios {
     exchange(ws_.geometry.white, ws_.ratios.white);
     exchange(ws_.geometry.own, ws_.ratios.own);
     exchange(ws_.geometry.mobility, ws_.ratios.mobility);
+    exchange(ws_.loads.by_torque, ws_.loads.beside_torque);
+    exchange(ws_.loads.by_slope, ws_.loads.beside_slope);
     ws_.ratios.inside = !ws_.ratios.inside;
   }
 
@@ -243,7 +297,7 @@ class BesideRatios {
     if (!entered_) return;
     Ratios<T>& r = ws.ratios;
     for (int a = 0; a < r.n; ++a) r.value[a] = before ? r.before[a] : ratio_now(ws, a).v;
-    write_rows(ws), span_rows(ws), leave_directions(ws);
+    write_rows(ws), span_rows(ws), leave_directions(ws), leave_loads(ws);
     swap();
   }
   BesideRatios(const BesideRatios&) = delete;
@@ -251,20 +305,6 @@ class BesideRatios {
     if (entered_) swap();
   }
 };
-
-/// Part of an acceleration, mass-weighted, that makes the rows give `wanted`; nothing else moves.
-/// docs/theory/varying-ratios.md (5)
-template <class T>
-void follow_rows(const Workspace<T>& ws, const T* wanted, T* x) {
-  const Ratios<T>& r = ws.ratios;
-  const int nv = int(ws.sys.speeds);
-  for (int k = 0; k < r.rank; ++k) {
-    T s = wanted[r.order[k]];
-    for (int j = 0; j < k; ++j) s -= r.triangle[k * r.n + j] * r.share[j];
-    r.share[k] = s / r.triangle[k * r.n + k];
-  }
-  for (int k = 0; k < r.rank; ++k) axpy(nv, r.share[k], r.span + k * nv, x);
-}
 
 /// What the rows of the transmissions over the speeds with inertia must give, from what they must give over all.
 template <class T>

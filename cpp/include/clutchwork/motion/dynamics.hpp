@@ -172,8 +172,9 @@ CLUTCHWORK_INLINE void drift_torques(Form& form, const T* y, const T* velocity, 
 /// Loads, how fast they change, and how far from their ends the lines are with which contacts slip that follow them.
 template <class T>
 [[gnu::noinline]] void sense_loads(Workspace<T>& ws, Edge<T>& edge) {
-  loads_of(ws, ws.seen.torque, true, ws.loads.now);
-  loads_of(ws, ws.seen.drift, false, ws.loads.drift);
+  const Dual<T, 1>* held = ws.ratios.drift.held;
+  loads_of(ws, ws.seen.torque, true, ws.loads.now, [&](int c) { return held[c].v; });
+  loads_of(ws, ws.seen.drift, false, ws.loads.drift, [&](int c) { return held[c].d[0]; });
   for (int l = 0; l < ws.sys.loads; ++l) edge.load[l] = ws.loads.now[l], edge.load_drift[l] = ws.loads.drift[l];
   for (int i = 0; i < ws.loads.n_sliding; ++i) {
     const int l = ws.loads.sliding[i];

@@ -125,10 +125,10 @@ void whole_torque(const FullForm<T>& form, const Whole<S>& e, int k) {
                             : sliding_torque<T, S>(ws, b, e.rate[k], input, law_input);
 }
 
-/// Torques of the contacts in slip that follow loads: each is a line over its load, and the loads are sums of all
-/// torques. docs/theory/load-dependent.md (8)
+/// The system of the torques of contacts in slip that follow loads: each is a line over its load, and the loads are sums
+/// of all torques, of which those of transmissions come later. docs/theory/load-dependent.md (8)
 template <class T, class S>
-[[gnu::noinline]] void whole_loads(const FullForm<T>& form, const Whole<S>& e) {
+void pose_loads(const FullForm<T>& form, const Whole<S>& e) {
   const Workspace<T>& ws = form.ws;
   const int m = ws.loads.n_sliding, nd = ws.n_directions, np = int(ws.sys.prescribed);
   for (int i = 0; i < m; ++i) {
@@ -143,11 +143,26 @@ template <class T, class S>
     const S slope = bound.slope[line] * S(sign);
     for (int j = 0; j < m; ++j) e.coupling[i * m + j] = slope * S(by_branch[ws.loads.branch[j]]) + S(T(i == j ? 1 : 0));
     e.followed[i] = -(slope * given + bound.offset[line] * S(sign));
+    e.steepness[i] = slope;
   }
+}
+
+/// Torques of these contacts; those of all others are pushed.
+template <class T, class S>
+[[gnu::noinline]] void whole_loads(const FullForm<T>& form, const Whole<S>& e) {
+  const Workspace<T>& ws = form.ws;
+  const Compressed<T>& rows = ws.rows.rate;
+  const int m = ws.loads.n_sliding;
+  pose_loads(form, e);
+  if (ws.ratios.n > 0) couple_loads(ws, e, form.nz());
   // a singular one gives no finite torque, which ends the run
   factor_lu(m, e.coupling, e.pivot);
   solve_lu(m, e.coupling, e.pivot, e.followed);
-  for (int i = 0; i < m; ++i) e.torque[ws.loads.branch[i]] = e.followed[i];
+  for (int j = 0; j < m; ++j) {
+    const int k = ws.loads.branch[j];
+    e.torque[k] = e.followed[j];
+    for (int i = rows.first[k]; i < rows.first[k + 1]; ++i) add_times(rows.val[i], e.torque[k], e.d[rows.col[i]]);
+  }
 }
 
 /// Heats of the branches; the first way of an element has that of all.
@@ -223,9 +238,14 @@ template <class T, class S>
   for (int k = 0; k < ws.n_branches; ++k) {
     if (ws.branch[k].ways > 0) whole_torque(form, e, k);
   }
-  if (ws.loads.n_sliding > 0) whole_loads(form, e);
   for (int k = 0; k < ws.n_branches; ++k) {
     for (int i = rows.first[k]; i < rows.first[k + 1]; ++i) add_times(rows.val[i], e.torque[k], e.d[rows.col[i]]);
+  }
+  if (ws.loads.n_sliding > 0) {
+    // processes that give ratios do not look at heats
+    if (ws.ratios.n > 0 && ws.sys.shared > 0) whole_shared(form, e);
+    whole_loads(form, e);
+    for (int i = form.n() - int(ws.sys.shared); i < form.n(); ++i) e.d[i] = S(T(0));
   }
   if (ws.sys.shared > 0) whole_shared(form, e);
   // those of transmissions were zero up to here; the rates of states that give ratios are known now

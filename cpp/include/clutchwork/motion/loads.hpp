@@ -29,6 +29,7 @@ void prepare_loads(Workspace<T>& ws) {
       for (int p = 0; p < np; ++p) ws.loads.by_slope[l * np + p] += T(share * sys.basis_prescribed[n * np + p]);
     }
     forward_solve(nv, ws.geometry.inertia, ws.geometry.factor, momentum);
+    for (int i = 0; i < nv; ++i) ws.loads.momentum[l * nv + i] = momentum[i];
     for (int d = 0; d < ws.n_directions; ++d) {
       const double rate = d < ne ? sys.load_element_rate[l * ne + d] : sys.load_contact_rate[l * nc + d - ne];
       ws.loads.by_torque[l * ws.n_directions + d] = ws.geometry.white.times(d, momentum) - T(rate);
@@ -43,7 +44,8 @@ void prepare_loads(Workspace<T>& ws) {
 template <class T>
 void map_loads(Workspace<T>& ws) {
   const System& sys = ws.sys;
-  const int nd = ws.n_directions, np = int(sys.prescribed), ne = int(sys.elements), nv = int(sys.speeds), m = ws.held.n;
+  const int nd = ws.n_directions, np = int(sys.prescribed), ne = int(sys.elements), nv = int(sys.speeds),
+            m = ws.held.n_fixed;
   const Compressed<T>& white = ws.geometry.white;
   T *b = ws.held.rhs, *share = ws.held.solved;
   for (int l = 0; l < sys.loads; ++l) {
@@ -55,6 +57,12 @@ void map_loads(Workspace<T>& ws) {
       T s = by_torque[d];
       for (int a = 0; a < m; ++a) s -= share[a] * product(white, ne + ws.held.contact[a], d);
       ws.loads.by_branch[l * nd + k] = s;
+    }
+    for (int c = m; c < ws.held.n; ++c) {
+      const int d = ne + ws.held.contact[c];
+      T s = by_torque[d];
+      for (int a = 0; a < m; ++a) s -= share[a] * product(white, ne + ws.held.contact[a], d);
+      ws.loads.by_held[l * sys.contacts + c - m] = s;
     }
     for (int p = 0; p < np; ++p) {
       T s = ws.loads.by_slope[l * np + p];
@@ -73,35 +81,36 @@ void map_loads(Workspace<T>& ws) {
   }
 }
 
-/// The loads of given branch torques; `moving`: with the prescribed accelerations.
-template <class T>
-void loads_of(const Workspace<T>& ws, const T* torque, bool moving, T* out) {
+/// The loads of given branch torques; `moving`: with the prescribed accelerations. `held` gives the torque of a locked
+/// contact whose direction varies.
+template <class T, class Held>
+void loads_of(const Workspace<T>& ws, const T* torque, bool moving, T* out, Held&& held) {
   const int np = moving ? int(ws.sys.prescribed) : 0;
   for (int l = 0; l < ws.sys.loads; ++l) {
     out[l] = dot(ws.n_branches, ws.loads.by_branch + l * ws.n_directions, torque);
+    for (int c = 0; c < ws.held.n - ws.held.n_fixed; ++c) out[l] += ws.loads.by_held[l * ws.sys.contacts + c] * held(c);
     for (int p = 0; p < np; ++p)
       out[l] += ws.loads.by_prescribed[l * ws.sys.prescribed + p] * ws.in.prescribed_slope[p];
   }
 }
 
-/// Whether the torques of the contacts that slip and follow loads answer what drives them the right way round: the
-/// determinant of their system is positive. docs/theory/load-dependent.md, rule 4
+/// The loads where torques were looked at last.
 template <class T>
-bool is_balanced(Workspace<T>& ws, const T* rate) {
+void loads_seen(Workspace<T>& ws) {
+  loads_of(ws, ws.seen.torque, true, ws.loads.now, [&](int c) { return ws.seen.carried[ws.held.n_fixed + c]; });
+}
+
+/// Whether the torques of the contacts that slip and follow loads answer what drives them the right way round where
+/// they were evaluated last: the determinant of their system is positive. docs/theory/load-dependent.md, rule 4
+template <class T>
+bool is_balanced(const Workspace<T>& ws) {
   const int m = ws.loads.n_sliding;
-  T* a = ws.full.plain.coupling;
-  int* pivot = ws.full.plain.pivot;
-  for (int i = 0; i < m; ++i) {
-    const int l = ws.loads.sliding[i], c = ws.sys.load_contact[l], sign = ws.contact.mode[c];
-    const Bound<T> bound = bound_of(ws, c, sign, T(sign) * rate[ws.loads.branch[i]], ws.piece[ws.sys.elements + c]);
-    for (int j = 0; j < m; ++j) {
-      const T by = ws.loads.by_branch[l * ws.n_directions + ws.loads.branch[j]];
-      a[i * m + j] = T(i == j ? 1 : 0) + T(sign) * bound.slope[ws.loads.line[l]] * by;
-    }
-  }
-  if (!factor_lu(m, a, pivot)) return false;
   bool positive = true;
-  for (int i = 0; i < m; ++i) positive = positive == ((value(a[i * m + i]) > 0) == (pivot[i] == i));
+  for (int i = 0; i < m; ++i) {
+    const double own = value(ws.full.plain.coupling[i * m + i]);
+    if (!(abs(own) > 0)) return false;
+    positive = positive == ((own > 0) == (ws.full.plain.pivot[i] == i));
+  }
   return positive;
 }
 

@@ -218,33 +218,47 @@ S wanted_of_tie(const Ratios<T>& r, const Tied<S>& w, int t, const S& own, const
   return s;
 }
 
-/// Torques of the transmissions and of the locked contacts whose directions vary, with d those of all others; then d is
-/// complete. docs/theory/varying-ratios.md (4) to (8)
+/// Ratios and ties at e.y, where the rates of all states are known.
 template <class T, class S>
-void whole_ratios(const Workspace<T>& ws, const Whole<S>& e, int nz) {
+void shape_ratios(const Workspace<T>& ws, const Whole<S>& e, int nz) {
   const Ratios<T>& r = ws.ratios;
   const Tied<S>& w = tied(r, e.y[0]);
-  const Compressed<T>& rows = ws.rows.rate;
-  const int np = int(ws.sys.prescribed), held = r.rows - 2 * r.n;
   for (int a = 0; a < r.n; ++a) ratio_at(ws, e, nz, a);
-  for (int k = 0; k < r.rows; ++k) {
-    w.acceleration[k] = S(T(0));
-    for (int i = 0; i < nz; ++i) {
-      if (value(r.along[k * nz + i]) != 0) w.acceleration[k] += r.along[k * nz + i] * e.d[i];
-    }
-  }
-  carry_followers(r, w, e.d);
+  for (int t = 0; t < r.ties; ++t) resolve_tie(r, w, t);
+  factor_ties(r, w);
+}
+
+/// What the rows of the transmissions must give.
+template <class T, class S>
+void want_pulls(const Workspace<T>& ws, const Whole<S>& e, int nz) {
+  const Ratios<T>& r = ws.ratios;
+  const Tied<S>& w = tied(r, e.y[0]);
+  const int np = int(ws.sys.prescribed);
   for (int t = 0; t < r.ties; ++t) {
-    resolve_tie(r, w, t);
     const int a = r.tie[t], k = a >= 0 ? 0 : r.place[r.rows - r.ties + t];
     S own = a >= 0 ? w.pull[a] : S(T(0));
     for (int p = 0; a < 0 && p < np; ++p)
       own -= ws.reduced.offset[k * np + p] *
              slope_of_reference(ws, e, nz + int(ws.sys.states), int(ws.sys.n_input_refs) + p);
     w.wanted[t] = wanted_of_tie(r, w, t, own, w.pull);
+  }
+}
+
+/// Torques of the transmissions and of the locked contacts whose directions vary, with d those of all others and in
+/// `wanted` what the ties must give besides. docs/theory/varying-ratios.md (4) to (8)
+template <class T, class S>
+void carry(const Ratios<T>& r, const Tied<S>& w, const S* d, int nz) {
+  const int held = r.rows - 2 * r.n;
+  for (int k = 0; k < r.rows; ++k) {
+    w.acceleration[k] = S(T(0));
+    for (int i = 0; i < nz; ++i) {
+      if (value(r.along[k * nz + i]) != 0) w.acceleration[k] += r.along[k * nz + i] * d[i];
+    }
+  }
+  carry_followers(r, w, d);
+  for (int t = 0; t < r.ties; ++t) {
     for (int l = 0; l < r.rows; ++l) w.wanted[t] -= w.share[t * r.rows + l] * w.acceleration[l];
   }
-  factor_ties(r, w);
   solve_ties(r, w, w.wanted);
   for (int t = 0; t < r.ties; ++t) {
     (r.tie[t] >= 0 ? w.torque[r.tie[t]] : w.held[t - (r.ties - held)]) = w.wanted[t];
@@ -253,8 +267,52 @@ void whole_ratios(const Workspace<T>& ws, const Whole<S>& e, int nz) {
     }
     for (int k = 0; k < r.rows; ++k) answer(r, w, k, w.share[t * r.rows + k] * w.wanted[t]);
   }
-  push_ratios(ws, e, rows);
+}
+
+/// The torques of transmissions and of locked contacts that vary, d those of all others; then d is complete.
+template <class T, class S>
+void whole_ratios(const Workspace<T>& ws, const Whole<S>& e, int nz) {
+  const Ratios<T>& r = ws.ratios;
+  const Tied<S>& w = tied(r, e.y[0]);
+  shape_ratios(ws, e, nz), want_pulls(ws, e, nz);
+  carry(r, w, e.d, nz);
+  push_ratios(ws, e, ws.rows.rate);
   move_followers_whole(r, w, e.d);
+}
+
+/// Load l by the torques of the transmissions and of the locked contacts that vary.
+template <class T, class S>
+S load_beside(const Workspace<T>& ws, const Tied<S>& w, int l) {
+  const Ratios<T>& r = ws.ratios;
+  const T *by_branch = ws.loads.by_branch + l * ws.n_directions, *by_held = ws.loads.by_held + l * ws.sys.contacts;
+  S load = S(T(0));
+  for (int a = 0; a < r.n; ++a) {
+    const int k = r.place[2 * a];
+    load += (S(by_branch[k]) - w.ratio[a] * by_branch[k + 1]) * w.torque[a];
+  }
+  for (int c = 0; c < r.rows - 2 * r.n; ++c) add_times(by_held[c], w.held[c], load);
+  return load;
+}
+
+/// What transmissions carry of the torques that follow loads, and of all others, which stand in e.d: the system of the
+/// former is completed. docs/theory/load-dependent.md (14)
+template <class T, class S>
+[[gnu::noinline]] void couple_loads(const Workspace<T>& ws, const Whole<S>& e, int nz) {
+  const Ratios<T>& r = ws.ratios;
+  const Tied<S>& w = tied(r, e.y[0]);
+  const Compressed<T>& rows = ws.rows.rate;
+  const int m = ws.loads.n_sliding;
+  shape_ratios(ws, e, nz), want_pulls(ws, e, nz);
+  carry(r, w, e.d, nz);
+  for (int i = 0; i < m; ++i) e.followed[i] -= e.steepness[i] * load_beside(ws, w, ws.loads.sliding[i]);
+  for (int j = 0; j < m; ++j) {
+    const int k = ws.loads.branch[j];
+    for (int i = 0; i < nz; ++i) w.push[i] = S(T(0));
+    for (int i = rows.first[k]; i < rows.first[k + 1]; ++i) w.push[rows.col[i]] = S(rows.val[i]);
+    for (int t = 0; t < r.ties; ++t) w.wanted[t] = S(T(0));
+    carry(r, w, w.push, nz);
+    for (int i = 0; i < m; ++i) e.coupling[i * m + j] += e.steepness[i] * load_beside(ws, w, ws.loads.sliding[i]);
+  }
 }
 
 /// Push the torques of the transmissions, and of the locked contacts that vary.

@@ -52,7 +52,7 @@ void torques_at(Form& form, Step<Form>& step, double s) {
   if (ws.sys.prescribed > 0) input_slopes_at(ws, t);
   observe(form, t, step.point(), step.slope());
   multipliers(ws, ws.seen.torque, true, ws.seen.carried);
-  if (ws.sys.loads > 0) loads_of(ws, ws.seen.torque, true, ws.loads.now);
+  if (ws.sys.loads > 0) loads_seen(ws);
   ++ws.statistics.locations;
 }
 

@@ -307,7 +307,8 @@ class Phase : public Pace<typename Form::Scalar> {
       return false;
     }
     ws_.loads.line[l] = 1 - ws_.loads.line[l];
-    if (!is_balanced(ws_, ws_.here.rate)) {
+    evaluate(form_, ws_.time, step_.y0(), step_.slope());
+    if (!is_balanced(ws_)) {
       ws_.loads.jammed = c;
       hand_over(Cause::jam, c);
       return true;

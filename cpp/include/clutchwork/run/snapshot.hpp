@@ -48,7 +48,7 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
     ws.out.torque[d] = k >= 0 && k < ws.n_branches ? ws.seen.torque[k] : T(0);
   }
   multipliers(ws, ws.seen.torque, true, ws.seen.carried);
-  if (sys.loads > 0) loads_of(ws, ws.seen.torque, true, ws.loads.now);
+  if (sys.loads > 0) loads_seen(ws);
   locked_torques(ws, ws.seen.carried, [&](int c, T x) { ws.out.torque[ne + c] += x; });
   if (sys.loads > 0) loads_of_all(ws, ws.out.torque, ws.loads.now);
   expand(form, shot.y, shot.v);

@@ -14,8 +14,13 @@ struct Loads {
   T *by_torque = nullptr, *by_slope = nullptr;  ///< by the torques of all directions, prescribed accelerations
   T *by_branch = nullptr,
     *by_prescribed = nullptr;          ///< the same in the present mode, torques of held contacts included
+  T* by_held = nullptr;                ///< by the torques of locked contacts whose directions vary
   T* outer = nullptr;                  ///< without the torques of the locked contacts
   T *now = nullptr, *drift = nullptr;  ///< where torques were looked at last; its time derivative
+  T* momentum = nullptr;               ///< of the virtual motion of each, mass-weighted
+  // beside transmissions, in the place of by_torque and by_slope while a decision is made: what they carry is in it
+  T *beside_torque = nullptr, *beside_slope = nullptr;
+  T* by_drawn = nullptr;  ///< by the accelerations that transmissions give along their span
   int n_sliding = 0;
   int jammed = -1;                            ///< contact that is to stop at once
   int *sliding = nullptr, *branch = nullptr;  ///< loads whose contacts slip, and the branches of those
@@ -26,7 +31,10 @@ struct Loads {
     a.scratch(p.by_slope, n.loads * n.prescribed), a.scratch(p.by_branch, n.loads * n.directions);
     a.scratch(p.by_prescribed, n.loads * n.prescribed), a.scratch(p.outer, n.loads), a.take(p.now, n.loads),
         a.scratch(p.drift, n.loads);
-    a.take(p.sliding, n.loads), a.take(p.branch, n.loads);
+    a.take(p.sliding, n.loads), a.take(p.branch, n.loads), a.scratch(p.momentum, n.loads * n.speeds);
+    const auto beside = n.transmissions > 0 ? n.loads : 0;
+    a.scratch(p.by_held, beside * n.contacts), a.scratch(p.beside_torque, beside * n.directions);
+    a.scratch(p.beside_slope, beside * n.prescribed), a.scratch(p.by_drawn, beside * n.transmissions);
   }
 };
 

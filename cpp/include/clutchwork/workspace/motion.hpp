@@ -181,14 +181,16 @@ struct Whole {
   S *rate = nullptr, *torque = nullptr, *heat = nullptr;  ///< of each branch
   int time = -1;                                          ///< column of the derivatives that is time, -1: none
   S *coupling = nullptr, *followed = nullptr;             ///< of contacts that follow loads: matrix, torques
-  int* pivot = nullptr;                                   ///< of its factor
+  S* steepness = nullptr;                                 ///< of their lines, towards their slip
+  int* pivot = nullptr;                                   ///< of the factor of the matrix
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     const auto unknowns = n.full ? n.speeds + n.states : 0, nd = n.full ? n.directions : 0;
     a.scratch(p.y, unknowns), a.scratch(p.d, unknowns), a.scratch(p.input, n.full ? n.references : 0);
     a.scratch(p.rate, nd), a.scratch(p.torque, nd), a.scratch(p.heat, nd);
-    a.scratch(p.coupling, n.loads * n.loads), a.scratch(p.followed, n.loads), a.take(p.pivot, n.loads);
+    a.scratch(p.coupling, n.loads * n.loads), a.scratch(p.followed, n.loads), a.scratch(p.steepness, n.loads);
+    a.take(p.pivot, n.loads);
   }
 };
 

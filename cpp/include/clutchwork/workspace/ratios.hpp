@@ -14,13 +14,14 @@ struct Tied {
   S *share = nullptr, *via = nullptr;                     ///< of each tie over the rows, and over the followers
   S *gram = nullptr, *wanted = nullptr;                   ///< of the ties
   S *torque = nullptr, *held = nullptr;                   ///< of each transmission, of each of the locked contacts
+  S* push = nullptr;                                      ///< a single torque over the speeds
 
   template <class P, class A>
-  static void lay_out(P& p, A& a, std::int64_t n, std::int64_t contacts) {
+  static void lay_out(P& p, A& a, std::int64_t n, std::int64_t contacts, std::int64_t speeds) {
     const auto ties = n + contacts, rows = 2 * n + contacts;
     a.scratch(p.ratio, n), a.scratch(p.slope, n), a.scratch(p.pull, n), a.scratch(p.acceleration, rows);
     a.scratch(p.share, ties * rows), a.scratch(p.via, ties * n), a.scratch(p.gram, ties * ties);
-    a.scratch(p.wanted, ties), a.scratch(p.torque, n), a.scratch(p.held, contacts);
+    a.scratch(p.wanted, ties), a.scratch(p.torque, n), a.scratch(p.held, contacts), a.scratch(p.push, speeds);
   }
 };
 
@@ -71,8 +72,8 @@ struct Ratios {
     a.scratch(p.mobility, nc * (nc + 1) / 2), a.scratch(p.via, nd * n), a.scratch(p.part, nd * n);
     a.take(p.place, rows), a.take(p.tie, n + nc), a.take(p.column, n);
     a.scratch(p.along, rows * nv), a.scratch(p.between, rows * rows), a.scratch(p.follows, rows * n);
-    Tied<T>::lay_out(p.plain, a, n, nc), Tied<Dual<T, Full<T>::chunk>>::lay_out(p.some, a, n, nc);
-    Tied<Dual<T, 1>>::lay_out(p.drift, a, n, nc);
+    Tied<T>::lay_out(p.plain, a, n, nc, nv), Tied<Dual<T, Full<T>::chunk>>::lay_out(p.some, a, n, nc, nv);
+    Tied<Dual<T, 1>>::lay_out(p.drift, a, n, nc, nv);
   }
 };
 
