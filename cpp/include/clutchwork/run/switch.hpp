@@ -113,13 +113,23 @@ void see_speeds(Workspace<T>& ws) {
   refresh_loads(ws);
 }
 
+/// Whether a contact that has come to rest is moved again by an impulse at the same instant.
+template <class T>
+bool is_struck_off(const Workspace<T>& ws, int c, T slip_before) {
+  const double tolerance = slip_tolerance(ws);
+  const T slip = rate_of(ws, int(ws.sys.elements) + c);
+  return abs(value(slip)) > tolerance && abs(value(slip - slip_before)) > tolerance;
+}
+
 /// Impulses, then modes; the impulse of a stop within a tolerance may bring others to rest, or break them loose.
 /// `running`: all is decided. docs/theory/contacts.md, rule 9
 template <class T>
 Status decide(Workspace<T>& ws, bool at_start) {
-  const int located = ws.happened.contact;
+  int located = ws.happened.contact;
   const bool stops = has_stops(ws);
+  const T slip = located >= 0 ? rate_of(ws, int(ws.sys.elements) + located) : T(0);
   if (!settle_impulses(ws, at_start) || (stops && !collide(ws))) return Status::no_mode;
+  if (located >= 0 && is_struck_off(ws, located, slip)) located = -1;
   see_speeds(ws);
   find_pieces(ws);
   for (int c = 0; at_start && c < ws.sys.contacts; ++c) {
