@@ -218,7 +218,7 @@ void follow_rows(const Workspace<T>& ws, const T* wanted, T* x) {
 }
 
 /// Loads by torques where transmissions do no work: the virtual motion of each keeps their rows too, by a motion along
-/// their span and of the speeds that follow. docs/theory/load-dependent.md (13)
+/// their span and of the speeds that follow. docs/theory/load-dependent.md (12)
 template <class T>
 void leave_loads(Workspace<T>& ws) {
   const System& sys = ws.sys;
@@ -235,8 +235,7 @@ void leave_loads(Workspace<T>& ws) {
       return s;
     };
     for (int a = 0; a < r.n; ++a) tied[a] = rate(first_of(ws, a)) - r.value[a] * rate(first_of(ws, a) + 1);
-    for (int a = 0; a < r.n; ++a)
-      r.wanted[a] = r.value[a] * without(first_of(ws, a) + 1) - without(first_of(ws, a));
+    for (int a = 0; a < r.n; ++a) r.wanted[a] = r.value[a] * without(first_of(ws, a) + 1) - without(first_of(ws, a));
     for (int i = 0; i < nv; ++i) x[i] = ws.loads.momentum[l * nv + i];
     follow_rows(ws, r.wanted, x);
     for (int d = 0; d < nd; ++d) {

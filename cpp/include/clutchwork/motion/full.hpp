@@ -125,8 +125,8 @@ void whole_torque(const FullForm<T>& form, const Whole<S>& e, int k) {
                             : sliding_torque<T, S>(ws, b, e.rate[k], input, law_input);
 }
 
-/// The system of the torques of contacts in slip that follow loads: each is a line over its load, and the loads are sums
-/// of all torques, of which those of transmissions come later. docs/theory/load-dependent.md (8)
+/// The system of the torques of contacts in slip that follow loads: each is a line over its load, and the loads are
+/// sums of all torques, of which those of transmissions come later. docs/theory/load-dependent.md (8)
 template <class T, class S>
 void pose_loads(const FullForm<T>& form, const Whole<S>& e) {
   const Workspace<T>& ws = form.ws;

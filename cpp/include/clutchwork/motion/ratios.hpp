@@ -295,7 +295,7 @@ S load_beside(const Workspace<T>& ws, const Tied<S>& w, int l) {
 }
 
 /// What transmissions carry of the torques that follow loads, and of all others, which stand in e.d: the system of the
-/// former is completed. docs/theory/load-dependent.md (14)
+/// former is completed. docs/theory/load-dependent.md (13)
 template <class T, class S>
 [[gnu::noinline]] void couple_loads(const Workspace<T>& ws, const Whole<S>& e, int nz) {
   const Ratios<T>& r = ws.ratios;

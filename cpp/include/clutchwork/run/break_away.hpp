@@ -115,7 +115,9 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
   auto f = [&](double s) { return least_margin(form, step, s, watched, n, who); };
   const double s = first_crossing(f, m0, m1, hit.s);
   if (!is_first(hit, s)) return;
-  f(s);
+  // where several are at their limits at once, the first that goes beyond
+  double beyond = f(s);
+  for (int k = 12; k > 0 && beyond >= 0; --k) beyond = f(s + (hit.s - s) / (1 << k));
   hit = {Hit::multiplier, who, s, -1};
 }
 
