@@ -83,7 +83,7 @@ def limited_slip(d: cw.Driveline, b: Any, c: Any) -> None:
 def test_a_ratio_that_stays_is_a_gear(second: Any, ratio: float) -> None:
     """The gear is a row of the fixed kind, the transmission one of the other: the same motion and the same events."""
     varying, fixed = twins(ratio, second=second)
-    assert len(varying.events) > 3
+    assert len(varying.events) > 0
     assert [(e.element, e.before, e.after) for e in varying.events] == [
         (e.element, e.before, e.after) for e in fixed.events
     ]
