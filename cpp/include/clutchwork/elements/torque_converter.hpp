@@ -100,7 +100,7 @@ struct TorqueConverter : declared::TorqueConverter {
     const List ratios = list_of(p.speed_ratio, at.points);
     const S &w = at.rates[Way::impeller], &t = at.rates[Way::turbine], &slip = at.rates[Way::slip];
     const int n = ratios.count;
-    if (at.piece > 2 * n || (at.piece < n ? w : t) == S(0)) return S(0);
+    if (at.piece > 2 * n || (at.piece < n ? w : t) == S(0) || is_leaving(at)) return S(0);
     if (at.piece == 2 * n) {
       // as if the impeller stood
       const int i = ratio_piece(ratios, 0);
@@ -110,12 +110,17 @@ struct TorqueConverter : declared::TorqueConverter {
       return w * w * over_ratio(ratios, at.piece, slip / w, [&](int k) { return driving(p, at.points, k); });
     return -t * t * over_ratio(ratios, at.piece - n, -slip / t, [&](int k) { return coasting(p, at.points, k); });
   }
+  /// On the way from rest with both sides held together: before its guard tells, the piece is still that of stall.
+  template <class S>
+  static bool is_leaving(const At<S>& at) {
+    return at.piece == 0 && at.rates[Way::slip] == S(0);
+  }
   /// Torque of the turbine over that of the impeller.
   template <class T, class S>
   static S multiplied(const Params<T>& p, const At<S>& at) {
     const List ratios = list_of(p.speed_ratio, at.points);
     const S& w = at.rates[Way::impeller];
-    if (at.piece >= ratios.count || w == S(0)) return S(1);
+    if (at.piece >= ratios.count || w == S(0) || is_leaving(at)) return S(1);
     const List m = list_of(p.torque_ratio, at.points);
     return over_ratio(ratios, at.piece, at.rates[Way::slip] / w, [&](int k) { return m[k]; });
   }
