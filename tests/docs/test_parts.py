@@ -20,7 +20,7 @@ KNOWN = parts_page.declared()
 INSIDE = {
     *("AirDrag", "Grade", "RollingResistance", "PlateContact", "JenkinsElement", "WetDrag", "Flyweights", "OilFlow"),
     *("BeltContact", "PolygonSprocket", "EngineTorque", "MotorTorque", "Displacement", "PressureValve"),
-    *("RatioActuator", "VariableGear"),
+    *("RatioActuator", "VariableGear", "CamProfile"),
     *("DiaphragmSpring", "TorqueLimiter", "CentrifugalClutch", "FundamentalClutch", "Wear"),
 }
 

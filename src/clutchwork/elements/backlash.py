@@ -37,6 +37,10 @@ class Backlash(Stop):
         bound = f"is {self.initial_twist:g} rad, outside the gap of {self.gap:g} rad"
         return [("initial_twist", bound, f"give at most {self.gap / 2:g} rad to either side")]
 
+    def rests(self) -> bool:
+        """Whether it is at a flank at the start."""
+        return abs(self.initial_twist) == self.gap / 2
+
     def initial_states(self) -> tuple[float, ...]:
         """Twist at the start [rad]."""
         return (self.initial_twist,)

@@ -53,6 +53,10 @@ class EndStop(Stop):
             return []
         return [("initial_position", f"is {start:g}, outside {lower:g} to {upper:g}", "start between the ends")]
 
+    def rests(self) -> bool:
+        """Whether it is at an end at the start."""
+        return self.initial_states()[0] in (self.lower, self.upper)
+
     def initial_states(self) -> tuple[float, ...]:
         """Position at the start [rad]."""
         if self.initial_position is not None:

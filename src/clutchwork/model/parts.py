@@ -61,16 +61,24 @@ def _pieces(component: Component) -> Iterator[Part]:
     parts = list(component.parts())
     if not parts and role(component) is not Role.COMPOSITE:
         yield component
+    yield from _places(component)
+    for part in parts:
+        if isinstance(part, Node | ThermalNode):
+            yield part
+        elif part.name == component.name:
+            # the part with the name of the whole is one piece
+            yield part
+            yield from _places(part) if part is not component else ()
+        else:
+            yield from _pieces(part)
+
+
+def _places(component: Component) -> Iterator[Place]:
+    """The position of a stop."""
     if is_stop(component):
         joined = ports(component)
         (start,) = component.initial_states()
         yield Place(place_of(component), base=joined["base"], follower=joined["follower"], initial_position=start)
-    for part in parts:
-        # the part with the name of the whole is one piece
-        if isinstance(part, Node | ThermalNode) or part.name == component.name:
-            yield part
-        else:
-            yield from _pieces(part)
 
 
 def _asked(element: Component) -> Iterator[Node]:

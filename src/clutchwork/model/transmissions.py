@@ -8,6 +8,7 @@ from clutchwork.base.errors import Problem
 from clutchwork.declare.rational import Row, exact, plus
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
+from clutchwork.elements.bases.stop import Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -86,9 +87,13 @@ def start_rows(model: Mechanism, made: Kinematics) -> Sequence[tuple[Any, Row]]:
 
 
 def start_grips(model: Mechanism, made: Kinematics) -> Iterator[tuple[Any, Row]]:
-    """Slips that are zero at the start unless speeds say otherwise: of transmissions that can slip and are locked."""
+    """Slips that are zero at the start unless speeds say otherwise: of transmissions that can slip and are locked.
+
+    And of stops that touch what follows from one, such as a cam.
+    """
     following = set(made.followers.values())
     for contact in model.role(Role.CONTACT):
         row = made.over(model.direction(contact))
-        if contact.locked and following & row.keys():
+        touches = contact.locked or (isinstance(contact, Stop) and contact.rests())
+        if touches and following & row.keys():
             yield contact, row

@@ -144,6 +144,16 @@ void close_stops(Workspace<T>& ws) {
   }
 }
 
+/// Closed stops whose directions vary stay exactly at their ends. docs/theory/varying-ratios.md (18)
+template <class T>
+void stay_at_ends(const Workspace<T>& ws, T* state) {
+  for (int a = ws.held.n_fixed; a < ws.held.n; ++a) {
+    const int c = ws.held.contact[a];
+    const int side = ws.contact.side[c];
+    if (is_stop(ws, c) && side != 0) state[place_of(ws, c)] = stop_end(ws, c, side);
+  }
+}
+
 /// Impacts until nothing closes; after many of them, all at once without rebound. False: they have no solution.
 /// docs/theory/play.md, rule 1
 template <class T>

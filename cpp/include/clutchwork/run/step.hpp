@@ -2,6 +2,7 @@
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/components/pieces.hpp>
+#include <clutchwork/contacts/stops.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/form.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
@@ -50,13 +51,15 @@ void balance_massless(FullForm<T>& form, Step<FullForm<T>>& step) {
   }
 }
 
-/// Speeds at y brought onto the ties of transmissions. docs/theory/varying-ratios.md (9)
+/// Speeds at y brought onto the ties of transmissions, closed stops on them to their ends.
+/// docs/theory/varying-ratios.md (9)
 template <class T>
 void keep_ties(FullForm<T>& form, Step<FullForm<T>>& step, Real<T> t, T* y) {
   Workspace<T>& ws = form.ws;
   if (ws.ratios.n == 0) return;
   evaluate(form, t, y, step.slope());
   settle_ties(form, y);
+  stay_at_ends(ws, y + form.nz());
 }
 
 /// Derivatives, rates, slopes, multipliers at one end of the step.

@@ -19,3 +19,7 @@ class Stop(Heating):
     # it has no load, so its coefficient does not matter
     friction: ClassVar[Law] = Coulomb(static=0.1, kinetic=0.1)  # type: ignore[misc]
     tolerance: ClassVar[float] = 0.0
+
+    def rests(self) -> bool:
+        """Whether it is at an end at the start."""
+        raise NotImplementedError

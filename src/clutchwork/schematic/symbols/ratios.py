@@ -65,9 +65,26 @@ def crank(pen: Pen, shown: Drawn) -> None:
             pen.line((start if start * side > 0 else 0.0, 0.0), (side * shown.half, 0.0), look=look)
 
 
+def cam(pen: Pen, shown: Drawn) -> None:
+    """An eccentric disc and what it pushes in a guide."""
+    pen.circle(-8.0, 0.0, 7.0, look=BODY)
+    pen.circle(-10.5, 0.0, 1.4, look=PIN)
+    pen.line((-1.0, -5.0), (-1.0, 5.0), look=Look(width=1.8))
+    pen.line((-1.0, 0.0), (14.0, 0.0), look=INK)
+    for y in (-2.6, 2.6):
+        pen.line((3.0, y), (11.0, y), look=THIN)
+    for port, start in (("shaft", -10.5), ("mass", 14.0)):
+        side = shown.sides.get(port)
+        if side is not None:
+            look = SHAFT if port == "shaft" else SHAFT._replace(colour="#0B5D46")
+            pen.line((start if start * side > 0 else 0.0, 0.0), (side * shown.half, 0.0), look=look)
+
+
 RATIOS = {
     "variable_gear": Symbol(variable, 18.0, 30.0, 30.0, PAIR),
     "variable_ratio": Symbol(variable, 18.0, 30.0, 30.0, PAIR),
     "universal_joint": Symbol(joint, 18.0, 12.0, 18.0, {"support": -14.0}),
     "crank_slider": Symbol(crank, 20.0, 12.0, 12.0),
+    "cam": Symbol(cam, 20.0, 12.0, 12.0),
+    "cam_profile": Symbol(cam, 20.0, 12.0, 12.0),
 }
