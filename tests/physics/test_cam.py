@@ -211,7 +211,7 @@ def test_cycles_with_lift_off_as_scipy_has_them():
     assert run["a.angle"][-1] == pytest.approx(y[0], rel=1e-7)
     assert run["a.speed"][-1] == pytest.approx(y[1], rel=1e-6)
     assert run.energy.heat["cam"] > 0.0
-    # measured 1e-9
+    # measured 1e-9 of it
     assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
     assert np.min(run["cam.position"]) >= -1e-13
     assert np.min(run["cam.torque"]) >= -1e-9
