@@ -45,7 +45,8 @@ struct TorqueConverter : declared::TorqueConverter {
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
     const List ratios = list_of(p.speed_ratio, at.points);
     const S &w = at.rates[Way::impeller], &t = at.rates[Way::turbine], &slip = at.rates[Way::slip];
-    const S size = abs(w) + abs(t) + S(1e-9);
+    // near rest, where the torques vanish, round-off does not change the piece
+    const S size = abs(w) + abs(t) + S(0.01);
     const int n = ratios.count, i = at.piece % n;
     S least = S(1e300);
     auto watch = [&](const S& guard, int number) {
