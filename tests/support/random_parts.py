@@ -181,7 +181,7 @@ def belt(d: cw.Driveline, name: str, a: Any, b: Any, rng: Rng) -> None:
     )
 
 
-def freewheel(d: cw.Driveline, name: str, a: Any, b: Any, rng: Rng) -> None:  # noqa: ARG001, as all links
+def freewheel(d: cw.Driveline, name: str, a: Any, b: Any, rng: Rng) -> None:
     d.add(cw.OneWayClutch(name, base=a, follower=b))
 
 
@@ -295,19 +295,22 @@ def load(d: cw.Driveline, shaft: Any, rng: Rng) -> None:
         d.add(cw.Vehicle("road", mass=car, drag_area=0.65, slope=float(rng.choice([0.0, 0.08]))))
 
 
-def links(seed: int) -> list[str]:
+def links(seed: int, *, with_gear: bool = False) -> list[str]:
     """Names of the links of a driveline, from the drive to the load."""
     rng = np.random.default_rng([seed, 1])
     chosen = [str(x) for x in rng.choice(list(LINKS), int(rng.integers(2, 7)))]
-    chosen[int(rng.integers(len(chosen)))] = "clutch"
+    at, other = rng.permutation(len(chosen))[:2]
+    chosen[at] = "clutch"
+    if with_gear:
+        chosen[other] = "gear"
     return chosen
 
 
-def driveline(seed: int) -> cw.Driveline:
+def driveline(seed: int, *, with_gear: bool = False) -> cw.Driveline:
+    """The driveline of a seed; `with_gear`: at least one of its links is a gear."""
     rng = np.random.default_rng([seed, 2])
     d = cw.Driveline(f"parts {seed}")
-    chosen = links(seed)
-    still = rng.random() < 0.4
+    chosen = links(seed, with_gear=with_gear)
     shafts = []
     for i in range(len(chosen) + 1):
         inertia = 10 ** float(rng.uniform(math.log10(0.02), math.log10(2)))
@@ -318,5 +321,4 @@ def driveline(seed: int) -> cw.Driveline:
     load(d, shafts[-1], rng)
     if rng.random() < 0.4:
         brake(d, "brake", shafts[int(rng.integers(len(shafts)))], rng)
-    _ = still
     return d
