@@ -120,6 +120,39 @@ def test_rack_and_chain():
     assert run["other.speed"][-1] == pytest.approx(15 / 40 / inertia)
 
 
+@pytest.mark.parametrize("torque", [8.0, -8.0])
+def test_losses_of_rack_and_chain(torque):
+    """Accelerated by the shaft, and by the members that they drive: closed form of both directions of power."""
+    for member in ("rack", "chain"):
+        d = cw.Driveline("losses")
+        shaft = d.shaft("shaft", inertia=0.01, speed=30.0)
+        losses = {"efficiency": 0.9, "backward_efficiency": 0.8}
+        if member == "rack":
+            other = d.mass("other", mass=2.0, speed=0.9)
+            gear = d.add(cw.RackPinion("gear", shaft=shaft, mass=other, radius=0.03, **losses))
+            inertia, ratio = 2.0 * 0.03**2, 0.03
+        else:
+            other = d.shaft("other", inertia=0.02, speed=30.0 * 15 / 40)
+            gear = d.add(cw.Chain("gear", input=shaft, output=other, teeth_input=15, teeth_output=40, **losses))
+            inertia, ratio = 0.02 * (15 / 40) ** 2, 15 / 40
+        heat = d.thermal("oil", capacity=100.0, temperature=300.0)
+        # a torque at the shaft drives forward; a braking one makes the other side drive
+        d.add(cw.Torque("t", shaft=shaft, torque=torque))
+        run = d.simulate(0.02, rtol=1e-9)
+        # the other side has its inertia by the efficiency of the direction of power
+        seen = inertia / 0.9 if torque > 0 else inertia * 0.8
+        assert run["shaft.speed"][-1] - 30.0 == pytest.approx(torque / (0.01 + seen) * 0.02, rel=1e-8), member
+        assert run["other.speed"][-1] == pytest.approx(ratio * run["shaft.speed"][-1], rel=1e-9)
+        assert run.energy.heat["gear"] > 0.0
+        warm = {"rack": cw.RackPinion, "chain": cw.Chain}[member]
+        values = {
+            name: getattr(gear, name) for name in ("radius", "teeth_input", "teeth_output") if hasattr(gear, name)
+        }
+        ends = {"shaft": shaft, "mass": other} if member == "rack" else {"input": shaft, "output": other}
+        d.add(warm("cold", **ends, **values, heat=heat))
+        assert "heat is given without losses" in str(d.check()[0])
+
+
 @pytest.mark.parametrize(
     ("kind", "values", "words"),
     [

@@ -19,9 +19,11 @@ def test_energy_closes(seed: int) -> None:
     run = random_parts.driveline(seed).simulate(random_parts.T_END, dt=0.01, **FINE)
     assert run.status == "done", run.message
     # speeds are kept to rtol of the fastest one in each of some hundred steps, which a heavy slow shaft feels more
-    assert abs(run.energy.residual) <= 1e-7 * run.energy.turnover
+    # where nothing moves, round-off alone turns over
+    turnover = max(run.energy.turnover, 1e-6)
+    assert abs(run.energy.residual) <= 1e-7 * turnover
     for name, heat in run.energy.heat.items():
-        assert heat >= -1e-7 * run.energy.turnover, name
+        assert heat >= -1e-7 * turnover, name
     assert all(np.all(np.isfinite(run[name])) for name in run.names if run[name].dtype.kind == "f")
 
 

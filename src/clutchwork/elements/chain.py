@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from typing import Any
 
-from clutchwork.declare import Component, Found, Node, Role, component, exact, flag, option, param, port
+from clutchwork.declare import Found, Node, Role, component, exact, flag, option, param, port
 from clutchwork.declare.node import Domain, Part
+from clutchwork.elements.bases.meshing import Lossy
 from clutchwork.elements.gear import Gear
+from clutchwork.elements.mesh import Mesh
 from clutchwork.elements.polygon_sprocket import PolygonSprocket
 
 
 @component(Role.COMPOSITE)
-class Chain(Component):
+class Chain(Lossy):
     """Chain or toothed belt over two sprockets, which turn the same way: ratio = teeth_output/teeth_input.
 
     Use it for bicycle, motorcycle, timing and transfer case drives. The mean ratio is exact; a chain that gives way is
     a `SpringDamper` beside it. With `polygon` the strand moves with the corners of the sprockets, radius cos(angle in
     the link), so that the ratio ripples with every tooth; links are then `pitch` long, and the phases say where in a
-    link each sprocket starts, -1 to 1.
+    link each sprocket starts, -1 to 1. Losses follow the torque that the chain carries, as those of a `LossyGear`; it
+    has none by default, and a polygon has none.
 
     Equations: docs/theory/belts.md.
     """
@@ -43,7 +47,9 @@ class Chain(Component):
         few = [name for name in ("teeth_input", "teeth_output") if getattr(self, name) < 3]
         if self.polygon and few:
             found.append((few[0], "does not make a polygon", "give at least 3 teeth, or leave out `polygon`"))
-        return found
+        if self.polygon and self.is_lossy():
+            found.append(("polygon", "has no losses", "put a `LossyGear` beside it, or leave out `polygon`"))
+        return found + list(self.loss_problems() or self.heat_problems())
 
     def exact_ratio(self) -> Fraction:
         """Ratio as a fraction, the mean one with `polygon`."""
@@ -54,7 +60,11 @@ class Chain(Component):
         if not self.polygon:
             # teeth of an internal wheel count negative: both turn the same way
             teeth = {"teeth_input": -self.teeth_input, "teeth_output": self.teeth_output}
-            yield Gear(self.name, input=self.input, output=self.output, support=self.support, **teeth)
+            ends: dict[str, Any] = {"input": self.input, "output": self.output, "support": self.support}
+            if self.is_lossy():
+                yield Mesh(self.name, ratio=float(self.exact_ratio()), **ends, **self.mesh())
+            else:
+                yield Gear(self.name, **ends, **teeth)
             return
         strand = Node(f"{self.name}.strand", Domain.TRANSLATION)
         yield strand

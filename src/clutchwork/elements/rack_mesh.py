@@ -14,8 +14,8 @@ from clutchwork.elements.bases.meshing import SLIP, Meshing, table_problems
 class RackMesh(Meshing):
     """Mesh between a shaft and a mass with losses that follow the torque which it transmits: sticks exactly, by load.
 
-    It is the part of `Leadscrew` that makes its friction; use that, or this one for a rack with losses: `RackPinion`
-    has none. Speed of the mass = radius times speed of the shaft relative to the support.
+    It is the part of `Leadscrew` and of `RackPinion` that makes their friction; use those, or this one for a rack
+    by its radius alone. Speed of the mass = radius times speed of the shaft relative to the support.
     """
 
     reports: ClassVar[Mapping[str, str]] = {

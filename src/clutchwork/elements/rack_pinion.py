@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
+from typing import Any
 
 from clutchwork.declare import Component, Found, Node, Role, component, exact, param, port
+from clutchwork.elements.bases.meshing import Lossy
+from clutchwork.elements.rack_mesh import RackMesh
+from clutchwork.elements.rolling_wheel import RollingWheel
 
 
-@component(Role.GEAR)
-class RackPinion(Component):
+@component(Role.COMPOSITE)
+class RackPinion(Lossy):
     """Rack that a pinion moves: speed of the mass = radius times speed of the shaft relative to the support.
 
     Use it for steering gears and linear axes. Give the radius of the pitch circle, or teeth and module: radius =
-    module teeth/2.
+    module teeth/2. Its losses follow the torque in the mesh, as those of a `LossyGear` whose input is the shaft; it has
+    none by default.
     """
 
     shaft: Node = port("shaft of the pinion", domain="rotation")
@@ -30,7 +36,7 @@ class RackPinion(Component):
             return [("radius", "is missing", "give `radius`, or both `teeth` and `module`")]
         if self.radius is not None and (self.teeth, self.module) != (None, None):
             return [("radius", "is given twice, as a number and by teeth", "give only one of the two")]
-        return []
+        return self.loss_problems() or self.heat_problems()
 
     def exact_radius(self) -> Fraction:
         """Radius of the pitch circle [m] as a fraction."""
@@ -38,7 +44,10 @@ class RackPinion(Component):
             return exact(self.radius)
         return exact(self.module or 0) * exact(self.teeth or 0) / 2
 
-    def rows(self) -> list[dict[str, Fraction]]:
-        """Coefficients of the speeds whose sum is zero."""
-        radius = self.exact_radius()
-        return [{"shaft": radius, "mass": Fraction(-1), "support": -radius}]
+    def parts(self) -> Iterable[Component]:
+        """The mesh, with its friction where it has losses."""
+        ends: dict[str, Any] = {"shaft": self.shaft, "mass": self.mass, "support": self.support}
+        radius = float(self.exact_radius())
+        if self.is_lossy():
+            return (RackMesh(self.name, radius=radius, **ends, **self.mesh()),)
+        return (RollingWheel(self.name, radius=radius, **ends),)

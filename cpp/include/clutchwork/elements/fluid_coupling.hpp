@@ -47,7 +47,7 @@ struct FluidCoupling : declared::FluidCoupling {
     const S slow = by_base ? at.rates[Way::follower] : at.rates[Way::base];
     const S slip = by_base ? at.rates[Way::slip] : -at.rates[Way::slip];
     // near rest, where the torque vanishes, round-off does not change the piece
-    const S size = abs(fast) + S(0.01), turn = S(fast < S(0) ? -1 : 1) / size;
+    const S size = abs(fast) + S(1.0), turn = S(fast < S(0) ? -1 : 1) / size;
     const S low = (slow - S(piece == 0 ? -1.0 : ratios[piece - 1]) * fast) * turn;
     const S high = -(slip + S(1.0 - ratios[piece]) * fast) * turn;
     who = high < low ? 1 : 0;

@@ -46,7 +46,7 @@ struct TorqueConverter : declared::TorqueConverter {
     const List ratios = list_of(p.speed_ratio, at.points);
     const S &w = at.rates[Way::impeller], &t = at.rates[Way::turbine], &slip = at.rates[Way::slip];
     // near rest, where the torques vanish, round-off does not change the piece
-    const S size = abs(w) + abs(t) + S(0.01);
+    const S size = abs(w) + abs(t) + S(1.0);
     const int n = ratios.count, i = at.piece % n;
     S least = S(1e300);
     auto watch = [&](const S& guard, int number) {

@@ -86,6 +86,12 @@ class Lossy(Heating):
             return [("loss_table", "cannot be given together with efficiencies", "give one of the two")]
         return table_problems("loss_table" if self.loss_table else "backward_efficiency", self.loss_rows())
 
+    def heat_problems(self) -> Found:
+        """A thermal node without losses to warm it, which is left out then."""
+        if self.heat is None or self.is_lossy():
+            return []
+        return [("heat", "is given without losses", "give an efficiency, or leave out `heat`")]
+
     def is_lossy(self) -> bool:
         """Whether it loses anything."""
         return any(tuple(row)[1:] != (1.0, 1.0, 0.0, 0.0) for row in self.loss_rows())
