@@ -59,7 +59,7 @@ class Chain(Lossy):
         """A gear of the same name, or the strand and two sprockets."""
         if not self.polygon:
             # teeth of an internal wheel count negative: both turn the same way
-            teeth = {"teeth_input": -self.teeth_input, "teeth_output": self.teeth_output}
+            teeth: dict[str, Any] = {"teeth_input": -self.teeth_input, "teeth_output": self.teeth_output}
             ends: dict[str, Any] = {"input": self.input, "output": self.output, "support": self.support}
             if self.is_lossy():
                 yield Mesh(self.name, ratio=float(self.exact_ratio()), **ends, **self.mesh())
@@ -68,14 +68,14 @@ class Chain(Lossy):
             return
         strand = Node(f"{self.name}.strand", Domain.TRANSLATION)
         yield strand
-        ends = (("input", self.input, self.teeth_input), ("output", self.output, self.teeth_output))
-        for name, shaft, teeth_ in ends:
+        sprockets = (("input", self.input, self.teeth_input), ("output", self.output, self.teeth_output))
+        for name, shaft, count in sprockets:
             yield PolygonSprocket(
                 f"{self.name}.{name}",
                 shaft=shaft,
                 mass=strand,
                 support=self.support,
-                teeth=teeth_,
+                teeth=count,
                 pitch=self.pitch or 1.0,
                 phase=getattr(self, f"phase_{name}"),
             )

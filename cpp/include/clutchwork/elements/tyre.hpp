@@ -51,11 +51,13 @@ struct Tyre : declared::Tyre {
     };
     const S limit = -at.rates[Way::slip] / p.slip_limit;
     const int now = at.piece % 4, zone = at.piece - now;
+    // near rest, where the tread is hardly carried, round-off of the speeds does not change the piece
+    const S rest = S(1e-9);
     if (now < spinning_ahead) {
-      const S along = now == rolling_ahead ? v : -v;
+      const S along = (now == rolling_ahead ? v : -v) + rest;
       watch(along - limit, zone + spinning_ahead), watch(along + limit, zone + spinning_back);
     } else {
-      const S along = now == spinning_ahead ? limit : -limit;
+      const S along = (now == spinning_ahead ? limit : -limit) + rest;
       watch(along - v, zone + rolling_ahead), watch(along + v, zone + rolling_back);
     }
     if (zone == slow) {
