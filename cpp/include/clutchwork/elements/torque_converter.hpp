@@ -70,13 +70,15 @@ struct TorqueConverter : declared::TorqueConverter {
   static int cross(const Params<T>& p, const At<S>& at, int who, S*) {
     const List ratios = list_of(p.speed_ratio, at.points);
     const int n = ratios.count, last = n - 1, alone = 2 * n, none = 2 * n + 1;
-    if (at.piece == none) return who == stop ? alone : 0;
+    if (at.piece == none) return who == stop ? alone : drives(ratios, at);
     if (at.piece == alone) return who == stop ? none : n + ratio_piece(ratios, 0);
     if (who == back) return alone;
     if (who == stop) return none;
-    if (who == down) return at.piece - 1;
-    if (at.piece % n < last) return at.piece + 1;
-    return at.piece == last ? n + last : last;
+    // near rest several pieces are passed at once
+    const int zone = at.piece < n ? 0 : n, now = at.piece - zone, there = zone == 0 ? drives(ratios, at) : now;
+    if (who == down) return zone + (there < now ? there : now - 1);
+    if (now < last) return zone + (there > now ? there : now + 1);
+    return zone == 0 ? n + last : last;
   }
   template <class T>
   static bool turns(const Params<T>&, int) {
@@ -91,7 +93,7 @@ struct TorqueConverter : declared::TorqueConverter {
     const int n = ratios.count;
     if (w < 0) return t > 0 ? 2 * n : 2 * n + 1;
     if (value(at.rates[Way::slip]) > 0) return n + ratio_piece(ratios, w / t);
-    return w > 0 ? ratio_piece(ratios, t / w) : 0;
+    return drives(ratios, at);
   }
 
  private:
@@ -110,6 +112,13 @@ struct TorqueConverter : declared::TorqueConverter {
     if (at.piece < n)
       return w * w * over_ratio(ratios, at.piece, slip / w, [&](int k) { return driving(p, at.points, k); });
     return -t * t * over_ratio(ratios, at.piece - n, -slip / t, [&](int k) { return coasting(p, at.points, k); });
+  }
+  /// The piece that holds the ratio while the impeller drives.
+  template <class S>
+  static int drives(const List& ratios, const At<S>& at) {
+    const double w = value(at.rates[Way::impeller]), t = value(at.rates[Way::turbine]);
+    if (value(at.rates[Way::slip]) == 0) return ratios.count - 1;
+    return w > 0 ? ratio_piece(ratios, t / w) : 0;
   }
   /// On the way from rest with both sides held together: before its guard tells, the piece is still that of stall.
   template <class S>
