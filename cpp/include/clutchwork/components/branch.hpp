@@ -78,19 +78,32 @@ CLUTCHWORK_INLINE T contact_torque(const Workspace<T>& ws, const Branch<T>& b, T
   return sliding_torque<T, T>(ws, b, rate, b.input, b.law_input);
 }
 
-/// Torque of a branch on its follower; the rates of its states go to `rates`.
+/// Torque of an element of one way; the rates of its states go to `rates`.
+template <class E, class T>
+CLUTCHWORK_INLINE T torque_of(const Workspace<T>& ws, const Branch<T>& b, T rate, const T* state, T* rates) {
+  const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+  const At<T> at{rate, state + b.state, b.input, b.piece, ws.sys.points};
+  if constexpr (E::states > 0) E::state_rates(p, at, rates + b.state);
+  return E::torque(p, at);
+}
+template <class E, class T>
+[[gnu::noinline]] T torque_apart(const Workspace<T>& ws, const Branch<T>& b, T rate, const T* state, T* rates) {
+  return torque_of<E>(ws, b, rate, state, rates);
+}
+
+/// Torque of a branch on its follower; the rates of its states go to `rates`. Elements that switch are compiled apart,
+/// so that those of every driveline stay short.
 template <class T>
 CLUTCHWORK_INLINE T branch_torque(const Workspace<T>& ws, const Branch<T>& b, T rate, const T* state, T* rates) {
   if (b.law >= 0) return contact_torque(ws, b, rate, state, rates);
   return visit_torque(b.kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
-    if constexpr (computes_with<E, T> && TorqueElement<E>) {
-      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-      const At<T> at{rate, state + b.state, b.input, b.piece, ws.sys.points};
-      if constexpr (E::states > 0) E::state_rates(p, at, rates + b.state);
-      return E::torque(p, at);
-    }
-    return T(0);
+    if constexpr (!computes_with<E, T> || !TorqueElement<E>)
+      return T(0);
+    else if constexpr (SwitchingLaw<E>)
+      return torque_apart<E>(ws, b, rate, state, rates);
+    else
+      return torque_of<E>(ws, b, rate, state, rates);
   });
 }
 
@@ -150,7 +163,32 @@ template <class T>
   return with(std::integral_constant<int, most_own_states>{});
 }
 
-/// Torque and partial derivatives by (rate, own states, time), from dual numbers.
+/// Torque of an element of one way and its partial derivatives by (rate, own states, time), from dual numbers.
+template <class E, class T>
+CLUTCHWORK_INLINE Partial<T> partial_of(const Workspace<T>& ws, const Branch<T>& b, T rate, T rate_slope,
+                                        const T* state, T* rates, const StatePartials<T>& out) {
+  constexpr int n = E::states, N = n + 2;
+  using S = Dual<T, N>;
+  const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
+  S input[E::inputs > 0 ? E::inputs : 1];
+  dual_inputs<N>(E::inputs, b.input, b.input_slope, input);
+  S own[n > 0 ? n : 1], own_rates[n > 0 ? n : 1];
+  const int used = Sized<E> ? b.states : n;
+  for (int i = 0; i < used; ++i) own[i] = S::variable(state[b.state + i], 1 + i);
+  S x = S::variable(rate, 0);
+  x.d[N - 1] = rate_slope;
+  const At<S> at{x, own, input, b.piece, ws.sys.points};
+  const S f = E::torque(p, at);
+  if constexpr (n > 0) E::state_rates(p, at, own_rates);
+  return take_partials(b, f, own_rates, used, rates, out);
+}
+template <class E, class T>
+[[gnu::noinline]] Partial<T> partial_apart(const Workspace<T>& ws, const Branch<T>& b, T rate, T rate_slope,
+                                           const T* state, T* rates, const StatePartials<T>& out) {
+  return partial_of<E>(ws, b, rate, rate_slope, state, rates, out);
+}
+
+/// Those of a branch.
 template <class T>
 CLUTCHWORK_INLINE Partial<T> branch_partial_inline(const Workspace<T>& ws, const Branch<T>& b, T rate, T rate_slope,
                                                    const T* state, T* rates, const StatePartials<T>& out) {
@@ -170,23 +208,12 @@ CLUTCHWORK_INLINE Partial<T> branch_partial_inline(const Workspace<T>& ws, const
   }
   return visit_torque(b.kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
-    if constexpr (computes_with<E, T> && TorqueElement<E>) {
-      constexpr int n = E::states, N = n + 2;
-      using S = Dual<T, N>;
-      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-      S input[E::inputs > 0 ? E::inputs : 1];
-      dual_inputs<N>(E::inputs, b.input, b.input_slope, input);
-      S own[n > 0 ? n : 1], own_rates[n > 0 ? n : 1];
-      const int used = Sized<E> ? b.states : n;
-      for (int i = 0; i < used; ++i) own[i] = S::variable(state[b.state + i], 1 + i);
-      S x = S::variable(rate, 0);
-      x.d[N - 1] = rate_slope;
-      const At<S> at{x, own, input, b.piece, ws.sys.points};
-      const S f = E::torque(p, at);
-      if constexpr (n > 0) E::state_rates(p, at, own_rates);
-      return take_partials(b, f, own_rates, used, rates, out);
-    }
-    return Partial<T>{};
+    if constexpr (!computes_with<E, T> || !TorqueElement<E>)
+      return Partial<T>{};
+    else if constexpr (SwitchingLaw<E>)
+      return partial_apart<E>(ws, b, rate, rate_slope, state, rates, out);
+    else
+      return partial_of<E>(ws, b, rate, rate_slope, state, rates, out);
   });
 }
 
