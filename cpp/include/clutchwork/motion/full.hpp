@@ -33,9 +33,41 @@ struct FullForm : SparseForm<T> {
       }
     }
     for (int i = nz(); i < count; ++i) a[i * count + i] += scale;
-    return factor_lu(count, a, ws.full.pivot);
+    if (!factor_lu(count, a, ws.full.pivot)) return false;
+    pack(count);
+    return true;
   }
-  void solve_whole(T* b, int count) const { solve_lu(count, ws.full.factor, ws.full.pivot, b); }
+  void solve_whole(T* b, int count) const {
+    const Full<T>& f = ws.full;
+    for (int c = 0; c < count; ++c) {
+      const T swap = b[c];
+      b[c] = b[f.pivot[c]];
+      b[f.pivot[c]] = swap;
+    }
+    auto less = [&](int k, T x) {
+      for (int e = f.first[k]; e < f.first[k + 1]; ++e) x -= f.part[e] * b[f.column[e]];
+      return x;
+    };
+    for (int i = 0; i < count; ++i) b[i] = less(2 * i, b[i]);
+    for (int i = count - 1; i >= 0; --i) b[i] = less(2 * i + 1, b[i]) * f.factor[i * count + i];
+  }
+
+ private:
+  /// Most of a factor are zeros, and it is solved with several times.
+  void pack(int count) {
+    Full<T>& f = ws.full;
+    int n = 0;
+    auto take = [&](int k, const T* row, int from, int to) {
+      f.first[k] = n;
+      for (int j = from; j < to; ++j) {
+        if (value(row[j]) != 0) f.part[n] = row[j], f.column[n++] = j;
+      }
+    };
+    for (int i = 0; i < count; ++i) {
+      take(2 * i, f.factor + i * count, 0, i), take(2 * i + 1, f.factor + i * count, i + 1, count);
+    }
+    f.first[2 * count] = n;
+  }
 };
 
 /// The inputs that are shared states.

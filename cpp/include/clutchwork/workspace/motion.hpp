@@ -203,6 +203,9 @@ struct Full {
   Whole<Dual<T, 1>> along;
   T *jacobian = nullptr, *factor = nullptr;  ///< by rows, of all unknowns
   int* pivot = nullptr;
+  // the factor without its zeros: of each row what stands before the diagonal, then what stands behind it
+  T* part = nullptr;
+  int *column = nullptr, *first = nullptr;
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
@@ -210,6 +213,8 @@ struct Full {
     Whole<T>::lay_out(p.plain, a, n), Whole<Dual<T, chunk>>::lay_out(p.some, a, n);
     Whole<Dual<T, 1>>::lay_out(p.along, a, n);
     a.scratch(p.jacobian, unknowns * unknowns), a.scratch(p.factor, unknowns * unknowns), a.take(p.pivot, unknowns);
+    a.scratch(p.part, unknowns * unknowns), a.take(p.column, unknowns * unknowns);
+    a.take(p.first, n.full ? 2 * unknowns + 1 : 0);
   }
 };
 
