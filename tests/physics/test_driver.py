@@ -86,3 +86,30 @@ def test_a_cycle_of_stages() -> None:
     assert list(cycle.points) == [(1.0, 0.0), (6.0, 10.0), (9.0, 10.0), (11.0, 4.0), (13.0, 0.0), (14.0, 0.0)]
     with pytest.raises(cw.UseError, match="stage 1 takes 0 s to 10 m/s"):
         cw.drive_cycle([(10.0, 0.0, 3.0)])
+
+
+@pytest.mark.parametrize("height", [10.0, 1e-3])
+def test_a_cycle_that_rises_from_standstill_at_once(height):
+    """Without error at the start the foot leaves the brake, which never had a force."""
+    d = cw.Driveline("off")
+    car = d.mass("car", mass=MASS)
+    driver = d.add(cw.Driver("driver", cycle=cw.Table([(0.0, 0.0), (10.0, height)]), speed=car, **GAINS))
+    grip = cw.Coulomb(static=1.0, kinetic=1.0)
+    d.add(cw.Brake("brake", shaft=car, friction=grip, gain=BRAKE, normal_force=(driver, "brake")))
+    run = d.simulate(3.0)
+    assert run.time[-1] == 3.0
+    assert not run.events
+    assert np.all(run["driver.brake"] == 0.0)
+    assert np.all(run["driver.throttle"] >= 0.0)
+
+
+def test_a_cycle_that_falls_at_once_never_opens_the_throttle():
+    d = cw.Driveline("slower")
+    car = d.mass("car", mass=MASS, speed=10.0)
+    driver = d.add(cw.Driver("driver", cycle=cw.Table([(0.0, 10.0), (10.0, 5.0)]), speed=car, **GAINS))
+    grip = cw.Coulomb(static=1.0, kinetic=1.0)
+    d.add(cw.Brake("brake", shaft=car, friction=grip, gain=BRAKE, normal_force=(driver, "brake")))
+    run = d.simulate(3.0)
+    early = run.time < 0.5
+    assert np.all(run["driver.throttle"][early] == 0.0)
+    assert run["driver.brake"][early].max() > 0.0
