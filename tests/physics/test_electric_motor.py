@@ -189,6 +189,20 @@ def test_a_motor_without_limits_that_can_be_reached_is_a_torque():
     assert run["m.electric_energy"][-1] == pytest.approx(run["m.work"][-1], rel=1e-12)
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("brakes", [0.0, 10.0, 30.0])
+def test_from_rest_either_way_drives(way, brakes):
+    """A brake of 15 N m gives way to the 20 N m of the motor, whatever its generator can do."""
+    d = cw.Driveline("stall")
+    s = d.shaft("s", inertia=1.0)
+    grip = cw.Coulomb(static=1.0, kinetic=1.0)
+    d.add(cw.Brake("b", shaft=s, friction=grip, gain=1.0, normal_force=15.0, locked=True))
+    d.add(cw.ElectricMotor("m", shaft=s, command=way * 50.0, max_torque=20.0, generator_torque=brakes))
+    run = d.simulate(1.0)
+    assert run["s.speed"][-1] == pytest.approx(way * 5.0, rel=1e-9)
+    assert run["m.torque"][0] == way * 20.0
+
+
 @pytest.mark.parametrize(
     ("values", "words"),
     [

@@ -162,10 +162,11 @@ struct MotorTorque : declared::MotorTorque {
       const S brakes = value_in_cell(grid.count, x.cell, share, [&](int i) { return generator[i]; });
       const S warm = at.input[Input::temperature];
       const S left = held_value(p.derating, at.points, warm, warmths(p) > 1 ? x.warmth : 0);
-      const bool forth = x.side > 0;
-      up = left * (forth ? drives : brakes), down = left * (forth ? brakes : drives);
+      // at rest either way drives, whichever piece it came from
+      const bool rests = value(at.rate) == 0, forth = rests || x.side > 0, back = rests || x.side < 0;
+      up = left * (forth ? drives : brakes), down = left * (back ? drives : brakes);
       up_power = left * S(forth ? p.motor_power : p.generator_power);
-      down_power = left * S(forth ? p.generator_power : p.motor_power);
+      down_power = left * S(back ? p.motor_power : p.generator_power);
     }
     S high(bool power) const { return power ? up_power / w : up; }
     S low(bool power) const { return power ? down_power / w : down; }
