@@ -105,6 +105,6 @@ def test_a_table_that_falls_to_its_bound_keeps_it():
     d = cw.Driveline()
     for number in range(50):
         shaft = d.shaft(f"s{number}", inertia=1.0)
-        fall = cw.Table([(0.0, 0.37 + 0.0173 * number), (2.0, 0.91 - 0.0131 * number), (2.2, 0.0)])
+        fall = cw.Table([(0.0, 0.37 + 0.0123 * number), (2.0, 0.91 - 0.0131 * number), (2.2, 0.0)])
         d.add(cw.Retarder(f"r{number}", shaft=shaft, capacity=1.0, command=fall))
     assert d.check() == []

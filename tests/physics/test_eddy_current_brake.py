@@ -72,3 +72,11 @@ def test_a_coefficient_without_a_temperature_is_a_mistake():
     _brake(d, d.shaft("s", inertia=1.0), temperature_coefficient=0.004)
     with pytest.raises(cw.ModelError, match=r"temperature_coefficient.*there is no temperature"):
         d.assemble()
+
+
+def test_a_conductor_too_cold_for_its_coefficient_is_a_mistake():
+    """Its resistance would be below zero, and the brake would drive."""
+    d = cw.Driveline()
+    _brake(d, d.shaft("s", inertia=1.0, speed=4.0), temperature_coefficient=0.01, temperature=COLD - 100.0)
+    with pytest.raises(cw.ModelError, match=r"temperature is .* K, not above .* K.*give a higher one"):
+        d.assemble()

@@ -112,3 +112,11 @@ def test_its_heat_goes_to_a_node():
     lost = 0.5 * INERTIA * (220.0**2 - run["s.speed"][-1] ** 2)
     assert run["oil.heat"][-1] == pytest.approx(lost, rel=1e-8)
     assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
+
+
+@pytest.mark.parametrize(
+    "more", [{"command": 5.0}, {"command": cw.Ramp(height=2.0, duration=1.0)}, {"initial_filling": 2.0}], ids=str
+)
+def test_more_than_full_is_a_mistake(more):
+    with pytest.raises(cw.ModelError, match=r"must be >= 0 and <= 1"):
+        _driveline(10.0, lag=0.1, **more).assemble()

@@ -192,6 +192,7 @@ def test_coupling_in_all_quadrants(base: float, follower: float) -> None:
         ({"capacity": (*CAPACITY[:-1], 1e-4)}, "jump"),
         ({"torque_ratio": (2.0, 1.0)}, "speed ratios"),
         ({"speed_ratio": (*RATIO[:-1], 0.99)}, "end at 1"),
+        ({"torque_ratio": (*MULTIPLIED[:-1], 1.2)}, "1.2 at speed ratio 1, above 1: it would give power"),
     ],
 )
 def test_tables_that_do_not_fit_are_refused(changes: dict[str, Any], word: str) -> None:

@@ -140,3 +140,11 @@ def test_reactions_stand_at_the_support() -> None:
     run = d.simulate(1.0, rtol=1e-9, atol=1e-9)
     assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
     assert run["housing.force"][-1] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_shape_factor_that_turns_the_force_round_is_a_mistake():
+    d = cw.Driveline()
+    wheel, car = d.shaft("wheel", inertia=1.0), d.mass("car", mass=1e3)
+    d.add(cw.Tyre("t", shaft=wheel, mass=car, radius=0.3, load=4e3, low_speed_damping=1e3, C=2.5))
+    with pytest.raises(cw.ModelError, match=r"C = 2.5: must be > 0 and <= 2"):
+        d.assemble()

@@ -33,7 +33,14 @@ class EddyCurrentBrake(Heating):
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
-        if self.temperature_coefficient == 0.0 or self.temperature is not None or self.heat is not None:
+        if self.temperature_coefficient == 0.0:
+            return []
+        # the coldest that is known in advance; below that the law has no resistance left, and would drive
+        coldest = self.reference_temperature - 1.0 / self.temperature_coefficient
+        if isinstance(self.temperature, int | float) and self.temperature <= coldest:
+            fault = f"is {self.temperature:g} K, not above {coldest:g} K, where no resistance is left"
+            return [("temperature", fault, "give a higher one, or a smaller coefficient")]
+        if self.temperature is not None or self.heat is not None:
             return []
         fault = f"is {self.temperature_coefficient:g} 1/K, but there is no temperature"
         return [("temperature_coefficient", fault, "give `heat`, a thermal node, or `temperature`")]

@@ -74,6 +74,10 @@ class TorqueConverter(Heating):
             return found
         ratios = self.speed_ratio
         found = at_each_ratio("torque_ratio", self.torque_ratio, ratios)
+        for ratio, m in zip(ratios, self.torque_ratio, strict=False):
+            if not found and ratio * m > 1.0 + 1e-9:
+                fault = f"is {m:g} at speed ratio {ratio:g}, above {1.0 / ratio:.4g}: it would give power"
+                found.append(("torque_ratio", fault, "give at most 1 over the speed ratio there"))
         if self.k_factor is not None and len(self.k_factor) != len(ratios) - 1:
             count = f"has {len(self.k_factor)} values for {len(ratios) - 1} speed ratios below 1"
             found.append(("k_factor", count, "give one for each; at ratio 1, where it is infinite, k is 0"))

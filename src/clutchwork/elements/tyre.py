@@ -35,7 +35,7 @@ class Tyre(Heating):
     radius: float = option("m", "rolling radius", above=0.0)
     load: SignalLike = signal("N", "vertical load; none at zero and below", presses=True, example=4000.0)
     B: float = param("1", "stiffness factor", default=10.0, above=0.0)
-    C: float = param("1", "shape factor", default=1.65, above=0.0)
+    C: float = param("1", "shape factor; above 2 a wheel that spins would brake", default=1.65, above=0.0, at_most=2.0)
     D: float = param("1", "peak factor, the largest force over the load", default=1.0, above=0.0)
     E: float = param("1", "curvature factor", default=0.3, at_most=1.0)
     relaxation_length: float = param("m", "way over which the force builds up", default=0.25, above=0.0)

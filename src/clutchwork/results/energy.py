@@ -62,7 +62,7 @@ class EnergyBalance:
 
     @property
     def turnover(self) -> float:
-        """Sum of all energies that moved, regardless of direction [J]: what a residual is small against."""
+        """Half the sum of the sizes of all net energies [J]; small where what went in came back, as after a swing."""
         parts = [*self.sources.values(), *self.heat.values(), self.kinetic, self.elastic]
         return 0.5 * sum(abs(part) for part in parts)
 
