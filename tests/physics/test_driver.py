@@ -86,6 +86,8 @@ def test_a_cycle_of_stages() -> None:
     assert list(cycle.points) == [(1.0, 0.0), (6.0, 10.0), (9.0, 10.0), (11.0, 4.0), (13.0, 0.0), (14.0, 0.0)]
     with pytest.raises(cw.UseError, match="stage 1 takes 0 s to 10 m/s"):
         cw.drive_cycle([(10.0, 0.0, 3.0)])
+    with pytest.raises(cw.UseError, match=r"stage 1 is .*three plain numbers"):
+        cw.drive_cycle([(10.0, 5.0)])  # type: ignore[list-item]
 
 
 @pytest.mark.parametrize("height", [10.0, 1e-3])
@@ -113,3 +115,12 @@ def test_a_cycle_that_falls_at_once_never_opens_the_throttle():
     early = run.time < 0.5
     assert np.all(run["driver.throttle"][early] == 0.0)
     assert run["driver.brake"][early].max() > 0.0
+
+
+def test_a_message_names_the_motor_that_was_written() -> None:
+    d = cw.Driveline()
+    rotor, car = d.shaft("rotor", inertia=1.0), d.mass("car", mass=1e3)
+    driver = d.add(cw.Driver("driver", cycle=10.0, speed=car))
+    d.add(cw.ElectricMotor("motor", shaft=rotor, command=driver, max_torque=200.0))
+    words = "cw.ElectricMotor(\"motor\"): command must be in [N m], but 'driver' gives [1]; give a signal in [N m]"
+    assert words in str(d.check()[0])

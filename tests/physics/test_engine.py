@@ -194,7 +194,7 @@ def test_states_that_nobody_asked_for_are_not_there():
         ({"idle_speed": 80.0}, r"has no control"),
         ({"max_speed": 5.0}, r"not below max_speed"),
         ({"orders": (2.2,), "amplitudes": (1.0,)}, r"not a multiple of 1/2"),
-        ({"orders": (2.0,)}, r"must have 1 numbers"),
+        ({"orders": (2.0,)}, r"must have as many numbers as orders, 1"),
         ({"phases": (2.0,)}, r"needs orders"),
     ],
     ids=str,

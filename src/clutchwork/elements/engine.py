@@ -144,7 +144,7 @@ class Engine(Component):
             )
         for name, values in (("amplitudes", self.amplitudes), ("phases", self.phases)):
             if (values is None and name == "amplitudes") or (values is not None and len(values) != len(self.orders)):
-                fault = f"must have {len(self.orders)} numbers"
+                fault = f"must have as many numbers as orders, {len(self.orders)}"
                 found.append((name, fault, "give one for each order"))
         return found
 

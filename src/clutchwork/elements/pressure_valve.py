@@ -9,9 +9,9 @@ from clutchwork.declare import Component, Points, Role, SignalLike, State, compo
 class PressureValve(Component):
     """Proportional valve: a table of its pressure over the current, followed with a lag.
 
-    `d pressure/dt = (table(current) - pressure)/lag`. Use it as the `supply` of a `ClutchActuator`, or as the pressure
-    of a contact where the piston does not matter. The table is linear between its points and held outside; falling
-    ones are those of valves that open without current.
+    `d pressure/dt = (table(current) - pressure)/lag`. Use it as the `supply_pressure` of a `ClutchActuator`, or
+    as the pressure of a contact where the piston does not matter. The table is linear between its points and held
+    outside; falling ones are those of valves that open without current.
     """
 
     pressure: Points = curve(

@@ -43,7 +43,9 @@ def part_problems(model: Model, incomplete: Sequence[str] = ()) -> tuple[list[Pr
     # what refers to an element with mistakes is looked at once those are mended
     if not broken and not incomplete:
         known = Known.of(nodes, thermal, elements, sound)
-        problems += [problem for part in sound.components for problem in reference_problems(part, known)]
+        wholes = {element.name: element for element in elements}
+        for part in sound.components:
+            problems += reference_problems(part, wholes.get(part.name, part), known)
     return problems, sound, _touched(broken)
 
 

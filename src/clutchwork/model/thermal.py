@@ -115,14 +115,18 @@ def _inside(component: Component) -> Iterator[Part]:
             yield from _inside(part)
 
 
-def reference_problems(component: Component, known: Known) -> Iterator[Problem]:
-    """Inputs that other components give: whether those are there, and give what is wanted."""
+def reference_problems(component: Component, whole: Component, known: Known) -> Iterator[Problem]:
+    """Inputs that other components give: whether those are there, and give what is wanted.
+
+    `whole` is what was written: the component, or the composite that has a part of its own name.
+    """
     law = component.friction
     for thing, quantity in ((component, ""), (law, "friction")):
         for item, spec in specs(type(thing), "signal", "alternative") if thing is not None else ():
             value = getattr(thing, item.name)
             if is_reference(value):
-                place = At(path_of(component), quantity).inner(item.name, spec.unit)
+                written = whole if hasattr(whole, item.name) else component
+                place = At(path_of(written), quantity).inner(item.name, spec.unit)
                 yield from _reference(value, spec, place, component, known)
             elif value is None and spec.unit == "K" and thing is law:
                 yield from _temperature(component, At(path_of(component), quantity).inner(item.name, spec.unit))
@@ -144,7 +148,8 @@ def _reference(value: Any, spec: Spec, at: At, component: Component, known: Know
         return
     given = _unit(value, known)
     if all(units.parse(given).powers != units.parse(unit).powers for unit in (spec.unit, *spec.units)):
-        yield at.problem(f"must be in [{at.unit}], but {_words(value)} gives [{given}]", remedy=spec.doc)
+        remedy = f"give a signal in [{at.unit}]: {spec.doc}"
+        yield at.problem(f"must be in [{at.unit}], but {_words(value)} gives [{given}]", remedy=remedy)
 
 
 def _may_refer(value: Any, to: Role) -> bool:

@@ -77,7 +77,7 @@ def _legend(axes: Any, where: Places, table: LossTable, made: Graph) -> None:
     words = [f"all heat {amount(table.heat, table.unit)}"]
     if math.isfinite(table.efficiency):
         words.append(f"efficiency {table.efficiency:.1%}")
-    words += [f"{made.left_out} without a share worth a line not shown"] if made.left_out else []
+    words += [f"{made.left_out} too small to draw left out"] if made.left_out else []
     axes.text(where.wide - 4.0, -3.6, ", ".join(words), fontsize=6.5, va="center", ha="right", color=INK)
 
 

@@ -17,7 +17,8 @@ def drive_cycle(stages: Sequence[tuple[float, float, float]], *, start: float = 
     at which the first one begins [s]. A cycle from a file is a `Column`.
     """
     points, time = [(float(start), 0.0)], float(start)
-    for number, (speed, reach, hold) in enumerate(stages, 1):
+    for number, stage in enumerate(stages, 1):
+        speed, reach, hold = _stage(number, stage)
         if not (reach > 0.0 and hold >= 0.0):
             fault = f"stage {number} takes {reach:g} s to {speed:g} m/s and holds it for {hold:g} s"
             raise UseError(
@@ -28,3 +29,12 @@ def drive_cycle(stages: Sequence[tuple[float, float, float]], *, start: float = 
         time += hold
         points += [(time, float(speed))] if hold else []
     return Table(points)
+
+
+def _stage(number: int, stage: Sequence[float]) -> tuple[float, float, float]:
+    try:
+        speed, reach, hold = map(float, stage)
+    except (TypeError, ValueError):
+        remedy = "give three plain numbers: speed [m/s], time to reach it [s], time to hold it [s]"
+        raise UseError("cw.drive_cycle", [f"stage {number} is {stage!r}: {remedy}"]) from None
+    return speed, reach, hold
