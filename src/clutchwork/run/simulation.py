@@ -197,6 +197,9 @@ def _collect(job: Job, progress: Told | None) -> tuple[Recording, SimulationErro
         # the bare steps reach further
         first.status, first.raised = INTERRUPTED, second.raised
         return first, None
+    if first.status != DONE and second.status == DONE:
+        # what stopped the run lies at an instant that the grid does not have
+        return first, None
     return second, failure
 
 

@@ -348,7 +348,17 @@ void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
     outer_loads(ws, ws.loads.now, carried);
     LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
     // what holds the largest multiple of the load holds the load in proportion
-    const T factor = solve_loaded(limit);
+    T factor = solve_loaded(limit);
+    // without friction of their own they hold, at their limit, a multiple of any size or none: bounds widened by
+    // round-off
+    if (value(limit.size) > 0 && !(value(factor) >= 1)) {
+      limit.noise = T(1e-11) * limit.size;
+      factor = solve_loaded(limit);
+    }
+    if (value(limit.size) > 0 && !(value(factor) > 0)) {
+      for (int i = 0; i < set.n; ++i) give(member[i], i < set.rank ? set.load[i] : T(0));
+      return;
+    }
     for (int i = 0; i < set.n; ++i) give(member[i], value(limit.size) > 0 ? limit.x[i] / factor : T(0));
     return;
   }
