@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
+from clutchwork.declare.status import NOT_FINITE
 from clutchwork.results.ratios import phases
+from clutchwork.run import simulation
 
 
 def two_discs(**changes: Any) -> cw.Driveline:
@@ -276,3 +278,20 @@ def test_phases_end_at_the_events_whatever_the_output(root: Path) -> None:
     assert [(p.begin, p.end, p.closed) for p in coarse] == [(p.begin, p.end, p.closed) for p in smooth]
     # the speeds are those of the solver at the event, and no row of a grid
     assert [p.measured for p in coarse] == pytest.approx([p.measured for p in smooth], rel=1e-9)
+
+
+def test_what_stops_the_bare_steps_is_told_where_the_finer_rows_miss_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    once = simulation._once
+
+    def stopped(job: Any, grid: Any, progress: Any) -> Any:
+        made, failure = once(job, grid, progress)
+        if grid is None:
+            made.status = NOT_FINITE
+        return made, failure
+
+    monkeypatch.setattr(simulation, "_once", stopped)
+    d = cw.Driveline("flywheel")
+    d.add(cw.Torque("t", shaft=d.shaft("wheel", inertia=1.0), torque=cw.Sine(amplitude=1.0, frequency=1.0)))
+    with pytest.warns(cw.StoppedEarly):
+        run = d.simulate(1.0)
+    assert not run.finished

@@ -246,3 +246,24 @@ def test_a_loop_of_rigid_gears_with_losses_is_named():
     d.add(cw.Gear("twin", input=a, output=b, ratio=2.0))
     with pytest.raises(cw.ModelError, match=r'"lossy".*closes a loop of rigid parts with .*"twin"'):
         d.simulate(1.0)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_gears_in_series_without_friction_of_their_own(seed):
+    """At rest together they hold any load or none: runs end, and every row is finite."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(2, 5))
+    d = cw.Driveline("series")
+    shafts = [d.shaft(f"s{i}", inertia=float(10 ** rng.uniform(-2.3, 0.3))) for i in range(n + 1)]
+    for i in range(n):
+        ratio = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.4, 4))
+        efficiency = float(rng.uniform(0.6, 1.0))
+        d.add(cw.LossyGear(f"g{i}", input=shafts[i], output=shafts[i + 1], ratio=ratio, efficiency=efficiency))
+    stiffness = float(10 ** rng.uniform(2, 4))
+    d.add(cw.SpringDamper("spring", base=d.housing, follower=shafts[-1], stiffness=stiffness, damping=1.0))
+    through_zero = cw.Table([(0.0, 10.0), (0.5, 0.0), (1.0, -10.0)])
+    wave = cw.Sine(amplitude=float(rng.uniform(5, 40)), frequency=float(rng.uniform(0.5, 4)))
+    d.add(cw.Torque("drive", shaft=shafts[0], torque=through_zero if seed % 2 else wave))
+    run = d.simulate(1.0)
+    assert (run.status, run.time[-1]) == ("done", 1.0), run.message
+    assert all(np.all(np.isfinite(run[name])) for name in run.names if run[name].dtype.kind == "f")

@@ -339,6 +339,16 @@ template <class T>
   return solve_loaded(limit) - T(1);
 }
 
+/// The largest factor of the load of a set that is at its limit. Members without friction of their own hold a multiple
+/// of any size there or none: then with bounds widened by round-off.
+template <class T>
+T solve_at_limit(LoadedLimit<T>& limit) {
+  const T factor = solve_loaded(limit);
+  if (!(value(limit.size) > 0) || value(factor) >= 1) return factor;
+  limit.noise = T(1e-11) * limit.size;
+  return solve_loaded(limit);
+}
+
 /// Torques of all contacts of set k in place of those of its carriers: `give` takes contact and torque.
 template <class T, class Give>
 void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
@@ -348,13 +358,7 @@ void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
     outer_loads(ws, ws.loads.now, carried);
     LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
     // what holds the largest multiple of the load holds the load in proportion
-    T factor = solve_loaded(limit);
-    // without friction of their own they hold, at their limit, a multiple of any size or none: bounds widened by
-    // round-off
-    if (value(limit.size) > 0 && !(value(factor) >= 1)) {
-      limit.noise = T(1e-11) * limit.size;
-      factor = solve_loaded(limit);
-    }
+    const T factor = solve_at_limit(limit);
     if (value(limit.size) > 0 && !(value(factor) > 0)) {
       for (int i = 0; i < set.n; ++i) give(member[i], i < set.rank ? set.load[i] : T(0));
       return;
@@ -393,7 +397,7 @@ void break_set(Workspace<T>& ws, int k, const T* carried) {
   if (ws.sys.loads > 0 && holds_loads(ws)) {
     outer_loads(ws, ws.loads.now, carried);
     LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
-    solve_loaded(limit);
+    solve_at_limit(limit);
     return force([&](int i) { return limit.price_of(i); });
   }
   LimitLoad<T> limit = limit_of(ws, set);
