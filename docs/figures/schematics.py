@@ -42,6 +42,7 @@ def symbols() -> Schematic:
         for role in Role
         if role not in (Role.LAW, Role.SIGNAL)
         for kind, cls in REGISTRY[role].items()
+        if kind in OWN
     }
     made = Sheet()
     for number, kind in enumerate(sorted(kinds)):

@@ -7,6 +7,7 @@ from typing import Any
 
 from clutchwork.declare import Component, Found, Node, Role, component, param, port
 from clutchwork.elements.bases.meshing import Lossy
+from clutchwork.elements.bases.teeth import ring_problems
 from clutchwork.elements.mesh import Mesh
 
 
@@ -32,14 +33,7 @@ class LossyPlanetary(Lossy):
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
-        sun, ring = self.teeth_sun, self.teeth_ring
-        if self.ratio is None and (sun is None or ring is None):
-            return [("ratio", "is missing", "give `ratio`, or both `teeth_sun` and `teeth_ring`")]
-        if self.ratio is not None and (sun, ring) != (None, None):
-            return [("ratio", "is given twice, as a number and by teeth", "give only one of the two")]
-        if sun is not None and ring is not None and ring <= sun:
-            return [("teeth_ring", f"is {ring:g}, not above teeth_sun = {sun:g}", "a ring has more teeth than its sun")]
-        return self.loss_problems()
+        return ring_problems(self) or self.loss_problems()
 
     def parts(self) -> Iterable[Component]:
         """The mesh between sun and ring, carried by the carrier."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from clutchwork.declare import Component, Node, Role, component, exact, param, port
+from clutchwork.declare import Component, Found, Node, Role, component, param, port
+from clutchwork.elements.bases.teeth import ratio_of, ring_problems
 
 
 @component(Role.GEAR)
@@ -22,22 +23,13 @@ class Planetary(Component):
     teeth_sun: int | None = param("1", "teeth of the sun", default=None, above=0.0, whole=True)
     teeth_ring: int | None = param("1", "teeth of the ring, counted positive", default=None, above=0.0, whole=True)
 
-    def problems(self) -> list[tuple[str, str, str]]:
+    def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
-        sun, ring = self.teeth_sun, self.teeth_ring
-        if self.ratio is None and (sun is None or ring is None):
-            return [("ratio", "is missing", "give `ratio`, or both `teeth_sun` and `teeth_ring`")]
-        if self.ratio is not None and (sun, ring) != (None, None):
-            return [("ratio", "is given twice, as a number and by teeth", "give only one of the two")]
-        if sun is not None and ring is not None and ring <= sun:
-            return [("teeth_ring", f"is {ring:g}, not above teeth_sun = {sun:g}", "a ring has more teeth than its sun")]
-        return []
+        return ring_problems(self)
 
     def exact_ratio(self) -> Fraction:
         """Ratio as a fraction."""
-        if self.ratio is not None:
-            return exact(self.ratio)
-        return exact(self.teeth_ring or 0) / exact(self.teeth_sun or 1)
+        return ratio_of(self.ratio, self.teeth_ring, self.teeth_sun)
 
     def rows(self) -> list[dict[str, Fraction]]:
         """Coefficients of the speeds whose sum is zero."""

@@ -3,35 +3,39 @@
 
 namespace clutchwork::elements {
 
-/// Gear mesh with losses: its capacity follows the torque that it transmits.
-struct Mesh : declared::Mesh {
+/// Friction of a gear mesh with a loss table: its capacity follows the torque that it transmits.
+struct MeshFriction {
+  static constexpr bool one_way = false;
+
+  template <class P, class S>
+  static S load(const P&, const At<S>&) {
+    return S(1);
+  }
+  template <class P, class S>
+  static Bound<S> bound(const P& p, const At<S>& at, int direction) {
+    return LossTable{p.loss_table}.on(at.points, at.piece, at.rate).bound(direction);
+  }
+  template <class P>
+  static int edges(const P& p) {
+    return LossTable{p.loss_table}.edges();
+  }
+  template <class P>
+  static double edge(const P& p, const double* points, int i) {
+    return LossTable{p.loss_table}.edge(points, i);
+  }
+  template <class P>
+  static bool fits(const P& p) {
+    return LossTable{p.loss_table}.fits();
+  }
+};
+
+/// Gear mesh with losses.
+struct Mesh : declared::Mesh, MeshFriction {
   template <class T>
   struct Params {
     T ratio;              ///< [1]
     Curve<T> loss_table;  ///< 1
   };
-  static constexpr bool one_way = false;
-
-  template <class T, class S>
-  static S load(const Params<T>&, const At<S>&) {
-    return S(1);
-  }
-  template <class T, class S>
-  static Bound<S> bound(const Params<T>& p, const At<S>& at, int direction) {
-    return LossTable<T>{p.loss_table}.on(at.points, at.piece, at.rate).bound(direction);
-  }
-  template <class T>
-  static int edges(const Params<T>& p) {
-    return LossTable<T>{p.loss_table}.edges();
-  }
-  template <class T>
-  static double edge(const Params<T>& p, const double* points, int i) {
-    return LossTable<T>{p.loss_table}.edge(points, i);
-  }
-  template <class T>
-  static bool fits(const Params<T>& p) {
-    return LossTable<T>{p.loss_table}.fits();
-  }
 };
 
 }  // namespace clutchwork::elements

@@ -20,6 +20,15 @@ def ratio_problems(gear: Any, name: str, teeth: Sequence[str]) -> Found:
     return []
 
 
+def ring_problems(planetary: Any) -> Found:
+    """The same for a ring over a sun, which has fewer teeth."""
+    sun, ring = planetary.teeth_sun, planetary.teeth_ring
+    found = ratio_problems(planetary, "ratio", ("teeth_sun", "teeth_ring"))
+    if not found and sun is not None and ring is not None and ring <= sun:
+        return [("teeth_ring", f"is {ring:g}, not above teeth_sun = {sun:g}", "a ring has more teeth than its sun")]
+    return found
+
+
 def ratio_of(number: float | None, over: float | None, under: float | None) -> Fraction:
     """A ratio as a fraction: the number, else that of the teeth."""
     return exact(number) if number is not None else exact(over or 0) / exact(under or 1)
