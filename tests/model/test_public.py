@@ -22,7 +22,7 @@ PROPERTIES = (property, cached_property)
 # the public interface beside elements, laws and signals: a name that comes or goes is a line in CHANGELOG.md
 PUBLIC = [
     *("ClutchworkError", "Domain", "Driveline", "Element", "EnergyBalance", "Event", "Events", "FaultWarning"),
-    *("HeatFlow", "Hint", "Hints", "Interrupted", "Law", "Loss", "Losses"),
+    *("Gearbox", "HeatFlow", "Hint", "Hints", "Interrupted", "Law", "Loss", "Losses"),
     *("ModelError", "ModelWarning", "Node", "OptionError", "Options", "Problem", "Rate", "Signal", "SimulationError"),
     *("Simulator", "State", "StateError"),
     *("StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
@@ -32,6 +32,7 @@ PUBLIC = [
         "Sweep",
         "SweepInterrupted",
         "at",
+        "catalogue",
         "break_away",
         "integral",
         "lock",

@@ -30,6 +30,7 @@ class Kind:
     wheels: tuple[Wheel, ...]
     doc: str
     ratios: Mapping[str, tuple[str, str]]  # name of a ratio -> ports whose wheels are divided
+    extra: tuple[str, ...] = ()  # teeth that may be given and that no ratio depends on
 
     @property
     def carried(self) -> bool:
@@ -53,6 +54,7 @@ KINDS: dict[str, Kind] = {
         (Wheel("sun", -1), Wheel("ring", 1)),
         "sun and ring mesh the same planets: zs ws + zr wr = (zs + zr) wc",
         {"ratio": ("ring", "sun")},
+        ("teeth_planet",),
     ),
     "double": Kind(
         (Wheel("sun", 1), Wheel("ring", 1)),
@@ -93,8 +95,8 @@ class GearSet:
 
     Parameters: members, the member at each port of its kind, `housing` for one that never turns; wheels whose members
     have one name are joined. teeth, numbers of teeth by wheel, `{"sun": 45, "ring": 95}`; ratios in their place where
-    they are not known. planets, how many there are, and whether they stand `equally_spaced`: both for the check that the
-    set can be built. efficiency, of the way from wheel to wheel with the carrier at rest.
+    they are not known. planets, how many there are, and whether they stand `equally_spaced`: both for the check that
+    the set can be built. efficiency, of the way from wheel to wheel with the carrier at rest.
     """
 
     name: str
@@ -126,7 +128,8 @@ class GearSet:
         if self.ratios:
             return self._by_ratios()
         return tuple(
-            Fraction(wheel.sign * self.teeth[wheel.port], self.teeth.get(wheel.planet, 1)) for wheel in self.shape.wheels
+            Fraction(wheel.sign * self.teeth[wheel.port], self.teeth.get(wheel.planet, 1))
+            for wheel in self.shape.wheels
         )
 
     def _by_ratios(self) -> tuple[Fraction, ...]:

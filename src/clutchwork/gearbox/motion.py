@@ -69,7 +69,7 @@ def combination(box: Definition, closed: Collection[str]) -> Combination:
     # the input and the output are solved for last, so one of them follows from the other alone or is free
     moved = [_free(echelon, place) for place in (0, 1)]
     kind, ratio = _kind(*moved)
-    wanted = {frozenset(box.closed_in(gear)): gear for gear in reversed(box.gears)}
+    wanted = {frozenset(box.closed_in(gear)): gear for gear in reversed(list(box.gears))}
     return Combination(names, kind, dof, redundant, ratio, wanted.get(frozenset(names), ""))
 
 

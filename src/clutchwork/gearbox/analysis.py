@@ -1,0 +1,85 @@
+"""What follows for a whole gearbox from its gears: swaps of elements between gears, capacities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import permutations
+from typing import TYPE_CHECKING
+
+from clutchwork.base.classes import dataclass
+from clutchwork.gearbox.motion import combination
+from clutchwork.gearbox.state import GearState, state
+
+if TYPE_CHECKING:
+    from clutchwork.gearbox.definition import Definition
+
+
+@dataclass(frozen=True)
+class Swap:
+    """What a shift from one gear to another takes: the elements that open and those that close.
+
+    `step` is the ratio of the first gear over that of the second: above 1 for an upshift.
+    """
+
+    before: str
+    after: str
+    opens: tuple[str, ...]
+    closes: tuple[str, ...]
+    step: float
+
+    @property
+    def kind(self) -> str:
+        """Whether one, two or more elements are exchanged: "single", "double", "triple" and so on."""
+        count = max(len(self.opens), len(self.closes))
+        return {0: "none", 1: "single", 2: "double", 3: "triple"}.get(count, f"{count} elements")
+
+
+@dataclass(frozen=True)
+class Capacity:
+    """The torque that an element must hold: the largest over all gears, per torque 1 at the input."""
+
+    element: str
+    torque: float
+    gear: str
+    gears: tuple[str, ...]  # in which it is closed
+    slip: float  # largest slip while it is open, per speed 1 of the input
+    slip_gear: str
+
+
+def states(box: Definition) -> dict[str, GearState]:
+    """All gears of the shift table that are gears; rows such as N are left out."""
+    found = {gear: state(box, box.closed_in(gear), gear) for gear in box.gears}
+    return {gear: one for gear, one in found.items() if one is not None}
+
+
+def swaps(box: Definition) -> Iterator[Swap]:
+    """Every shift from one gear to another, in the order of the table."""
+    ratios = {gear: combination(box, box.closed_in(gear)) for gear in box.gears}
+    gears = {gear: found.ratio for gear, found in ratios.items() if found.ratio}
+    for before, after in permutations(gears, 2):
+        first, second = box.gears[before], box.gears[after]
+        opens = tuple(name for name in first if name not in second)
+        closes = tuple(name for name in second if name not in first)
+        yield Swap(before, after, opens, closes, float(gears[before] / gears[after]))
+
+
+def capacities(box: Definition) -> dict[str, Capacity]:
+    """What each element must hold, and how fast it slips while open."""
+    found = states(box)
+    made = {}
+    for element in box.elements:
+        name = element.name
+        held = {gear: abs(one.torques[name]) for gear, one in found.items() if name in one.torques}
+        # what several elements share has no value of its own
+        held = {gear: torque for gear, torque in held.items() if torque == torque}
+        slips = {gear: abs(one.slips[name]) for gear, one in found.items() if name in one.slips}
+        most, fastest = (max(values, key=values.__getitem__, default="") for values in (held, slips))
+        made[name] = Capacity(
+            name,
+            held.get(most, 0.0),
+            most,
+            tuple(gear for gear, one in found.items() if name in one.closed),
+            slips.get(fastest, 0.0),
+            fastest,
+        )
+    return made

@@ -1,0 +1,135 @@
+"""A gearbox and what can be asked of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import Problem, UseError, near
+from clutchwork.base.paths import fitting, made, path_of
+from clutchwork.base.shown import listed, shown
+from clutchwork.base.text import counted
+from clutchwork.gearbox import analysis, checks, motion, store
+from clutchwork.gearbox.definition import Definition
+from clutchwork.gearbox.reader import plain
+from clutchwork.gearbox.state import GearState, state
+from clutchwork.gearbox.tables import summary
+
+
+@dataclass(frozen=True, repr=False)
+class Gearbox(Definition):
+    """A gearbox of planetary sets: its teeth, its members, its shift elements and its shift table.
+
+    Use it to see what follows from a gearbox before anything is simulated, and as the `gearbox` of a `cw.Transmission`.
+    Take one of the catalogue, `cw.Gearbox.load("zf-8hp70")`, read a file of your own, or build one with
+    `cw.Gearbox.from_dict`. Speeds and torques that it answers with are exact and per speed 1 and torque 1 at the input.
+
+    Equations: docs/theory/gearboxes.md. Source: H. W. Müller, Epicyclic Drive Trains, Wayne State Univ. Press 1982.
+    """
+
+    @classmethod
+    def load(cls, source: str | Path) -> Gearbox:
+        """A gearbox of the catalogue by its name, or that of a TOML or JSON file; ModelError lists all its mistakes."""
+        path_of("cw.Gearbox.load", source, "zf-8hp70")
+        return cls._of(store.definition(source))
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Gearbox:
+        """A gearbox from the content of a file; ModelError lists all its mistakes."""
+        return cls._of(store.from_data(data))
+
+    @classmethod
+    def import_table(cls, data: Mapping[str, Any], path: str | Path) -> Gearbox:
+        """A gearbox whose shift table stands in a CSV file, as spreadsheets write it.
+
+        Parameters: data, the content of a gearbox file without gears: sets and elements; path, a table whose first
+        column names the gears, with a column for each element, an x where it is closed, and a column `ratio` with
+        published ratios if there are some. ModelError lists all mistakes.
+        """
+        return cls._of(store.with_shift_table(data, path_of("cw.Gearbox.import_table", path, "table.csv")))
+
+    @classmethod
+    def _of(cls, box: Definition) -> Gearbox:
+        return cls(**{item.name: getattr(box, item.name) for item in fields(box)})
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of a gearbox file."""
+        return plain(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write a gearbox file in TOML."""
+        where = fitting("box.save", path, "gearbox.toml", (".toml",))
+        made(where).write_text(store.toml(plain(self)), encoding="utf-8")
+
+    def check(self) -> list[Problem]:
+        """All mistakes: names, teeth, rows of the shift table that are no gear, published ratios that are missed."""
+        return checks.problems(self)
+
+    def state(self, gear: str | Sequence[str]) -> GearState:
+        """Speeds, torques, powers and efficiency in a gear, by its name or by the elements that are closed.
+
+        UseError for a name that the box does not have, and for elements that give no ratio.
+        """
+        if isinstance(gear, str):
+            if gear not in self.gears:
+                raise UseError("box.state", [f"{shown(gear)} is no gear{near(gear, self.gears, _known(self.gears))}"])
+            closed = self.closed_in(gear)
+        else:
+            closed = tuple(gear)
+            names = [element.name for element in self.elements]
+            wrong = [
+                f"{shown(name)} is no element{near(name, names, _known(names))}" for name in closed if name not in names
+            ]
+            if wrong:
+                raise UseError("box.state", wrong)
+        found = state(self, closed, gear if isinstance(gear, str) else "")
+        if found is None:
+            kind = self.combination(closed).kind
+            raise UseError(
+                "box.state", [f"{listed(closed) or 'nothing'} closed is no gear but {kind}; close other elements"]
+            )
+        return found
+
+    def states(self) -> dict[str, GearState]:
+        """The state of every gear by its name."""
+        return analysis.states(self)
+
+    @property
+    def ratios(self) -> dict[str, float]:
+        """Speed of the input over that of the output by gear, negative in reverse."""
+        return {gear: one.ratio for gear, one in self.states().items()}
+
+    def combination(self, closed: Sequence[str]) -> motion.Combination:
+        """What closed elements make of the box: a gear, neutral, input or output held, a tie-up."""
+        return motion.combination(self, closed)
+
+    def combinations(self) -> Iterator[motion.Combination]:
+        """Every combination of closed elements, all of them: 2 to the power of their number."""
+        return motion.all_combinations(self)
+
+    def swaps(self) -> list[analysis.Swap]:
+        """What every shift takes, skip shifts too: which elements open and close."""
+        return list(analysis.swaps(self))
+
+    def capacities(self) -> dict[str, analysis.Capacity]:
+        """The torque that each element must hold per torque 1 at the input, and its fastest slip while open."""
+        return analysis.capacities(self)
+
+    def __repr__(self) -> str:
+        has = {"sets": self.sets, "elements": self.elements, "gears": self.gears}
+        return f"<Gearbox {shown(self.name)}: {', '.join(counted(len(all_), of) for of, all_ in has.items())}>"
+
+    def __str__(self) -> str:
+        return summary(self)
+
+
+def catalogue() -> dict[str, Gearbox]:
+    """The gearboxes that are known, by name; each with its source and its published ratios."""
+    return {name: Gearbox.load(name) for name in store.names()}
+
+
+def _known(names: Sequence[str] | Mapping[str, Any]) -> str:
+    return f"choose from {listed(names)}"
