@@ -65,4 +65,4 @@ NAMES = {
     "variants": "sweeps.variants",
 }
 
-PACKAGES = ("fit", "rig")
+PACKAGES = ("fit", "rig", "shifts")

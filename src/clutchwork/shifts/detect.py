@@ -1,0 +1,166 @@
+"""Shifts found in a trajectory: gears between them, torque phase, inertia phase. docs/theory/shifts.md (8)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clutchwork.base.classes import dataclass
+from clutchwork.results.stretches import stretches
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from clutchwork.gearbox.gearbox import Gearbox
+    from clutchwork.results.recorded import Recorded
+
+# torque that counts as none, as a share of the largest one of the shift
+NOTHING = 0.02
+# a gear that is held for less is passed through [s]
+SHORTEST = 0.3
+
+
+@dataclass(frozen=True)
+class InGear:
+    """A stretch of a run in which one gear is in."""
+
+    gear: str
+    begin: float  # s
+    end: float  # s
+
+
+@dataclass(frozen=True)
+class Shift:
+    """A shift as a trajectory shows it; instants in s.
+
+    The inertia phase is from the last instant at which the old ratio holds to the first one of the new ratio. The
+    torque phase is when both elements carry torque while one of both ratios holds: before the inertia phase or after
+    it. `begin` is when the element that closes begins to carry torque, or the one that opens lets go.
+    """
+
+    before: str
+    after: str
+    opens: tuple[str, ...]
+    closes: tuple[str, ...]
+    begin: float
+    torque_phase: tuple[float, float]
+    inertia_phase: tuple[float, float]
+    end: float
+
+    @property
+    def torque_time(self) -> float:
+        """Duration of the torque phase [s]."""
+        return self.torque_phase[1] - self.torque_phase[0]
+
+    @property
+    def inertia_time(self) -> float:
+        """Duration of the inertia phase [s]."""
+        return self.inertia_phase[1] - self.inertia_phase[0]
+
+    @property
+    def time(self) -> float:
+        """Duration of the whole shift [s]."""
+        return self.end - self.begin
+
+
+def gears_of(run: Recorded, box: Gearbox, prefix: str = "gearbox", *, least: float = SHORTEST) -> list[InGear]:
+    """When which gear was in, by the elements that were locked.
+
+    Parameters: least, time [s] for which a gear must be held, but for the first one and the last one.
+    """
+    names = {f"{prefix}.{element.name}": element.name for element in box.elements}
+    known: dict[frozenset[str], str] = {}
+    found: list[InGear] = []
+    for part in stretches(run):
+        locked = frozenset(names[name] for name in part.locked if name in names)
+        if locked not in known:
+            known[locked] = gear_with(box, locked)
+        gear = known[locked]
+        if found and found[-1].gear == gear:
+            found[-1] = InGear(gear, found[-1].begin, part.end)
+        elif part.end > part.begin or not found:
+            found.append(InGear(gear, part.begin, part.end))
+    ends = (float(run.time[0]), float(run.time[-1])) if len(run) else ()
+    held = (one for one in found if one.end - one.begin >= least or one.begin in ends or one.end in ends)
+    return list(_joined(one for one in held if one.gear))
+
+
+def gear_with(box: Gearbox, locked: frozenset[str]) -> str:
+    """The gear whose elements are locked and whose ratio holds, empty where there is none."""
+    ratio = box.combination(sorted(locked)).ratio
+    if ratio is None:
+        return ""
+    fitting = [gear for gear in box.gears if set(box.closed_in(gear)) <= locked]
+    return next((gear for gear in fitting if box.combination(box.closed_in(gear)).ratio == ratio), "")
+
+
+def _joined(parts: Iterator[InGear]) -> Iterator[InGear]:
+    """Stretches of one gear that follow one another are one."""
+    last: InGear | None = None
+    for part in parts:
+        if last is not None and last.gear == part.gear:
+            last = InGear(last.gear, last.begin, part.end)
+            continue
+        if last is not None:
+            yield last
+        last = part
+    if last is not None:
+        yield last
+
+
+def shifts_of(run: Recorded, box: Gearbox, prefix: str = "gearbox") -> list[Shift]:
+    """Every shift from one gear to another that a run shows."""
+    gears = gears_of(run, box, prefix)
+    made = []
+    for number, (old, new) in enumerate(pairwise(gears)):
+        first = gears[number - 1].end if number else float(run.time[0])
+        made.append(_shift(run, box, prefix, (old, new), max(first, old.begin)))
+    return made
+
+
+def _shift(run: Recorded, box: Gearbox, prefix: str, gears: tuple[InGear, InGear], earliest: float) -> Shift:
+    old, new = gears
+    before, after = box.closed_in(old.gear), box.closed_in(new.gear)
+    opens = tuple(name for name in before if name not in after)
+    closes = tuple(name for name in after if name not in before)
+    time = np.asarray(run.time)
+    on = _carries(run, [f"{prefix}.{name}" for name in closes], (old.begin, new.end))
+    off = _carries(run, [f"{prefix}.{name}" for name in opens], (old.begin, new.end))
+    ahead = _last_run(time, on, earliest, old.end)
+    behind = _first_run(time, off, new.begin, new.end)
+    # two phases with nothing between: the longer one is the hand-over
+    torque = ahead if ahead[1] - ahead[0] >= behind[1] - behind[0] else behind
+    begin, end = min(torque[0], old.end), max(torque[1], new.begin)
+    return Shift(old.gear, new.gear, opens, closes, begin, torque, (old.end, new.begin), end)
+
+
+def _carries(run: Recorded, names: Sequence[str], window: tuple[float, float]) -> NDArray[np.bool_]:
+    """Where any of some elements carries torque."""
+    time = np.asarray(run.time)
+    carried = np.zeros(len(time), dtype=bool)
+    inside = (time >= window[0]) & (time <= window[1])
+    for name in names:
+        torque = np.abs(run[f"{name}.torque"])
+        most = float(np.max(torque[inside], initial=0.0))
+        carried |= torque > NOTHING * most
+    return carried
+
+
+def _last_run(time: NDArray[np.float64], carried: NDArray[np.bool_], begin: float, end: float) -> tuple[float, float]:
+    """The stretch of carrying that ends at a time."""
+    inside = np.flatnonzero((time >= begin) & (time <= end))
+    rest = inside[~carried[inside]]
+    first = time[rest[-1]] if len(rest) else begin
+    return (float(first), end) if len(inside) and carried[inside[-1]] else (end, end)
+
+
+def _first_run(time: NDArray[np.float64], carried: NDArray[np.bool_], begin: float, end: float) -> tuple[float, float]:
+    """The stretch of carrying that begins at a time."""
+    inside = np.flatnonzero((time >= begin) & (time <= end))
+    # the row at that instant may be its left limit
+    rest = inside[~carried[inside]]
+    last = time[rest[0]] if len(rest) else begin
+    return (begin, float(last)) if len(rest) and last > begin else (begin, begin)

@@ -1,0 +1,161 @@
+"""What a shift was like, in numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.shifts.comfort import jerk, vibration_dose
+from clutchwork.shifts.detect import Shift, shifts_of
+
+if TYPE_CHECKING:
+    from clutchwork.gearbox.gearbox import Gearbox
+    from clutchwork.results.recorded import Recorded
+
+Array = NDArray[np.float64]
+STEP = 1e-3  # s, of the grid that phases and jerk are looked at on
+
+
+@dataclass(frozen=True)
+class ShiftQuality:
+    """One shift and what it was like.
+
+    Parameters:
+        shift: gears, elements and phases
+        peak_jerk: largest absolute jerk of the vehicle, low-passed [m/s3]; NaN where its acceleration is not known
+        rms_jerk: root of the mean of its square, from begin to end and half a second more [m/s3]
+        vibration_dose: vibration dose value of the same stretch [m/s1.75]
+        torque_hole: how far the torque of the output falls below its lower value before and after, in N m
+        hole_share: the same over its value before
+        flare: how far the input runs above the speeds of both gears [rad/s]
+        sag: how far it falls below both [rad/s]
+        tie_up: largest torque with which an element that opens works against its direction in the old gear [N m]
+        slip_energy: heat that each element made [J]
+        slip_power: largest heat rate of each element [W]
+        temperature: highest of the thermal node of each element that has one [K]
+    """
+
+    shift: Shift
+    peak_jerk: float
+    rms_jerk: float
+    vibration_dose: float
+    torque_hole: float
+    hole_share: float
+    flare: float
+    sag: float
+    tie_up: float
+    slip_energy: Mapping[str, float]
+    slip_power: Mapping[str, float]
+    temperature: Mapping[str, float]
+
+
+def qualities(
+    run: Any,
+    box: Gearbox,
+    prefix: str = "gearbox",
+    *,
+    torque: str = "",
+    acceleration: str = "",
+    cut_off: float = 20.0,
+    after: float = 0.5,
+) -> list[ShiftQuality]:
+    """What every shift of a run was like.
+
+    Parameters: torque, signal of the torque behind the output [N m], such as that of a drive shaft; acceleration,
+    signal of the vehicle [m/s2]; cut_off, of the jerk [Hz]; after, time behind a shift that counts for jerk [s].
+    """
+    found = []
+    for shift in shifts_of(run, box, prefix):
+        begin, end = shift.begin - 0.1, min(shift.end + after, float(run.time[-1]))
+        times = np.arange(max(begin, float(run.time[0])), end, STEP)
+        part = run.at(times)
+        found.append(_quality(part, shift, box, prefix, torque, acceleration, cut_off))
+    return found
+
+
+def _quality(
+    part: Recorded, shift: Shift, box: Gearbox, prefix: str, torque: str, acceleration: str, cut_off: float
+) -> ShiftQuality:
+    time = np.asarray(part.time)
+    inside = (time >= shift.begin) & (time <= shift.end)
+    jerks = jerk(part[acceleration], STEP, cut_off) if acceleration else np.array([np.nan])
+    dose = vibration_dose(part[acceleration], STEP) if acceleration else float("nan")
+    hole, share = _hole(part[torque], time, shift) if torque else (float("nan"), float("nan"))
+    flare, sag = _overshoot(part, shift, box, prefix, inside)
+    names = [element.name for element in box.elements]
+    return ShiftQuality(
+        shift=shift,
+        peak_jerk=float(np.max(np.abs(jerks))),
+        rms_jerk=float(np.sqrt(np.mean(jerks**2))),
+        vibration_dose=dose,
+        torque_hole=hole,
+        hole_share=share,
+        flare=flare,
+        sag=sag,
+        tie_up=_tie_up(part, shift, prefix),
+        slip_energy={name: _rise(part[f"{prefix}.{name}.heat"][inside]) for name in names},
+        slip_power={name: _peak(part, f"{prefix}.{name}", inside) for name in names},
+        temperature=_temperatures(part, prefix, names),
+    )
+
+
+def _rise(values: Array) -> float:
+    return float(values[-1] - values[0]) if len(values) else 0.0
+
+
+def _peak(part: Recorded, name: str, inside: NDArray[np.bool_]) -> float:
+    return float(np.max(np.abs(part[f"{name}.torque"] * part[f"{name}.slip"])[inside], initial=0.0))
+
+
+def _hole(torque: Array, time: Array, shift: Shift) -> tuple[float, float]:
+    """The torque of the output before and after, and how far it falls below both in between."""
+    before = float(np.mean(torque[time < shift.begin])) if np.any(time < shift.begin) else float(torque[0])
+    behind = torque[time > shift.end + 0.2]
+    later = float(np.mean(behind)) if len(behind) else float(torque[-1])
+    # with the sign of the torque before
+    sign = 1.0 if before >= 0.0 else -1.0
+    inside = sign * torque[(time >= shift.begin) & (time <= shift.end)]
+    least = float(np.min(inside, initial=sign * before))
+    hole = max(0.0, min(sign * before, sign * later) - least)
+    return hole, hole / abs(before) if before else float("nan")
+
+
+def _overshoot(
+    part: Recorded, shift: Shift, box: Gearbox, prefix: str, inside: NDArray[np.bool_]
+) -> tuple[float, float]:
+    """How far the input leaves the range between the speeds of both gears, up and down."""
+    speed, output = part[f"{prefix}.{box.input}.speed"], part[f"{prefix}.{box.output}.speed"]
+    both = np.array([box.ratios[shift.before] * output, box.ratios[shift.after] * output])
+    above = speed - np.max(both, axis=0)
+    below = np.min(both, axis=0) - speed
+    flare, sag = (float(np.max(values[inside], initial=0.0)) for values in (above, below))
+    # round-off of the solver is no flare
+    least = 1e-5 * float(np.max(np.abs(speed), initial=1.0))
+    return (flare if flare > least else 0.0), (sag if sag > least else 0.0)
+
+
+def _tie_up(part: Recorded, shift: Shift, prefix: str) -> float:
+    """Torque of elements that open against the direction that they had before, in the torque phase."""
+    worst, time = 0.0, np.asarray(part.time)
+    both = (time >= shift.torque_phase[0]) & (time <= shift.torque_phase[1])
+    for name in shift.opens:
+        torque = part[f"{prefix}.{name}.torque"]
+        held = time < shift.begin
+        usual = float(np.sign(np.mean(torque[held]))) if np.any(held) else 1.0
+        worst = max(worst, float(np.max(-usual * torque[both], initial=0.0)))
+    return worst
+
+
+def _temperatures(part: Recorded, prefix: str, names: list[str]) -> dict[str, float]:
+    """The highest temperature of the thermal node of each element that has one."""
+    found = {}
+    for branch in part.wiring.contacts:
+        element = branch.name.removeprefix(f"{prefix}.")
+        path = branch.component.heat_path()
+        if element in names and branch.name != element and path is not None:
+            found[element] = float(np.max(part[f"{path.node.name}.temperature"]))
+    return found

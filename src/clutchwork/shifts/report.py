@@ -1,0 +1,95 @@
+"""Tables and pictures of shifts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isnan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from clutchwork.base.errors import UseError
+from clutchwork.base.extras import need
+from clutchwork.base.paths import target
+from clutchwork.base.text import columns
+
+if TYPE_CHECKING:
+    from clutchwork.gearbox.gearbox import Gearbox
+    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.shifts.metrics import ShiftQuality
+
+HEADS = (
+    *("shift", "opens", "closes", "begin s", "torque phase s", "inertia phase s", "peak jerk m/s3", "rms jerk m/s3"),
+    *("dose m/s1.75", "torque hole N m", "flare rad/s", "sag rad/s", "tie-up N m", "slip energy kJ", "hottest K"),
+)
+
+
+def table(found: Sequence[ShiftQuality]) -> str:
+    """All shifts, a line for each."""
+    return columns([list(HEADS), *map(_line, found)], right=range(3, len(HEADS)))
+
+
+def _line(one: ShiftQuality) -> list[str]:
+    shift = one.shift
+    energy = ", ".join(f"{name} {heat / 1e3:.2f}" for name, heat in one.slip_energy.items() if heat > 1.0)
+    hottest = max(one.temperature.values(), default=float("nan"))
+    values = [(shift.begin, 2), (shift.torque_time, 3), (shift.inertia_time, 3), (one.peak_jerk, 1), (one.rms_jerk, 2)]
+    values += [(one.vibration_dose, 3), (one.torque_hole, 0), (one.flare, 1), (one.sag, 1), (one.tie_up, 0)]
+    numbers = ["-" if isnan(value) else f"{value:.{digits}f}" for value, digits in values]
+    names = [f"{shift.before}-{shift.after}", "+".join(shift.opens), "+".join(shift.closes)]
+    return [*names, *numbers, energy or "-", "-" if isnan(hottest) else f"{hottest:.0f}"]
+
+
+def picture(
+    run: Trajectory,
+    box: Gearbox,
+    one: ShiftQuality,
+    path: str | Path,
+    prefix: str = "gearbox",
+    *,
+    more: Sequence[str | Sequence[str]] = (),
+) -> Any:
+    """One shift: speeds of input and output, slips, torques and pressures of the elements, and what else is named.
+
+    Parameters: path, png, svg or pdf; more, further panels as of `run.plot`, such as the torque of a drive shaft.
+    """
+    shift = one.shift
+    names = [*shift.opens, *shift.closes]
+    panels: list[Any] = [[f"{prefix}.{box.input}.speed", f"{prefix}.{box.output}.speed"]]
+    for last in ("slip", "torque", "pressure"):
+        signals = [f"{prefix}.{name}.{last}" for name in names if f"{prefix}.{name}.{last}" in run]
+        panels += [signals] if signals else []
+    zoom = (max(float(run.time[0]), shift.begin - 0.2), min(float(run.time[-1]), shift.end + 0.4))
+    return run.plot(*panels, *more, zoom=zoom, path=path)
+
+
+def overview(found: Sequence[ShiftQuality], path: str | Path) -> None:
+    """All shifts of a box beside each other: phases, jerk, slip energy. Needs matplotlib."""
+    if not found:
+        raise UseError("cw.shifts.overview", ["there is no shift to draw; give what cw.shifts.qualities returned"])
+    where = target("cw.shifts.overview", path, "shifts.png", (".png", ".svg", ".pdf"))
+    figures = need("matplotlib.figure", "plot", "cw.shifts.overview")
+    figure = figures.Figure(figsize=(max(5.0, 0.55 * len(found) + 2.0), 7.0), layout="constrained")
+    axes = figure.subplots(3, 1, sharex=True)
+    places = np.arange(len(found))
+    labels = [f"{one.shift.before}-{one.shift.after}" for one in found]
+    torque = np.array([one.shift.torque_time for one in found])
+    axes[0].bar(places, torque, label="torque phase", color="#8AA4C8")
+    axes[0].bar(
+        places, [one.shift.inertia_time for one in found], bottom=torque, label="inertia phase", color="#35557F"
+    )
+    axes[0].set_ylabel("time [s]")
+    axes[0].legend(frameon=False)
+    axes[1].bar(places, [one.peak_jerk for one in found], color="#B5651D")
+    axes[1].set_ylabel("peak jerk [m/s3]")
+    bottom = np.zeros(len(found))
+    for name in found[0].slip_energy:
+        heat = np.array([one.slip_energy[name] / 1e3 for one in found])
+        if np.max(heat) > 1e-3:
+            axes[2].bar(places, heat, bottom=bottom, label=name)
+            bottom += heat
+    axes[2].set_ylabel("slip energy [kJ]")
+    axes[2].legend(frameon=False, ncols=4)
+    axes[2].set_xticks(places, labels, rotation=90 if len(found) > 12 else 0)
+    figure.savefig(where, dpi=120)

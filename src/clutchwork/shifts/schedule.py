@@ -1,0 +1,103 @@
+"""When to shift: lines of speed over throttle, with hysteresis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import ModelError, Problem
+
+if TYPE_CHECKING:
+    from clutchwork.gearbox.gearbox import Gearbox
+
+Line = Sequence[tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class ShiftSchedule:
+    """Which gear to drive in: up above one speed of the input over the throttle, down below another.
+
+    Use it to tell a `ShiftController` when to shift. Both lines are speeds [rad/s] of the input of the gearbox over the
+    throttle [0 to 1], linear between their points and held outside. It shifts up where the input is faster than `up` in
+    the gear that is in, and down where it is slower than `down`. Where a line is crossed by so much that the next gear
+    is too low as well, gears are skipped if `skips` says so.
+
+    ModelError where an upshift would fall below the line of the downshift, so that gears hunted.
+    """
+
+    ratios: Mapping[str, float]  # of the forward gears, first gear first
+    up: Line
+    down: Line
+    skips: bool = True
+
+    @classmethod
+    def of(cls, box: Gearbox, up: Line, down: Line, *, gears: Sequence[str] = (), skips: bool = True) -> ShiftSchedule:
+        """A schedule for the forward gears of a gearbox, or for some of them."""
+        forward = {gear: ratio for gear, ratio in box.ratios.items() if ratio > 0 and (not gears or gear in gears)}
+        ordered = dict(sorted(forward.items(), key=lambda pair: -pair[1]))
+        made = cls(ordered, up, down, skips)
+        found = made.problems()
+        if found:
+            raise ModelError(found, "schedule")
+        return made
+
+    def problems(self) -> list[Problem]:
+        """Lines that make gears hunt: after an upshift the input is below the line of the downshift."""
+        throttles = sorted({x for line in (self.up, self.down) for x, _ in line})
+        found = []
+        for lower, higher in pairwise(self.ratios):
+            step = self.ratios[lower] / self.ratios[higher]
+            for throttle in throttles:
+                after, limit = self.speed_up(throttle) / step, self.speed_down(throttle)
+                if after <= limit:
+                    fault = (
+                        f"hunts at throttle {throttle:g}: the shift leaves the input at {after:.4g} rad/s, "
+                        f"below the {limit:.4g} rad/s at which it goes back"
+                    )
+                    remedy = "raise `up` or lower `down` there"
+                    found.append(Problem(f"shift {lower} to {higher}", "", fault, remedy=remedy))
+                    break
+        return found
+
+    def speed_up(self, throttle: float) -> float:
+        """Speed of the input above which it shifts up [rad/s]."""
+        return _at(self.up, throttle)
+
+    def speed_down(self, throttle: float) -> float:
+        """Speed of the input below which it shifts down [rad/s]."""
+        return _at(self.down, throttle)
+
+    def gear(self, current: str, output_speed: float, throttle: float) -> str:
+        """The gear to drive in.
+
+        Parameters: current, the gear that is in; output_speed, of the output of the gearbox [rad/s]; throttle, 0 to 1.
+        """
+        order = list(self.ratios)
+        if current not in self.ratios:
+            return current
+        place, most = order.index(current), len(order) if self.skips else 1
+        for _ in range(most):
+            speed = output_speed * self.ratios[order[place]]
+            if place + 1 < len(order) and speed > self.speed_up(throttle):
+                place += 1
+            elif place > 0 and speed < self.speed_down(throttle):
+                place -= 1
+            else:
+                break
+        return order[place]
+
+    def output_speeds(self, throttle: float) -> dict[tuple[str, str], float]:
+        """Speed of the output [rad/s] at which each shift to the next gear is made at a throttle, up and down."""
+        order, found = list(self.ratios), dict[tuple[str, str], float]()
+        for lower, higher in pairwise(order):
+            found[lower, higher] = self.speed_up(throttle) / self.ratios[lower]
+            found[higher, lower] = self.speed_down(throttle) / self.ratios[higher]
+        return found
+
+
+def _at(line: Line, x: float) -> float:
+    return float(np.interp(x, [point[0] for point in line], [point[1] for point in line]))

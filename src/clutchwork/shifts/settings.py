@@ -1,0 +1,46 @@
+"""What a shift controller is calibrated with."""
+
+from __future__ import annotations
+
+from clutchwork.base.classes import dataclass
+
+
+@dataclass(frozen=True)
+class ShiftSettings:
+    """Times, pressures and gains of a shift controller; one for all shifts, or one for each kind of them.
+
+    Parameters:
+        fill_time: for which an element that closes is filled before it carries anything [s]
+        fill_pressure: at which it just touches [Pa]
+        full_pressure: at which elements of a gear that is in are held [Pa]
+        torque_time: of the torque phase, in which one element takes over from the other [s]
+        inertia_time: of the inertia phase, in which the speed of the input changes [s]
+        end_time: in which the element that closed is raised to full pressure [s]
+        margin: capacity of an element that still holds, over the torque that it carries
+        reduction: share by which the engine is asked to lower its torque in the inertia phase of an upshift under power
+        increase: share of its torque by which it is asked to help a downshift without power, above 0 where it can blip
+        closed_loop: whether the speed of the input is controlled to a profile; otherwise torques are those of the plan
+        proportional: of the controller of that speed [1/s]
+        integral: of the same [1/s2]
+        sync_slip: below which an element is taken as synchronous [rad/s]
+        longest: after which an exchange is closed whatever the slip [s]
+        launch_speed: that the input keeps while an element drives off, where no converter does [rad/s]; 0: there is one
+        launch_throttle: above which it drives off
+    """
+
+    fill_time: float = 0.1
+    fill_pressure: float = 0.0
+    full_pressure: float = 1.0e6
+    torque_time: float = 0.15
+    inertia_time: float = 0.35
+    end_time: float = 0.1
+    margin: float = 1.3
+    reduction: float = 0.3
+    increase: float = 0.0
+    closed_loop: bool = True
+    proportional: float = 25.0
+    integral: float = 100.0
+    sync_slip: float = 1.0
+    longest: float = 2.5
+    launch_speed: float = 0.0
+    launch_throttle: float = 0.02
