@@ -61,8 +61,8 @@ class ShiftController:
     """Shifts a gearbox: fills, hands the torque over, pulls the input to its new speed, closes.
 
     Use it in a loop around a `cw.Simulator`, as `cw.shifts.drive` has one, or take its pressures elsewhere: `step`
-    knows nothing of clutchwork's runs. It works out of the gearbox alone which elements are exchanged and what they carry;
-    several exchanges follow one another through the gears between them.
+    knows nothing of clutchwork's runs. It works out of the gearbox alone which elements are exchanged and what they
+    carry; several exchanges follow one another through the gears between them.
 
     fill      the element that closes is filled; the one that opens is lowered to what it carries
     torque    one takes over the torque from the other: first in upshifts under power and downshifts without

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 STUCK, MISSING = "stuck closed", "missing"
 STEP = 1e-3  # s
 CUT_OFF = 10.0  # Hz, of decelerations
+STOPPED = 0.1  # share of the first speed below which a vehicle counts as stopped
 HEADS = (
     *("gear", "element", "fault", "makes", "verdict", "deceleration m/s2", "power W", "energy J"),
     *("burns", "speed at the end m/s", "ends in"),
@@ -51,7 +52,7 @@ class FaultResult:
 
     Parameters:
         fault: which one
-        verdict: "none", "drive lost", "other gear", "decelerates", "holds the output" or "overspeed"
+        verdict: "none", "drive lost", "other gear", "slips", "decelerates" or "locks the output"
         deceleration: largest of the vehicle after the fault, low-passed at 10 Hz [m/s2]
         power: largest heat rate of one element [W], that of `burns`
         energy: heat that this element made [J]
@@ -185,17 +186,18 @@ def _result(
     last = gears_of(run, box, prefix, least=0.0)
     ends_in = last[-1].gear if last and last[-1].end >= float(run.time[-1]) else ""
     deceleration = _deceleration(run, vehicle, at)
-    verdict = _verdict(fault, ends_in, deceleration, limit)
+    speeds = run[f"{vehicle}.speed"]
+    stops = bool(abs(speeds[-1]) < STOPPED * abs(speeds[0]))
+    verdict = _verdict(fault, ends_in, deceleration, limit, stops=stops)
     burns = most if burnt[most] > 1.0 else ""
     power = float(np.max(np.abs(slipping[later]), initial=0.0)) if burns else 0.0
-    speed = float(run[f"{vehicle}.speed"][-1])
-    return FaultResult(fault, verdict, deceleration, power, burnt[most], burns, speed, ends_in)
+    return FaultResult(fault, verdict, deceleration, power, burnt[most], burns, float(speeds[-1]), ends_in)
 
 
-def _verdict(fault: Fault, ends_in: str, deceleration: float, limit: float) -> str:
+def _verdict(fault: Fault, ends_in: str, deceleration: float, limit: float, *, stops: bool) -> str:
     """What it means for who drives, the worst first."""
     if deceleration > limit:
-        return "holds the output" if fault.makes in (OUTPUT_HELD, TIE_UP) else "decelerates"
+        return "locks the output" if stops else "decelerates"
     if ends_in == fault.gear:
         return "none"
     if ends_in:
