@@ -7,9 +7,9 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from clutchwork.base.classes import dataclass
+from clutchwork.gearbox.balance import Balance, ideal_balance, lossy_balance
 from clutchwork.gearbox.gear_set import HOUSING
 from clutchwork.gearbox.motion import GEAR, combination, speeds
-from clutchwork.gearbox.statics import Balance, ideal_balance, lossy_balance
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.definition import Definition

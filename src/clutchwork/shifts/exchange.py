@@ -1,4 +1,4 @@
-"""One exchange of elements, by the statics of the gears before and after it. docs/theory/shifts.md (1) to (4)."""
+"""One exchange of elements, by the torques of the gears before and after it. docs/theory/shifts.md (1) to (4)."""
 
 from __future__ import annotations
 
