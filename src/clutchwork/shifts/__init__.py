@@ -9,6 +9,7 @@ from clutchwork.shifts.drive import Sensed, drive
 from clutchwork.shifts.exchange import Exchange, exchanges
 from clutchwork.shifts.faults import Fault, FaultResult, FaultTable, fault_table, single_faults
 from clutchwork.shifts.metrics import ShiftQuality, qualities
+from clutchwork.shifts.plant import Plant, plant_of
 from clutchwork.shifts.report import overview, picture, table
 from clutchwork.shifts.schedule import ShiftSchedule
 from clutchwork.shifts.settings import ShiftSettings
@@ -20,6 +21,7 @@ __all__ = [
     "FaultTable",
     "InGear",
     "Measured",
+    "Plant",
     "Sensed",
     "Shift",
     "ShiftController",
@@ -34,6 +36,7 @@ __all__ = [
     "jerk",
     "overview",
     "picture",
+    "plant_of",
     "qualities",
     "shifts_of",
     "single_faults",

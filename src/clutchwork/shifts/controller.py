@@ -8,6 +8,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from clutchwork.shifts.exchange import Exchange, exchanges
+from clutchwork.shifts.plant import Plant
 from clutchwork.shifts.settings import ShiftSettings
 
 if TYPE_CHECKING:
@@ -73,8 +74,7 @@ class ShiftController:
 
     Parameters:
         box: the gearbox
-        capacity: torque of each element per pressure above the fill pressure, while it slips [N m/Pa]
-        inertias: of members [kg m2], with all that is fixed to the input and none of what is at the output
+        plant: capacities and inertias of the elements and members, from `cw.shifts.plant_of`
         schedule: when to shift; none: when `request` asks for a gear
         settings: calibration
         chosen: calibration of single shifts, ("3", "4") or a kind such as "power-off upshift"
@@ -83,8 +83,7 @@ class ShiftController:
     """
 
     box: Gearbox
-    capacity: Mapping[str, float]
-    inertias: Mapping[str, float]
+    plant: Plant
     schedule: ShiftSchedule | None = None
     settings: ShiftSettings = field(default_factory=ShiftSettings)
     chosen: Mapping[tuple[str, str] | str, ShiftSettings] = field(default_factory=dict)
@@ -162,7 +161,7 @@ class ShiftController:
     def _start(self, gear: str, time: float, now: Measured) -> None:
         before, after = self._closed(self.gear), self._closed(gear)
         power = now.input_torque >= 0.0
-        self._left = list(exchanges(self.box, before, after, self.inertias))
+        self._left = list(exchanges(self.box, before, after, self.plant.inertias))
         record = ShiftRecord(self.gear, gear, time, power, tuple(self._left))
         self.records.append(record)
         self.gear = gear
@@ -203,7 +202,7 @@ class ShiftController:
         one, with_ = self._exchange, self._now
         share = min(1.0, (time - self.since) / max(with_.fill_time, 1e-9))
         if one.on:
-            self.pressures[one.on] = with_.fill_pressure
+            self.pressures[one.on] = self._pressure(one.on, 0.0)
         if one.off:
             held = self._pressure(one.off, with_.margin * abs(one.off_torque * now.input_torque))
             full = with_.full_pressure
@@ -299,9 +298,8 @@ class ShiftController:
         torque = abs(now.input_torque)
         if one.on:
             least = self._pressure(one.on, with_.margin * abs(one.on_torque) * torque)
-            self.pressures[one.on] = max(
-                self.pressures[one.on], with_.fill_pressure + share * (least - with_.fill_pressure)
-            )
+            touch = self._pressure(one.on, 0.0)
+            self.pressures[one.on] = max(self.pressures[one.on], touch + share * (least - touch))
         if one.off:
             self.pressures[one.off] = (1.0 - share) * min(
                 self.pressures[one.off], self._pressure(one.off, abs(one.off_torque) * torque)
@@ -340,4 +338,7 @@ class ShiftController:
 
     def _pressure(self, name: str, torque: float) -> float:
         """Pressure [Pa] at which an element that slips carries a torque [N m]."""
-        return min(self._now.full_pressure, self._now.fill_pressure + torque / self.capacity[name])
+        if name not in self.plant.capacity:
+            return self._now.full_pressure if torque else 0.0
+        touch = max(self._now.fill_pressure, self.plant.touch[name])
+        return min(self._now.full_pressure, touch + torque / self.plant.capacity[name])

@@ -11,7 +11,7 @@ class ShiftSettings:
 
     Parameters:
         fill_time: for which an element that closes is filled before it carries anything [s]
-        fill_pressure: at which it just touches [Pa]
+        fill_pressure: at which it is filled, at least the one at which it touches [Pa]
         full_pressure: at which elements of a gear that is in are held [Pa]
         torque_time: of the torque phase, in which one element takes over from the other [s]
         inertia_time: of the inertia phase, in which the speed of the input changes [s]

@@ -1,0 +1,93 @@
+"""What a controller must know of the gearbox in a driveline, measured at its model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clutchwork.assembly.wiring import wiring
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UseError
+from clutchwork.base.shown import listed
+from clutchwork.stepping.simulator import Simulator
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.gearbox.gearbox import Gearbox
+
+# Pa, at which capacities are read
+LOW, HIGH = 5e5, 1e6
+# nodes turn together where their rows differ by less
+ROUND_OFF = 1e-9
+
+
+@dataclass(frozen=True)
+class Plant:
+    """Shift elements and inertias of a gearbox as its controller sees them.
+
+    Parameters:
+        capacity: torque of each element while it slips, per pressure above the one at which it touches [N m/Pa]
+        touch: pressure at which each element touches [Pa]
+        inertias: of each member with all that is fixed to it [kg m2]; the output is left out
+    """
+
+    capacity: Mapping[str, float]
+    touch: Mapping[str, float]
+    inertias: Mapping[str, float]
+
+
+def plant_of(system: System, box: Gearbox, prefix: str = "gearbox") -> Plant:
+    """Measure a gearbox of a driveline.
+
+    Use it to give a `ShiftController` what a control unit is calibrated with. Capacities are read at two pressures, so
+    they are those of any element whose capacity is linear in its pressure. UseError for elements that no
+    pressure closes.
+    """
+    names = [element.name for element in box.elements if element.kind in ("clutch", "brake")]
+    low, high = (_capacities(system, prefix, names, pressure) for pressure in (LOW, HIGH))
+    slope = {name: (high[name] - low[name]) / (HIGH - LOW) for name in names}
+    flat = [name for name in names if slope[name] <= 0.0]
+    if flat:
+        raise UseError("cw.shifts.plant_of", [f"pressure does nothing for {listed(flat)}; give them a gain"])
+    sliding = _sliding(system, prefix)
+    touch = {name: max(0.0, LOW - low[name] / slope[name]) for name in names}
+    capacity = {name: slope[name] * sliding.get(name, 1.0) for name in names}
+    return Plant(capacity, touch, _inertias(system, box, prefix))
+
+
+def _capacities(system: System, prefix: str, names: list[str], pressure: float) -> dict[str, float]:
+    sim = Simulator(system)
+    sim.set({f"{prefix}.{name}.pressure": pressure for name in names})
+    return {name: float(sim[f"{prefix}.{name}.capacity"]) for name in names}
+
+
+def _sliding(system: System, prefix: str) -> dict[str, float]:
+    """Coefficient while it slips slowly over the one at rest, by element."""
+    found = {}
+    for branch in wiring(system).contacts:
+        law = branch.component.friction
+        static = getattr(law, "static", None)
+        kinetic = law.sliding() if law is not None else None
+        if isinstance(static, int | float) and kinetic and branch.name.startswith(f"{prefix}."):
+            found[branch.name.removeprefix(f"{prefix}.")] = kinetic / static
+    return found
+
+
+def _inertias(system: System, box: Gearbox, prefix: str) -> dict[str, float]:
+    """Inertia of each member and of what gears fix to it."""
+    rows = np.hstack([system.basis, system.basis_prescribed])
+    nodes = [node.name for node in system.nodes]
+    inertia = np.array([node.inertia for node in wiring(system).nodes])
+    found = dict.fromkeys((member for member in box.members if member != box.output), 0.0)
+    left = set(range(len(nodes)))
+    for member in found:
+        own = rows[nodes.index(f"{prefix}.{member}")]
+        size = float(own @ own)
+        for node in sorted(left):
+            ratio = float(rows[node] @ own) / size if size else 0.0
+            if ratio and np.allclose(rows[node], ratio * own, rtol=0.0, atol=ROUND_OFF):
+                found[member] += float(inertia[node]) * ratio**2
+                left.discard(node)
+    return found
