@@ -95,7 +95,7 @@ def test_a_freewheel_the_wrong_way_round() -> None:
 
 def test_unknown_gearbox_of_the_catalogue() -> None:
     with pytest.raises(cw.ModelError, match="zf-8hp70"):
-        cw.Gearbox.load("zf-8hp71")
+        cw.Gearbox.load("zf-8hp-70")
 
 
 def test_file_and_data_come_back(tmp_path: Path) -> None:
