@@ -137,7 +137,9 @@ def _gear_problems(box: Definition, gear: str) -> Iterator[Problem]:
     if gear in NO_GEARS:
         if found.kind not in NO_GEARS[gear]:
             ratio = f" of ratio {float(found.ratio):.4g}" if found.ratio is not None else ""
-            fault = f"is no {'neutral' if gear == 'N' else 'park'}: {_named(found)} make {_a(found.kind)}{ratio}"
+            fault = (
+                f"is no {'neutral' if gear == 'N' else 'park'}: closing {_named(found)} makes {_a(found.kind)}{ratio}"
+            )
             yield Problem(path, "", fault, remedy="correct the row or rename it")
         return
     fault, remedy = _fault(box, found)
@@ -153,33 +155,36 @@ def _fault(box: Definition, found: Combination) -> tuple[str, str]:
     still = [member for member in box.members if member not in moving]
     some = _named(found)
     if found.kind == TIE_UP:
-        return f"{some} tie the box up: they hold {listed(still)}", "leave one of them open"
+        return f"closing {some} ties the box up: it holds {listed(still)}", "leave one of them open"
     if found.kind in (INPUT_HELD, OUTPUT_HELD):
         which = "input" if found.kind == INPUT_HELD else "output"
         member = getattr(box, which)
-        return f"{some} hold the {which} {member}", f"leave open what holds {listed(still)}, or close another element"
+        return (
+            f"closing {some} holds the {which} {member}",
+            f"leave open what holds {listed(still)}, or close another element",
+        )
     if found.kind == NEUTRAL:
         free = [box.members[place] for place in sorted({n for row in moving.values() for n in row})]
         missing = found.dof - 1
         return (
-            f"{some} leave {found.dof} speeds free: "
+            f"closing {some} leaves {found.dof} speeds free: "
             f"{box.input} does not drive {box.output}; {listed(free)} turn as they like",
             f"close {missing} more element{'s' if missing > 1 else ''}",
         )
     if found.idle:
         column = next(iter(moving[box.output]))
         idle = [member for member, row in moving.items() if set(row) - {column}]
-        return f"{some} leave {found.dof} speeds free: {listed(idle)} turn freely", "close one more element"
+        return f"closing {some} leaves {found.dof} speeds free: {listed(idle)} turn freely", "close one more element"
     return "", ""
 
 
 def _named(found: Combination) -> str:
-    *others, last = found.closed or ("no closed elements",)
+    *others, last = found.closed or ("nothing",)
     return f"{', '.join(others)} and {last}" if others else last
 
 
 def _a(kind: str) -> str:
-    return {GEAR: "a gear", NEUTRAL: "neutral", TIE_UP: "a tie-up"}.get(kind, f"{kind.split()[0]} stand still")
+    return {GEAR: "a gear", NEUTRAL: "neutral", TIE_UP: "a tie-up"}.get(kind, f"the {kind.split()[0]} stand still")
 
 
 def _freewheel_problems(box: Definition, gear: str) -> Iterator[Problem]:

@@ -93,6 +93,12 @@ class Gearbox(Definition):
             )
         return found
 
+    def with_efficiency(self, efficiency: float) -> Gearbox:
+        """The same box whose sets have an efficiency, from wheel to wheel at resting carrier, such as 0.985."""
+        data = plain(self)
+        data["sets"] = {name: {**entry, "efficiency": efficiency} for name, entry in data["sets"].items()}
+        return type(self).from_dict(data)
+
     def states(self) -> dict[str, GearState]:
         """The state of every gear by its name."""
         return analysis.states(self)
