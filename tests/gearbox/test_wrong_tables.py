@@ -14,7 +14,10 @@ from support.gearboxes import EIGHT_SPEED, REDUCTION, changed
 LOCKS = {"type": "single", "sun": "C3", "ring": "out", "carrier": "housing", "teeth_sun": 30}
 # a change of the eight-speed box -> words of the message
 WRONG: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
-    "too few": ({"gears__3": ["B", "E"]}, ('gear "3"', "closing B and E leaves 2 speeds free", "in does not drive out")),
+    "too few": (
+        {"gears__3": ["B", "E"]},
+        ('gear "3"', "closing B and E leaves 2 speeds free", "in does not drive out"),
+    ),
     "too many": ({"gears__3": ["A", "B", "C", "E"]}, ('gear "3"', "ties the box up", "leave one of them open")),
     "input held": ({"gears__3": ["A", "C", "E"]}, ('gear "3"', "holds the input in")),
     "unknown element": ({"gears__3": ["B", "C", "F"]}, ('gear "3"', "'F'", "known elements: A, B, C, D, E")),
