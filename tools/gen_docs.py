@@ -18,6 +18,7 @@ from typing import Any
 import clutchwork  # noqa: F401  importing the package fills the registry
 import element_figures
 import element_pages
+import gearbox_page
 import option_page
 import parts_page
 from clutchwork.declare.schema import REGISTRY, Role, State, specs
@@ -47,6 +48,7 @@ def write(folder: Path) -> list[Path]:
     texts = dict(element_pages.pages())
     texts |= {"signals": "\n".join(_signals())}
     texts |= {"laws": "\n".join(_overview(laws)), "options": option_page.page(), "parts": parts_page.page()}
+    texts |= {"gearboxes": gearbox_page.page()}
     texts |= {f"laws/{kind}": "\n".join(_law(kind, cls)) for kind, cls in laws}
     for picture in element_figures.KEPT.glob("*.svg"):
         shutil.copy2(picture, folder / "elements" / f"{picture.stem.rpartition('-')[0]}.svg")

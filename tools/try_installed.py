@@ -17,6 +17,7 @@ from tempfile import TemporaryDirectory
 ROOT = Path(__file__).resolve().parent.parent
 FIRST = re.compile(r"<!-- the first program -->\n```python\n(.*?)```", re.DOTALL)
 WHERE = "import clutchwork; print(clutchwork.__file__)"
+CATALOGUE = "import clutchwork as cw; print(len(cw.catalogue()), cw.Gearbox.load('zf-8hp70').ratios)"
 WRITTEN = ("engagement.png", "out/demo/shift.png", "out/demo/trajectory.csv", "out/demo/events.csv")
 
 
@@ -58,6 +59,7 @@ def main() -> None:
             raise SystemExit(f"{package} is the checkout: install a wheel")
         (folder / "first.py").write_text(first_program((ROOT / "README.md").read_text("utf-8")), encoding="utf-8")
         run(folder, sys.executable, "first.py")
+        run(folder, sys.executable, "-c", CATALOGUE)
         command = str(Path(sysconfig.get_path("scripts"), "clutchwork"))
         run(folder, command, "demo")
         run(folder, command, "new")

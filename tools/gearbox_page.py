@@ -1,0 +1,54 @@
+"""The reference page of the catalogue of gearboxes, from its files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from clutchwork.base.text import counted
+from clutchwork.gearbox.gearbox import Gearbox, catalogue
+
+INTRODUCTION = """# Gearboxes
+
+Gearboxes that are known by name, `cw.Gearbox.load("zf-8hp70")`; `cw.catalogue()` has them all. Their ratios follow from
+the teeth below; the largest deviation is that from the published ratios, of which many are rounded to three decimals.
+Members whose wheels are one part share a name, such as `R2S3`: ring of the second set and sun of the third.
+
+| name | gearbox | gears | elements | largest deviation |
+|---|---|---|---|---|"""
+
+
+def page() -> str:
+    """The page."""
+    boxes = sorted(catalogue().values(), key=lambda box: box.title.lower())
+    rows = [
+        f"| [`{box.name}`](#{box.name}) | {box.title} | {len(box.gears)} | {len(box.elements)} | {_deviation(box)} |"
+        for box in boxes
+    ]
+    return "\n".join([INTRODUCTION, *rows, *(line for box in boxes for line in _section(box)), ""])
+
+
+def said(box: Gearbox) -> dict[str, float]:
+    """Ratios by the teeth in the form in which they are published."""
+    return {gear: 1.0 / ratio if box.ratio_form == "out/in" else ratio for gear, ratio in box.ratios.items()}
+
+
+def _deviation(box: Gearbox) -> str:
+    found = said(box)
+    return f"{max(abs(found[gear] - wanted) for gear, wanted in box.published.items()):.4f}"
+
+
+def _section(box: Gearbox) -> Iterator[str]:
+    form = "output over input" if box.ratio_form == "out/in" else "input over output"
+    yield f"\n({box.name})=\n## {box.title}\n"
+    yield f"`{box.name}`, {counted(len(box.sets), 'gear sets')}; ratios {form}.\n"
+    yield "| gear | closed | ratio by teeth | published |\n|---|---|---|---|"
+    for gear, ratio in said(box).items():
+        published = f"{box.published[gear]:g}" if gear in box.published else ""
+        yield f"| {gear} | {' '.join(box.closed_in(gear))} | {ratio:.4f} | {published} |"
+    yield "\n| set | type | members | teeth |\n|---|---|---|---|"
+    for one in box.sets:
+        members = ", ".join(f"{port.replace('_', ' ')} {member}" for port, member in one.members.items())
+        sizes = ", ".join(f"{name.replace('_', ' ')} {size:g}" for name, size in (one.teeth or one.ratios).items())
+        yield f"| {one.name} | {one.kind.replace('_', ' ')} | {members} | {sizes} |"
+    joins = ", ".join(f"{element.name} {element.first} - {element.second}" for element in box.elements)
+    yield f"\nElements: {joins}.\n\n{box.notes}\n\nSource: {box.source}"
