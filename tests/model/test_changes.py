@@ -16,6 +16,7 @@ import clutchwork as cw
 from clutchwork.assembly.wiring import wiring
 from clutchwork.declare.node import Law, Signal
 from clutchwork.declare.schema import REGISTRY, Role, specs
+from clutchwork.elements.bases.shift_elements import LINING
 from clutchwork.model.changes import FIXED, PLACES, all_names, named, target
 from clutchwork.results.channels import Channels
 from support import random_drivelines, samples, six_speed
@@ -39,19 +40,32 @@ def edited(model: Mapping[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
     for name, value in changes.items():
         owner = max((known for known in things if name.startswith(f"{known}.")), key=len)
         *between, last = name.removeprefix(f"{owner}.").split(".")
-        place = things[owner]
+        place, between, last = _held(things[owner], between, last)
         for word in between:
             if word not in place:
-                place[word] = _default(place["type"], word)
+                place[word] = _default(place["type"], word) if "type" in place else _law(LINING)
             place = place[word]
         place[last] = value
     return made
 
 
+def _held(place: dict[str, Any], between: list[str], last: str) -> tuple[dict[str, Any], list[str], str]:
+    """The table in which a value stands: of a part that an element holds it is one inside of that."""
+    if place.get("type") != "transmission" or not between:
+        return place, between, last
+    part, *rest = between
+    if part in place["gearbox"]["elements"]:
+        return place.setdefault("shift", {}).setdefault(part, {}), rest, last
+    return place.setdefault({"inertia": "inertias", "speed": "speeds"}[last], {}), [], part
+
+
 def _default(kind: str, word: str) -> dict[str, Any]:
     """A law that a model file leaves out, which is that of the declaration."""
     cls = next(known[kind] for role, known in REGISTRY.items() if role is not Role.LAW and kind in known)
-    law = next(item.default for item, _ in specs(cls, "law") if item.name == word)
+    return _law(next(item.default for item, _ in specs(cls, "law") if item.name == word))
+
+
+def _law(law: Any) -> dict[str, Any]:
     return {"type": law.kind} | {item.name: getattr(law, item.name) for item, _ in specs(type(law), "param")}
 
 

@@ -14,7 +14,7 @@ from clutchwork.declare.schema import COMPILED_ROLES, REGISTRY, Role, kinds, sch
 from support import samples
 
 ALL = samples.declared(*Role)
-WITHOUT_UNIT = {"port", "thermal", "text", "function"}
+WITHOUT_UNIT = {"port", "thermal", "text", "function", "elements", "data"}
 
 
 @pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)

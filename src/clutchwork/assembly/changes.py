@@ -12,7 +12,7 @@ from clutchwork.base.errors import ModelError, Problem
 from clutchwork.declare.node import Component, Signal
 from clutchwork.declare.schema import specs
 from clutchwork.declare.speech import words_of_files
-from clutchwork.model.changes import changed_model, named, renewed, target
+from clutchwork.model.changes import changed_model, named, renewed, target, with_held
 from clutchwork.model.components import component_advice, component_problems
 from clutchwork.model.fields import BROKEN, SOUND, At, value_problems
 from clutchwork.model.findings import findings
@@ -85,7 +85,8 @@ def quick(source: Model, where: Numbered, changes: Mapping[str, Any]) -> Quick |
         return None
     model = source.copy()
     by_name = {name: made for name, (_, made) in new.items()}
-    model.elements = [by_name.get(element.name, element) for element in source.elements]
+    inner = {id(old): own for old, own in given.values()}
+    model.elements = [by_name.get(e.name) or with_held(e, inner) for e in source.elements]
     values = {name: own for name, (_, own) in given.items()}
     return Quick(model, patched(where.arrays, found), values, signals)
 

@@ -72,7 +72,9 @@ def numbered(
 
 
 def _referred(element: Component) -> Iterator[str]:
-    """Names of the elements that one refers to, its friction law included."""
+    """Names of the elements that one refers to, its friction law and the elements that it describes included."""
+    for entry in element.entries():
+        yield from _referred(entry.made) if entry.made is not None else ()
     for value in (*vars(element).values(), *(vars(element.friction).values() if element.friction else ())):
         target = value.of if isinstance(value, Rate | HeatFlow) else value[0] if _is_state(value) else value
         if isinstance(target, Component | ThermalNode):

@@ -16,6 +16,9 @@ SORTS = {
     "option": "setting",
     "law": "friction law",
     "thermal": "thermal port",
+    "named": "numbers by name",
+    "elements": "elements by name",
+    "data": "name, file or table",
 }
 NAME = ("name", "(text, required): its path in results and messages")
 

@@ -11,6 +11,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.classes import PLAIN as PLAIN_TYPES
+from clutchwork.base.frozen import Frozen, frozen
 from clutchwork.declare import pints
 from clutchwork.declare.quantity import PLAIN, QuantityError, from_pint, has_unit, in_si, times
 
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 NUMBERS = frozenset((float, int, bool))
 # sorts of fields that hold numbers
 READ = ("param", "option", "signal", "alternative", "curve", "numbers")
+# and those that hold tables
+TABLES = ("named", "elements", "data")
 # in the dictionary of a signal: it holds values with units, whose meaning depends on what it drives
 OPEN = "_has_units"
 
@@ -179,6 +182,24 @@ def accept(thing: Any) -> None:
                 mark_open(thing)
         if new is not value:
             values[name] = new
+    for name, spec in _tables(cls):
+        values[name] = table_in_si(values[name], spec)
+
+
+@cache
+def _tables(cls: Any) -> tuple[tuple[str, Spec], ...]:
+    found = [(item.name, item.metadata["spec"]) for item in fields(cls) if "spec" in item.metadata]
+    return tuple((name, spec) for name, spec in found if spec.what in TABLES)
+
+
+def table_in_si(value: Any, spec: Spec) -> Any:
+    """A table that never changes any more, its numbers in SI; a path as a string, anything else as it is."""
+    if spec.what == "data" and hasattr(value, "__fspath__"):
+        return value.__fspath__()
+    if spec.what != "named" or not hasattr(value, "items"):
+        return frozen(value)
+    wanted = Wanted(spec.unit, spec.units, spec.difference)
+    return Frozen({name: wanted.number(number) for name, number in value.items()})
 
 
 def mark_open(signal: Any) -> None:

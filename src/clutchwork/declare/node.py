@@ -135,6 +135,32 @@ class HeatPath(NamedTuple):
     share: float
 
 
+class Entry(NamedTuple):
+    """An element that a table of a composite describes.
+
+    `cls` is None where there is no such kind, `made` where it does not fit its place; a value of it that must be given
+    and is not, is MISSING.
+    """
+
+    quantity: str  # "shift.A"
+    kind: str
+    cls: Any
+    made: Any  # the element
+    unknown: tuple[str, ...] = ()  # keys that it does not have
+    fault: tuple[str, str] = ("", "")  # why it does not fit its place, and the remedy
+
+
+class ShiftTable(NamedTuple):
+    """The gears of a gearbox as a run tells them; all names are those of its results."""
+
+    name: str  # "gearbox"
+    input: str  # shaft, "gearbox.in"
+    output: str
+    elements: tuple[str, ...]  # "gearbox.A"
+    freewheels: tuple[str, ...]
+    gears: Mapping[str, tuple[str, ...]]  # gear -> closed elements
+
+
 class Listed(type):
     """Class of declarations: dir() and help() list what their users need, and no hook that only the engine calls."""
 
@@ -204,6 +230,7 @@ class Component(Element):
     # meaning of its signals by their last word, where that is not the usual one
     reports: ClassVar[Mapping[str, str]] = {}
     elastic: ClassVar[bool] = False  # joins its ends as a shaft does: counts as rigid in ratios of speeds
+    open: ClassVar[bool] = False  # a composite whose parts are seen one by one in tables and pictures of energy
     jumps: ClassVar[bool] = False  # a torque element whose torque jumps: its shafts need inertia, as at a contact
 
     # what an element has unless it declares a field of that name
@@ -237,6 +264,34 @@ class Component(Element):
     def notes(self) -> Sequence[str]:
         """What is worth knowing of it and follows from its numbers, such as natural frequencies; `check` shows it."""
         return ()
+
+    def entries(self) -> Iterable[Entry]:
+        """The elements that its tables of elements describe, with mistakes or without."""
+        return ()
+
+    @classmethod
+    def entry_kinds(cls, values: Mapping[str, Any]) -> Mapping[str, str]:  # noqa: ARG003, most have no tables
+        """Kind of each element that its tables may describe, "shift.A" -> "clutch", where they do not say another.
+
+        Parameters: values, of its fields, some of which may be missing.
+        """
+        return {}
+
+    def held(self) -> Mapping[str, Part]:
+        """Parts whose values are changed as if they were elements of the driveline, by name within it."""
+        return {}
+
+    def with_held(self, name: str, values: Mapping[str, Any]) -> Component:  # noqa: ARG002, most hold nothing
+        """Itself with other values of the fields of such a part."""
+        return self
+
+    def content(self, name: str) -> Mapping[str, Any]:  # noqa: ARG002, most have none
+        """What a field of the sort "data" leads to, as a file holds it."""
+        return {}
+
+    def shift_table(self) -> ShiftTable | None:
+        """Gears by the contacts that are closed in them, of a gearbox."""
+        return None
 
     def part(self, name: str) -> Element | ThermalNode | Node:
         """A part by its name within this component; KeyError when there is none."""

@@ -53,7 +53,8 @@ class Spec:
     """Metadata of one declared field."""
 
     # "port" | "thermal" (port) | "param" | "curve" | "numbers" | "signal" | "law" of the core;
-    # "alternative" (to another signal) | "option" | "text" | "function" for Python alone
+    # "alternative" (to another signal) | "option" | "text" | "function" for Python alone;
+    # "named" (numbers), "elements" and "data", tables that a composite reads
     what: str
     unit: str  # SI; "*" in a signal: the unit of what it drives
     doc: str
@@ -259,6 +260,33 @@ def text(doc: str, *, default: str | None = MISSING, kw_only: bool = True) -> An
     return _field(Spec("text", "", doc, default is None), default, kw_only)
 
 
+def named(
+    unit: str,
+    doc: str,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+    example: dict[str, float] | None = None,
+) -> Any:
+    """Numbers by the names of what a composite is made of: `{"S1": 0.02}`; none by default."""
+    spec = Spec("named", unit, doc, True, above, at_least, None, at_most, example=example)
+    return _field(spec, None)
+
+
+def elements(doc: str) -> Any:
+    """Elements of a composite by their names in it: for each a table of its fields, without the ports, and its `type`.
+
+    The composite says by its hook `entries` what these are. None by default.
+    """
+    return _field(Spec("elements", "", doc, True), None)
+
+
+def data(doc: str, *, example: Any = None) -> Any:
+    """What a composite is built by: an object, a name, the path of a TOML or JSON file, or the content of one."""
+    return _field(Spec("data", "", doc, example=example), MISSING)
+
+
 def function(doc: str, *, kw_only: bool = True) -> Any:
     """A Python function; a model file cannot hold one."""
     return _field(Spec("function", "", doc), MISSING, kw_only)
@@ -302,7 +330,22 @@ def _check_ports(cls: type) -> None:
 @dataclass_transform(
     kw_only_default=True,
     frozen_default=True,
-    field_specifiers=(port, param, flag, choice, curve, numbers, signal, law, option, text, function),
+    field_specifiers=(
+        port,
+        param,
+        flag,
+        choice,
+        curve,
+        numbers,
+        signal,
+        law,
+        option,
+        text,
+        function,
+        named,
+        elements,
+        data,
+    ),
 )
 def component(
     role: Role, *, states: tuple[State, ...] = (), hooks: tuple[str, ...] = (), ways: tuple[Way, ...] = ()

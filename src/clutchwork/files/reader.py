@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import MISSING
-from functools import cache
 from typing import Any
 
 from clutchwork.base.errors import near
 from clutchwork.base.shown import listed, shown
 from clutchwork.declare.node import Component, Domain, Node, ThermalNode
 from clutchwork.declare.options import SIMULATION
-from clutchwork.declare.schema import REGISTRY, Role
 from clutchwork.declare.speech import element_path
 from clutchwork.files.references import References
-from clutchwork.files.values import Values
+from clutchwork.files.values import Values, element_kinds
 from clutchwork.model.fields import BROKEN
 from clutchwork.model.model import Model
 from clutchwork.model.numbers import At
@@ -23,13 +21,6 @@ from clutchwork.model.thermal import NODE_FIELDS as THERMAL_FIELDS
 
 FORMAT = 1
 TOP = ("format", "name", "description", "shaft", "mass", "thermal", "ambient", "element", "simulation")
-ELEMENTS = tuple(role for role in Role if role not in (Role.LAW, Role.SIGNAL))
-
-
-@cache
-def element_kinds() -> dict[str, Any]:
-    """All kinds of elements that a model file may name."""
-    return {kind: cls for role in ELEMENTS for kind, cls in REGISTRY[role].items()}
 
 
 class Reader(Values):

@@ -43,12 +43,14 @@ class References(Container[str]):
         """An element, None where it has mistakes, is being made, or is not there."""
         return self._at(self._places[name]) if name in self._places else None
 
-    def part(self, name: object) -> Node | ThermalNode | None:
-        """A node that is part of an element: "disc.surface"."""
-        whole = self.get(name.rpartition(".")[0]) if isinstance(name, str) else None
+    def part(self, name: object) -> Node | ThermalNode | Component | None:
+        """A node or an element that is part of an element: "disc.surface", "gearbox.A"."""
+        words = name.split(".") if isinstance(name, str) else []
+        wholes = (self.get(".".join(words[:cut])) for cut in range(len(words) - 1, 0, -1))
+        whole = next((found for found in wholes if found is not None), None)
         parts = take_apart([whole]) if whole is not None and not any(component_problems(whole)) else Parts()
-        nodes: list[Node | ThermalNode] = [*parts.nodes, *parts.thermal]
-        return next((node for node in nodes if node.name == name), None)
+        known = [*parts.nodes, *parts.thermal, *parts.components]
+        return next((part for part in known if part.name == name), None)
 
     def broken(self, name: str) -> bool:
         """Whether an element was read and has mistakes."""

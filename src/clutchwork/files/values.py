@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
 from typing import Any, TypeVar
 
 from clutchwork.base.errors import Problem, near
@@ -11,9 +13,10 @@ from clutchwork.base.shown import listed, shown
 from clutchwork.declare.given import settled
 from clutchwork.declare.node import HOUSING, Domain, Node, ThermalNode
 from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
-from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
+from clutchwork.declare.schema import REGISTRY, Role, Spec, inputs, specs
 from clutchwork.files.lists import curve_in_si, list_in_si
 from clutchwork.files.references import References, is_named, referred
+from clutchwork.model.components import type_problem
 from clutchwork.model.fields import BROKEN, mark_sound, value_problems
 from clutchwork.model.numbers import At
 from clutchwork.signals.column import Column
@@ -21,8 +24,20 @@ from clutchwork.signals.column import Column
 T = TypeVar("T")
 
 
+ELEMENTS = tuple(role for role in Role if role not in (Role.LAW, Role.SIGNAL))
 # what a port of a domain may be
 PORTS = {"rotation": "shaft", "translation": "mass", "": "shaft or mass"}
+
+
+@cache
+def element_kinds() -> dict[str, Any]:
+    """All kinds of elements that a model file may name."""
+    return {kind: cls for role in ELEMENTS for kind, cls in REGISTRY[role].items()}
+
+
+def is_path(value: Any) -> bool:
+    """Whether what a composite is built by is the path of a file."""
+    return isinstance(value, str) and value.lower().endswith((".toml", ".json"))
 
 
 class Values:
@@ -52,6 +67,18 @@ class Values:
     def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
         """Values of the fields of a declaration, in SI; mistakes are reported."""
         known = {item.name: spec for item, spec in specs(cls)}
+        values = self._read(cls, known, entry, at, taken)
+        for key, spec in known.items():
+            if spec.what == "elements" and isinstance(values.get(key), Mapping):
+                values[key] = self._described(values[key], cls.entry_kinds(values), at.inner(key))  # type: ignore[attr-defined]
+        self.problems += value_problems(cls, values, at)
+        # lists could be changed by their owner, and the reader has none
+        return {key: _in_tuples(value) if type(value) is list else value for key, value in values.items()}
+
+    def _read(
+        self, cls: type, known: Mapping[str, Spec], entry: Mapping[str, Any], at: At, taken: tuple[str, ...]
+    ) -> dict[str, Any]:
+        """Values of the known fields of a declaration, in SI; what cannot be read is reported."""
         self._unknown([key for key in entry if key not in taken], known, at)
         values = {}
         for key, spec in known.items():
@@ -60,9 +87,32 @@ class Values:
                 if spec.units and type(value) is not float:
                     spec = settled(key, spec, cls, self._joined(entry, known))
                 values[key] = self._value(value, spec, at, key)
-        self.problems += value_problems(cls, values, at)
-        # lists could be changed by their owner, and the reader has none
-        return {key: _in_tuples(value) if type(value) is list else value for key, value in values.items()}
+        return values
+
+    def _described(self, tables: Mapping[str, Any], kinds: Mapping[str, str], at: At) -> dict[str, Any]:
+        """Tables of elements of a composite, their values in SI; what they leave out may follow from the composite."""
+        made = {}
+        for name, table in tables.items():
+            place = at.inner(name)
+            made[name] = table
+            if not isinstance(table, Mapping):
+                continue
+            kind = table.get("type", kinds.get(place.quantity))
+            if kind is None:
+                # of no element that there is, which the composite reports
+                continue
+            if kind not in element_kinds():
+                self.problems.append(type_problem(kind, place))
+                continue
+            cls = element_kinds()[kind]
+            known = {item.name: spec for item, spec in specs(cls) if spec.what != "port"}
+            values = self._read(cls, known, table, place, ("type",))
+            rest = dict.fromkeys((item.name for item, _ in specs(cls)), BROKEN)
+            rest |= dict.fromkeys((way for ways, _ in inputs(cls) for way in ways), None)
+            found = value_problems(cls, {**rest, **values}, place)
+            self.problems += [problem for problem in found if problem.quantity.split(".")[2] in values]
+            made[name] = {**({"type": kind} if "type" in table else {}), **values}
+        return made
 
     def _value(self, value: Any, spec: Spec, owner: At, key: str) -> Any:
         if type(value) is float and spec.what == "param" and spec.unit != "*":
@@ -84,7 +134,11 @@ class Values:
             return self._converted(lambda: list_in_si(value, spec, at), at)
         if spec.what == "function":
             return self._report(at, "is not allowed in a model file", remedy="build this model in Python")
-        if spec.what == "text" or spec.flag or spec.choices:
+        if spec.what == "named" and isinstance(value, Mapping):
+            return {name: self._number(number, spec, at.inner(name, spec.unit)) for name, number in value.items()}
+        if spec.what == "data" and is_path(value):
+            return str(Path(self.folder, value))
+        if spec.what in ("text", "elements", "named", "data") or spec.flag or spec.choices:
             return value
         return self._number(value, spec, at)
 

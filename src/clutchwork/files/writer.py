@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import MISSING
 from numbers import Real
 from pathlib import Path
@@ -15,6 +15,7 @@ from clutchwork.base.errors import Problem
 from clutchwork.declare.node import HeatFlow, Rate, is_reference
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.speech import path_of
+from clutchwork.files.values import element_kinds, is_path
 from clutchwork.model.numbers import At
 from clutchwork.model.problems import NODE_FIELDS
 from clutchwork.model.thermal import NODE_FIELDS as NODE_KINDS
@@ -57,8 +58,30 @@ class Writer:
         for item, spec in specs(type(thing)):
             value = getattr(thing, item.name)
             if value is not None and (item.default is MISSING or value != item.default):
-                made[item.name] = self._value(value, spec, At(path, item.name))
+                made[item.name] = self._of(thing, item.name, value, spec, At(path, item.name))
         return made
+
+    def _of(self, thing: Any, name: str, value: Any, spec: Spec, at: At) -> Any:
+        """The value of a field: a table that a composite reads, or any other."""
+        if spec.what == "named":
+            return {key: float(number) for key, number in value.items()}
+        if spec.what == "elements":
+            kinds = thing.entry_kinds(vars(thing))
+            return {key: self._table(table, kinds.get(f"{name}.{key}"), at) for key, table in value.items()}
+        if spec.what == "data":
+            if isinstance(value, str) and not self.embed:
+                return self._relative(Path(value)) if is_path(value) else value
+            return thing.content(name)
+        return self._value(value, spec, at)
+
+    def _table(self, table: Mapping[str, Any], kind: str | None, at: At) -> dict[str, Any]:
+        """An element of a composite."""
+        known = {item.name: spec for item, spec in specs(element_kinds()[table.get("type", kind)])}
+        return {
+            key: value if key == "type" else self._value(value, known[key], at.inner(key))
+            for key, value in table.items()
+            if value is not None
+        }
 
     def _value(self, value: Any, spec: Spec, at: At) -> Any:
         if spec.what in ("port", "thermal"):
@@ -83,7 +106,9 @@ class Writer:
         return value if isinstance(value, str | bool | int) else float(value)
 
     def _path(self, column: Column) -> str:
-        full = Path(column.folder, column.path)
+        return self._relative(Path(column.folder, column.path))
+
+    def _relative(self, full: Path) -> str:
         if self.folder is None or full.is_absolute():
             return str(full)
         return Path(os.path.relpath(full, self.folder)).as_posix()
@@ -103,15 +128,37 @@ def toml(data: Mapping[str, Any]) -> str:
     lines = [f"{key} = {toml_value(value)}" for key, value in data.items() if not isinstance(value, list | Mapping)]
     for key, value in data.items():
         for table in value if isinstance(value, list) else [value] if isinstance(value, Mapping) else []:
-            head = f"[[{key}]]" if isinstance(value, list) else f"[{key}]"
-            lines += ["", head, *(f"{name} = {toml_value(entry)}" for name, entry in table.items())]
+            lines += ["", f"[[{key}]]" if isinstance(value, list) else f"[{key}]"]
+            lines += [f"{_key(name)} = {toml_value(entry)}" for name, entry in table.items() if not _deep(entry)]
+            for name, entry in table.items():
+                lines += _below(f"{key}.{_key(name)}", entry) if _deep(entry) else []
     return "\n".join(lines) + "\n"
+
+
+def _deep(value: Any) -> bool:
+    """Whether a table holds tables, which are easier to read below heads of their own."""
+    return isinstance(value, Mapping) and any(isinstance(entry, Mapping) for entry in value.values())
+
+
+def _below(head: str, table: Mapping[str, Any]) -> Iterator[str]:
+    """The tables of an element below their heads."""
+    plain = {name: entry for name, entry in table.items() if not isinstance(entry, Mapping)}
+    if plain:
+        yield from ("", f"[{head}]", *(f"{_key(name)} = {toml_value(entry)}" for name, entry in plain.items()))
+    for name, entry in table.items():
+        if name not in plain:
+            yield from ("", f"[{head}.{_key(name)}]")
+            yield from (f"{_key(inner)} = {toml_value(value)}" for inner, value in entry.items())
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else toml_value(name)
 
 
 def toml_value(value: Any) -> str:
     """A value as TOML text, a table on one line."""
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{key} = {toml_value(entry)}" for key, entry in value.items()) + "}"
+        return "{" + ", ".join(f"{_key(key)} = {toml_value(entry)}" for key, entry in value.items()) + "}"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(map(toml_value, value)) + "]"
     if isinstance(value, bool):

@@ -7,6 +7,7 @@ from dataclasses import field
 from fractions import Fraction
 
 from clutchwork.base.classes import dataclass
+from clutchwork.base.frozen import frozen
 from clutchwork.gearbox.gear_set import HOUSING, GearSet
 
 # kind of a shift element -> what it is
@@ -80,6 +81,10 @@ class Definition:
     tolerance_relative: float = 0.0
     source: str = ""
     notes: str = ""
+
+    def __post_init__(self) -> None:
+        """Tables that never change, so that a gearbox has a hash."""
+        vars(self).update(gears=frozen(self.gears), published=frozen(self.published))
 
     @property
     def members(self) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from clutchwork.base.classes import dataclass
+from clutchwork.base.frozen import frozen
 from clutchwork.declare.rational import exact
 
 HOUSING = "housing"
@@ -107,6 +108,11 @@ class GearSet:
     planets: int | None = None
     equally_spaced: bool = True
     efficiency: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Tables that never change, so that a set has a hash."""
+        tables = ("members", "teeth", "ratios")
+        vars(self).update({name: frozen(getattr(self, name)) for name in tables})
 
     @property
     def shape(self) -> Kind:

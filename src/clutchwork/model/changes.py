@@ -1,7 +1,8 @@
 """A model with other numbers: what may be changed, by name, and the same model with new values in its place.
 
 A name is that of a shaft, mass, thermal node or element and a field of it: "engine.inertia", "c1.gain". What is inside
-of a friction law or a signal follows: "c1.friction.kinetic", "c1.pressure.height".
+of a friction law or a signal follows: "c1.friction.kinetic", "c1.pressure.height". Parts that a composite holds are
+named as in results: "gearbox.A.gain".
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from clutchwork.base.errors import ModelError, Problem, near, nearest
+from clutchwork.base.frozen import Frozen
 from clutchwork.base.shown import shown
 from clutchwork.declare.given import Wanted, field_in_si, settled
 from clutchwork.declare.node import (
@@ -32,14 +34,14 @@ from clutchwork.model.thermal import NODE_FIELDS as THERMAL_FIELDS
 from clutchwork.model.thermal import node_kind
 
 # sorts of fields that are joined, named or called, and make another driveline
-FIXED = ("port", "thermal", "text", "function")
+FIXED = ("port", "thermal", "text", "function", "named", "elements", "data")
 SIGNALS = ("signal", "alternative")
 MOST_OWN = 6
 RESULTS = "speeds, torques, slips and the like are results, which follow from the motion"
 # fields of a mass by the names of a shaft
 PLACES = ("inertia", "speed", "angle")
 # what may be, or refer to, something that is changed
-REFERS = (Node, ThermalNode, Component, Law, Rate, HeatFlow, tuple)
+REFERS = (Node, ThermalNode, Component, Law, Rate, HeatFlow, tuple, Frozen)
 
 
 @dataclass(frozen=True)
@@ -50,10 +52,19 @@ class Target:
     path: tuple[str, ...]
 
 
-def named(model: Model) -> dict[str, Any]:
-    """All shafts, masses, thermal nodes and elements by name."""
+class Owners(dict[str, Any]):
+    """All shafts, masses, thermal nodes and elements by name, and the parts that elements hold: those in `held`."""
+
+    held: frozenset[str] = frozenset()
+
+
+def named(model: Model) -> Owners:
+    """Everything of a model that has something to change, by name."""
     things: list[Any] = [*model.nodes, *model.thermal, *model.elements]
-    return {thing.name: thing for thing in things}
+    held = [part for element in model.elements for part in element.held().values()]
+    made = Owners({thing.name: thing for thing in (*held, *things)})
+    made.held = frozenset(part.name for part in held)
+    return made
 
 
 def target(owners: Mapping[str, Any], name: object) -> Target | None:
@@ -63,9 +74,15 @@ def target(owners: Mapping[str, Any], name: object) -> Target | None:
         owner = owners.get(".".join(words[:cut]))
         if owner is not None:
             path = _path(owner, words[cut:])
-            if path:
+            if path and not _is_beyond(owners, owner, path[0]):
                 return Target(owner, path)
     return None
+
+
+def _is_beyond(owners: Mapping[str, Any], owner: Any, word: str) -> bool:
+    """Whether something of a shaft is not to be changed, because a composite holds it and has no table for it."""
+    held = owners.held if isinstance(owners, Owners) else ()
+    return isinstance(owner, Node) and owner.name in held and word == "angle"
 
 
 def _path(owner: Any, words: list[str]) -> tuple[str, ...]:
@@ -135,8 +152,9 @@ def _spec(thing: Any, name: str) -> Spec:
 
 def all_names(model: Model) -> Iterator[str]:
     """All names that may be changed."""
-    for name, owner in named(model).items():
-        yield from _below(name, owner)
+    owners = named(model)
+    for name, owner in owners.items():
+        yield from (below for below in _below(name, owner) if target(owners, below) is not None)
 
 
 def _below(name: str, thing: Any) -> Iterator[str]:
@@ -229,7 +247,13 @@ def with_values(model: Model, changes: Iterable[tuple[Target, Any]]) -> Model:
     by_owner = dict[int, tuple[Any, list[tuple[tuple[str, ...], Any]]]]()
     for aim, value in changes:
         by_owner.setdefault(id(aim.owner), (aim.owner, []))[1].append((aim.path, value))
-    new = Renewed({key: renewed(owner, given) for key, (owner, given) in by_owner.items()})
+    inner = {key: by_owner.pop(key)[1] for key in _held(model.elements) if key in by_owner}
+    made_of = {key: renewed(owner, given) for key, (owner, given) in by_owner.items()}
+    for element in model.elements if inner else ():
+        own = made_of.get(id(element), element)
+        changed = with_held(element, inner, own)
+        made_of |= {id(element): changed} if changed is not element else {}
+    new = Renewed(made_of)
     made = model.copy()
     made.nodes = [new.of(node) for node in model.nodes]
     made.thermal = [new.of(node) for node in model.thermal]
@@ -240,16 +264,39 @@ def with_values(model: Model, changes: Iterable[tuple[Target, Any]]) -> Model:
     return made
 
 
+def _held(elements: Iterable[Component]) -> Iterator[int]:
+    """Identities of the parts that elements hold."""
+    return (id(part) for element in elements for part in element.held().values())
+
+
+def with_held(
+    whole: Component, changes: Mapping[int, Iterable[tuple[tuple[str, ...], Any]]], made: Component | None = None
+) -> Component:
+    """A composite with other values of the parts that it holds.
+
+    Parameters: changes, paths and values by the identity of a part; made, the whole where it has other values itself.
+    """
+    found = whole if made is None else made
+    for name, part in whole.held().items():
+        if id(part) in changes:
+            found = found.with_held(name, _values_at(part, changes[id(part)]))
+    return found
+
+
 def renewed(thing: Any, changes: Iterable[tuple[tuple[str, ...], Any]]) -> Any:
     """A declared object with other values at paths of fields."""
+    return replace(thing, **_values_at(thing, changes))
+
+
+def _values_at(thing: Any, changes: Iterable[tuple[tuple[str, ...], Any]]) -> dict[str, Any]:
+    """The new values of its fields."""
     values, inner = dict[str, Any](), dict[str, list[tuple[tuple[str, ...], Any]]]()
     for path, value in changes:
         if len(path) == 1:
             values[path[0]] = value
         else:
             inner.setdefault(path[0], []).append((path[1:], value))
-    values |= {name: renewed(getattr(thing, name), below) for name, below in inner.items()}
-    return replace(thing, **values)
+    return values | {name: renewed(getattr(thing, name), below) for name, below in inner.items()}
 
 
 @dataclass
@@ -276,6 +323,9 @@ class Renewed:
         if isinstance(value, tuple) and is_reference(value):
             target = self.of(value[0])
             return value if target is value[0] else (target, value[1])
+        if isinstance(value, Frozen):
+            new = Frozen({name: self.of(item) if isinstance(item, REFERS) else item for name, item in value.items()})
+            return value if all(new[name] is item for name, item in value.items()) else new
         return self._fields(given or value) if isinstance(value, Component | Law | Rate | HeatFlow) else value
 
     def _part(self, value: Any) -> Any:

@@ -8,8 +8,8 @@ from numbers import Real
 from typing import Any
 
 from clutchwork.base.errors import Problem, near
-from clutchwork.base.shown import shown
-from clutchwork.declare.node import Component, Law, Node, ThermalNode
+from clutchwork.base.shown import listed, shown
+from clutchwork.declare.node import Component, Entry, Law, Node, ThermalNode
 from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.declare.speech import path_of
@@ -19,16 +19,44 @@ from clutchwork.model.thermal import Within
 from clutchwork.signals.constant import Constant
 
 
-def component_problems(component: Component) -> Iterator[Problem]:
-    """All mistakes of one element, its friction law and its signals."""
-    at = At(path_of(component), "")
+def component_problems(component: Component, at: At | None = None) -> Iterator[Problem]:
+    """All mistakes of one element, its friction law, its signals and the elements that its tables describe.
+
+    Parameters: at, its place where it is not one of its own.
+    """
+    at = at or At(path_of(component), "")
     found = list(object_problems(component, at))
+    found += () if found else [problem for entry in component.entries() for problem in _entry_problems(entry, at)]
     found = found or list(_beyond_numbers(component, at))
     yield from found
     yield from locked_problems(component, at)
     # what an element asks of its law is only asked once both make sense
     for name, message, remedy in () if found else component.law_problems():
         yield at.inner(name).problem(message, remedy=remedy)
+
+
+def type_problem(kind: Any, at: At) -> Problem:
+    """A kind of an element in a composite that there is not."""
+    known = [kind for role in (Role.CONTACT, Role.TORQUE) for kind in REGISTRY[role]]
+    meant = near(kind, known)
+    remedy = "" if meant else f"known types: {listed(known)}"
+    return at.inner("type").problem(f"is an unknown type{meant}", shown(kind), remedy)
+
+
+def _entry_problems(entry: Entry, owner: At) -> Iterator[Problem]:
+    """Mistakes of an element that a table of a composite describes."""
+    at = owner.inner(entry.quantity)
+    if entry.cls is None:
+        yield type_problem(entry.kind, at)
+    elif entry.made is None:
+        yield at.inner("type").problem(entry.fault[0], shown(entry.kind), entry.fault[1])
+    else:
+        known = [item.name for item, spec in specs(entry.cls) if spec.what != "port"]
+        for key in entry.unknown:
+            meant = near(key, known)
+            remedy = "" if meant else f"known keys: {listed(known)}"
+            yield at.inner(key).problem(f"is an unknown key{meant}", remedy=remedy)
+        yield from component_problems(entry.made, at)
 
 
 def _beyond_numbers(component: Component, at: At) -> Iterator[Problem]:
@@ -69,6 +97,8 @@ def component_advice(component: Component) -> Iterator[Problem]:
     """What an element and its friction law allow and is rarely wanted."""
     yield from _never_presses(component)
     yield from _law_advice(component)
+    for entry in component.entries():
+        yield from component_advice(entry.made) if entry.made is not None else ()
 
 
 def _never_presses(component: Component) -> Iterator[Problem]:

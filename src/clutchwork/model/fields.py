@@ -218,6 +218,31 @@ def _function(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield at.problem("must be a Python function", value=shown(value), remedy=spec.doc)
 
 
+def _named(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    if not isinstance(value, Mapping):
+        yield at.problem(f"must be a table of numbers{within(at.unit)} by name", shown(value), 'write {"S1": 0.02}')
+        return
+    for name, number in value.items():
+        yield from number_problems(number, spec, at.inner(str(name), at.unit))
+
+
+def _tables(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """What is inside of the tables is looked at by what they describe."""
+    if not isinstance(value, Mapping):
+        yield at.problem("must be a table", shown(value), f"give a table by name: {spec.doc}")
+        return
+    for name, table in value.items():
+        if not isinstance(table, Mapping):
+            remedy = say("write its fields below a head of its own", 'write {"type": "clutch", "gain": 1e-3}')
+            yield at.inner(str(name)).problem("must be a table", shown(table), remedy)
+
+
+def _data(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """Whoever reads it says what is wrong with it."""
+    if value is None or value == "":
+        yield at.problem("is missing", shown(value), spec.doc)
+
+
 # what may be a plain number
 NUMBERS = ("param", "option", "signal", "alternative")
 CHECKS: dict[str, Callable[[Any, Spec, At], Iterator[Problem]]] = {
@@ -232,4 +257,7 @@ CHECKS: dict[str, Callable[[Any, Spec, At], Iterator[Problem]]] = {
     "law": _law,
     "text": _text,
     "function": _function,
+    "named": _named,
+    "elements": _tables,
+    "data": _data,
 }

@@ -112,6 +112,8 @@ def _values(value: Any) -> Any:
         return tuple(_values(getattr(value, item.name)) for item in fields(value))
     if hasattr(value, "tobytes"):
         return value.tobytes()
+    if hasattr(value, "items"):
+        return tuple((name, _values(item)) for name, item in value.items())
     if hasattr(value, "__len__") and not isinstance(value, str):
         return tuple(map(_values, value))
     return value

@@ -43,9 +43,18 @@ def take_apart(components: Sequence[Component], thermal: Sequence[ThermalNode] =
     asked = {node.name: node for element in elements for node in _asked(element)}
     sensors = [Sensor(sensor_name(node), base=HOUSING, follower=node, damping=0.0) for node in asked.values()]
     there = {element.name for element in elements}
-    sums = {whole.name: tuple(there.intersection(_full(whole))) for whole in components if whole.name in there}
+    wholes = [whole for component in components for whole in _wholes(component)]
+    sums = {whole.name: tuple(there.intersection(_full(whole))) for whole in wholes if whole.name in there}
     shafts = tuple(piece for piece in pieces if isinstance(piece, Node))
     return Parts((*elements, *sensors), tuple(nodes), shafts, {name: names for name, names in sums.items() if names})
+
+
+def _wholes(component: Component) -> Iterator[Component]:
+    """An element and those that are made of parts inside of it."""
+    yield component
+    for part in component.parts():
+        if isinstance(part, Component) and part.name != component.name:
+            yield from _wholes(part)
 
 
 def _full(whole: Component) -> list[str]:

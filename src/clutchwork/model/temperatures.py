@@ -33,6 +33,7 @@ def temperature_advice(elements: Sequence[Component], thermal: Sequence[ThermalN
         yield from _inside(element, at)
         if isinstance(element.friction, Law):
             yield from _inside(element.friction, at.inner("friction"))
+        yield from temperature_advice([entry.made for entry in element.entries() if entry.made is not None], ())
 
 
 def _inside(thing: Any, at: At) -> Iterator[Problem]:

@@ -204,9 +204,11 @@ def _at(joints: dict[tuple[str, str], float], name: str) -> Iterator[tuple[str, 
 
 
 def owners(run: Recorded) -> Callable[[str], str]:
-    """The element of the user that a part or an inner shaft belongs to; others belong to themselves."""
-    source = run.system.source
-    known = {element.name for element in source.elements} if source is not None else set()
+    """The element of the user that a part or an inner shaft belongs to; others belong to themselves.
+
+    Where the parts of an element are seen one by one, it is the part.
+    """
+    known = _own_kinds(run)
 
     def owner(name: str) -> str:
         words = name.split(".")
@@ -216,11 +218,19 @@ def owners(run: Recorded) -> Callable[[str], str]:
     return cache(owner)
 
 
+def _own_kinds(run: Recorded) -> dict[str, str]:
+    """Elements of the user by name, and the parts of those that are seen one by one."""
+    source = run.system.source
+    elements = source.elements if source is not None else ()
+    seen = [element for element in elements if element.open]
+    parts = [part for element in seen for part in element.parts() if isinstance(part, Component)]
+    return {element.name: element.kind for element in (*parts, *elements) if element not in seen}
+
+
 def _kinds(run: Recorded, owner: Callable[[str], str]) -> dict[str, str]:
     """All elements and shafts with what they are, elements first."""
     wiring: Wiring = run.wiring
-    source = run.system.source
-    own = {element.name: element.kind for element in source.elements} if source is not None else {}
+    own = _own_kinds(run)
     made: dict[str, str] = {}
     for branch in (*wiring.motions, *wiring.elements, *wiring.contacts):
         if not branch.hidden:

@@ -203,6 +203,19 @@ def synchroniser(pen: Pen, shown: Drawn) -> None:
     out(pen, shown, "hub", 3.0)
 
 
+def transmission(pen: Pen, shown: Drawn) -> None:
+    """A housing with a row of sets in it."""
+    pen.box(-18.0, -15.0, 18.0, 15.0, look=BODY._replace(fill="#F3F5F8"))
+    for x in (-9.0, 0.0, 9.0):
+        for sign in (1.0, -1.0):
+            pen.line((x, sign * 4.0), (x, sign * 8.5), look=TOOTH)
+            for y in (4.0, 8.5):
+                pen.line((x - 2.6, sign * y), (x + 2.6, sign * y), look=TOOTH)
+            pen.line((x - 2.6, sign * 10.9), (x + 2.6, sign * 10.9), look=TOOTH)
+    for port, start in (("input", 18.0), ("output", 18.0)):
+        out(pen, shown, port, start)
+
+
 PAIR = {"input": PITCH / 2, "output": -PITCH / 2, "support": 0.0}
 SETS = {"ring": RING, "carrier": CARRIER, "sun": SUN}
 
@@ -221,5 +234,6 @@ GEARS = {
     "polygon_sprocket": Symbol(wheel, 18.0, 16.0, 17.0, {"support": 16.0}),
     "rolling_wheel": Symbol(wheel, 18.0, 16.0, 17.0, {"support": 16.0}),
     "dog_clutch": Symbol(dogs),
+    "transmission": Symbol(transmission, 24.0, 16.0, 16.0),
     "synchroniser": Symbol(synchroniser, 18.0, 21.0, 21.0, {"hub": 0.0, "forward": 14.0, "backward": -14.0}),
 }
