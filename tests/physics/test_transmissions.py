@@ -30,7 +30,10 @@ def test_held_in_gear_it_turns_and_carries_as_the_gear_says(name):
         scale = 100.0 * max(1.0, abs(state.ratio), *(abs(t) for t in state.torques.values() if not math.isnan(t)))
         for element, per_input in state.torques.items():
             torque = run[f"gearbox.{element}.torque"][-1]
-            assert math.isnan(per_input) or torque == pytest.approx(100.0 * per_input, abs=CLOSE * scale), (gear, element)
+            assert math.isnan(per_input) or torque == pytest.approx(100.0 * per_input, abs=CLOSE * scale), (
+                gear,
+                element,
+            )
         for element, per_input in state.slips.items():
             assert run[f"gearbox.{element}.slip"][-1] == pytest.approx(100.0 * per_input, abs=100.0 * CLOSE), element
 

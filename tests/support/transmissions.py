@@ -13,8 +13,14 @@ AODE: dict[str, Any] = {
     "output": "ring",
     "sets": {
         "P1": {
-            **{"type": "ravigneaux", "small_sun": "S1", "large_sun": "S2", "ring": "ring", "carrier": "C"},
-            **{"teeth_small_sun": 30, "teeth_large_sun": 36, "teeth_ring": 72},
+            "type": "ravigneaux",
+            "small_sun": "S1",
+            "large_sun": "S2",
+            "ring": "ring",
+            "carrier": "C",
+            "teeth_small_sun": 30,
+            "teeth_large_sun": 36,
+            "teeth_ring": 72,
         }
     },
     "elements": {
@@ -39,8 +45,14 @@ TWO_SUNS: dict[str, Any] = {
     "output": "shaft",
     "sets": {
         "P1": {
-            **{"type": "two_suns", "sun": "S1", "second_sun": "S2", "carrier": "carrier", "teeth_sun": 33},
-            **{"teeth_second_sun": 27, "teeth_planet_sun": 24, "teeth_planet_second_sun": 30},
+            "type": "two_suns",
+            "sun": "S1",
+            "second_sun": "S2",
+            "carrier": "carrier",
+            "teeth_sun": 33,
+            "teeth_second_sun": 27,
+            "teeth_planet_sun": 24,
+            "teeth_planet_second_sun": 30,
         },
         "Z": {"type": "gear", "first": "S2", "second": "shaft", "teeth_first": 31, "teeth_second": 47},
     },
@@ -53,8 +65,14 @@ TWO_RINGS: dict[str, Any] = {
     "output": "R2",
     "sets": {
         "P1": {
-            **{"type": "two_rings", "ring": "R1", "second_ring": "R2", "carrier": "carrier", "teeth_ring": 71},
-            **{"teeth_second_ring": 68, "teeth_planet_ring": 20, "teeth_planet_second_ring": 19},
+            "type": "two_rings",
+            "ring": "R1",
+            "second_ring": "R2",
+            "carrier": "carrier",
+            "teeth_ring": 71,
+            "teeth_second_ring": 68,
+            "teeth_planet_ring": 20,
+            "teeth_planet_second_ring": 19,
         },
     },
     "elements": {"B": ["R1", "housing"], "K": ["carrier", "R1"]},
@@ -67,11 +85,22 @@ MIXED: dict[str, Any] = {
     "output": "out",
     "sets": {
         "P1": {
-            **{"type": "stepped", "sun": "in", "ring": "R1", "carrier": "C1", "teeth_sun": 24, "teeth_ring": 78},
-            **{"teeth_planet_sun": 30, "teeth_planet_ring": 24},
+            "type": "stepped",
+            "sun": "in",
+            "ring": "R1",
+            "carrier": "C1",
+            "teeth_sun": 24,
+            "teeth_ring": 78,
+            "teeth_planet_sun": 30,
+            "teeth_planet_ring": 24,
         },
         "P2": {
-            **{"type": "double", "sun": "C1", "ring": "out", "carrier": "C2", "teeth_sun": 30, "teeth_ring": 74},
+            "type": "double",
+            "sun": "C1",
+            "ring": "out",
+            "carrier": "C2",
+            "teeth_sun": 30,
+            "teeth_ring": 74,
         },
     },
     "elements": {

@@ -151,7 +151,7 @@ class Entry(NamedTuple):
 
 
 class ShiftTable(NamedTuple):
-    """The gears of a gearbox as a run tells them; all names are those of its results."""
+    """The gears of a gearbox; all names are those of results."""
 
     name: str  # "gearbox"
     input: str  # shaft, "gearbox.in"

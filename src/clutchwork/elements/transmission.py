@@ -102,13 +102,13 @@ class Transmission(Heating):
         known = {"inertias": ("member", members), "speeds": ("member", members), "efficiencies": ("set", sets)}
         known |= {"shift": ("shift element", names), "drag": ("shift element", names)}
         found = [
-            (f"{quantity}.{name}", f"is no {what} of {shown(box.name)}{near(name, of)}", f"it has {listed(of)}")
+            (f"{quantity}.{name}", f"is not a {what} of {shown(box.name)}{near(name, of)}", f"it has {listed(of)}")
             for quantity, (what, of) in known.items()
             for name in getattr(self, quantity) or {}
             if name not in of
         ]
         if self.gear is not None and self.gear not in box.gears:
-            message = f"is no gear of {shown(box.name)}{near(self.gear, box.gears)}"
+            message = f"is not a gear of {shown(box.name)}{near(self.gear, box.gears)}"
             found.append(("gear", message, f"it has {listed(box.gears)}"))
         return found
 
@@ -166,7 +166,7 @@ class Transmission(Heating):
 
     def _all_entries(self, box: Definition) -> Iterator[Entry]:
         nodes = {**self._nodes(box), HOUSING.name: HOUSING}
-        closed = box.closed_in(self.gear) if self.gear in box.gears else box.always_closed
+        closed = box.closed_in(str(self.gear)) if self.gear in box.gears else box.always_closed
         shift, drag = self.shift or {}, self.drag or {}
         loads = load(box)
         for element in box.elements:
@@ -194,15 +194,17 @@ class Transmission(Heating):
 
     def with_held(self, name: str, values: Mapping[str, Any]) -> Component:
         """Itself with other values of a member or a shift element."""
-        part, table = self.held()[name], "shift"
-        if isinstance(part, Node):
-            tables = {"inertia": "inertias", "speed": "speeds"}
-            own = {tables[key]: value for key, value in values.items()}
-            return replace(self, **{key: {**(getattr(self, key) or {}), name: value} for key, value in own.items()})
-        if name.endswith(".drag") and name.removesuffix(".drag") in (self.drag or {}):
-            name, table = name.removesuffix(".drag"), "drag"
-        tables = getattr(self, table) or {}
-        return replace(self, **{table: {**tables, name: {**tables.get(name, {}), **values}}})
+        new = dict[str, Any]()
+        if isinstance(self.held()[name], Node):
+            for key, value in values.items():
+                table = {"inertia": "inertias", "speed": "speeds"}[key]
+                new[table] = {**(getattr(self, table) or {}), name: value}
+            return replace(self, **new)
+        inner = name.removesuffix(".drag")
+        table, key = ("drag", inner) if name != inner and inner in (self.drag or {}) else ("shift", name)
+        tables: Mapping[str, Mapping[str, Any]] = getattr(self, table) or {}
+        new[table] = {**tables, key: {**tables.get(key, {}), **values}}
+        return replace(self, **new)
 
     def content(self, name: str) -> Mapping[str, Any]:  # noqa: ARG002, there is one
         """The gearbox, as a file holds it."""

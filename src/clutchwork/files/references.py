@@ -49,7 +49,7 @@ class References(Container[str]):
         wholes = (self.get(".".join(words[:cut])) for cut in range(len(words) - 1, 0, -1))
         whole = next((found for found in wholes if found is not None), None)
         parts = take_apart([whole]) if whole is not None and not any(component_problems(whole)) else Parts()
-        known = [*parts.nodes, *parts.thermal, *parts.components]
+        known: list[Node | ThermalNode | Component] = [*parts.nodes, *parts.thermal, *parts.components]
         return next((part for part in known if part.name == name), None)
 
     def broken(self, name: str) -> bool:

@@ -107,7 +107,7 @@ class Values:
             cls = element_kinds()[kind]
             known = {item.name: spec for item, spec in specs(cls) if spec.what != "port"}
             values = self._read(cls, known, table, place, ("type",))
-            rest = dict.fromkeys((item.name for item, _ in specs(cls)), BROKEN)
+            rest: dict[str, Any] = dict.fromkeys((item.name for item, _ in specs(cls)), BROKEN)
             rest |= dict.fromkeys((way for ways, _ in inputs(cls) for way in ways), None)
             found = value_problems(cls, {**rest, **values}, place)
             self.problems += [problem for problem in found if problem.quantity.split(".")[2] in values]

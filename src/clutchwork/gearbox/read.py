@@ -26,7 +26,7 @@ def read(source: Any) -> Read:
         return Read(None if found else source, found)
     if not isinstance(source, str | Mapping):
         remedy = "give a cw.Gearbox, a name of the catalogue, the path of a TOML file, or its content"
-        return Read(None, ((f"is no gearbox: {shown(source)}", remedy),))
+        return Read(None, ((f"is not a gearbox: {shown(source)}", remedy),))
     try:
         return Read(_named(source) if isinstance(source, str) else store.from_data(source))
     except ModelError as error:

@@ -64,7 +64,7 @@ def _known(kind: object) -> Any:
 
 
 def _ports(cls: Any, ends: Ends) -> dict[str, Node] | None:
-    """What is at the ports of an element between two shafts; None where it is no such element."""
+    """What is at the ports of an element between two shafts; None where it is not one."""
     names = {item.name for item, spec in specs(cls, "port") if spec.domain in ("", "rotation")}
     if len(names) < len(specs(cls, "port")):
         return None
@@ -81,7 +81,7 @@ def _unfit(cls: Any) -> tuple[str, str]:
     names = [item.name for item, _ in specs(cls, "port")]
     if names == ["shaft"]:
         return "acts against the housing, and this element joins two members", "give one with base and follower"
-    return "is no element between two shafts", "give a kind with the ports base and follower"
+    return "is not an element between two shafts", "give a kind with the ports base and follower"
 
 
 def _started(cls: Any, given: Mapping[str, Any], closed: bool) -> dict[str, Any]:
