@@ -80,7 +80,7 @@ def overview(found: Sequence[ShiftQuality], path: str | Path) -> None:
         places, [one.shift.inertia_time for one in found], bottom=torque, label="inertia phase", color="#35557F"
     )
     axes[0].set_ylabel("time [s]")
-    axes[0].legend(frameon=False)
+    axes[0].legend(frameon=False, ncols=2, loc="lower right", bbox_to_anchor=(1.0, 1.0))
     axes[1].bar(places, [one.peak_jerk for one in found], color="#B5651D")
     axes[1].set_ylabel("peak jerk [m/s3]")
     bottom = np.zeros(len(found))
@@ -90,6 +90,9 @@ def overview(found: Sequence[ShiftQuality], path: str | Path) -> None:
             axes[2].bar(places, heat, bottom=bottom, label=name)
             bottom += heat
     axes[2].set_ylabel("slip energy [kJ]")
-    axes[2].legend(frameon=False, ncols=4)
+    axes[2].set_ylim(0.0, 1.05 * float(np.max(bottom)) or 1.0)
+    axes[2].legend(frameon=False, ncols=9, loc="lower right", bbox_to_anchor=(1.0, 1.0))
+    for one in axes:
+        one.margins(y=0.05)
     axes[2].set_xticks(places, labels, rotation=90 if len(found) > 12 else 0)
     figure.savefig(where, dpi=120)
