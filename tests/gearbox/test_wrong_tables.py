@@ -26,7 +26,7 @@ WRONG: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
     "same row twice": ({"gears__9": ["D", "A", "E"]}, ('gear "9"', 'the same as gear "8"')),
     "element twice": ({"gears__3": ["B", "B", "E"]}, ('gear "3"', "names B twice")),
     "published missed": ({"published__1": 4.7}, ('published "1" = 4.7', "4.7143 by its teeth", "tolerance 0.001")),
-    "published unknown": ({"published__11": 4.7}, ('published "11"', "is no gear")),
+    "published unknown": ({"published__11": 4.7}, ('published "11"', "is not a gear")),
     "ring too small": ({"sets__P1__teeth_ring": 48}, ('set "P1"', "teeth_ring", "cannot mesh")),
     "teeth of a fraction": ({"sets__P1__teeth_ring": 96.5}, ('set "P1"', "a whole number", "96.5")),
     "teeth below zero": ({"sets__P1__teeth_sun": -48}, ('set "P1"', "> 0", "-48")),
@@ -44,10 +44,10 @@ WRONG: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
     "input is output": ({"output": "in"}, ("output", "is the input too")),
     "one name twice": ({"elements__out": ["C3", "out"]}, ("'out' names two things",)),
     "no sets": ({"sets": {}}, ("sets", "missing")),
-    "park that drives": ({"gears__P": ["A", "B", "C"], "gears__1": None, "published__1": None}, ("is no park",)),
+    "park that drives": ({"gears__P": ["A", "B", "C"], "gears__1": None, "published__1": None}, ("is not park",)),
     "neutral that drives": (
         {"gears__N": ["B", "C", "E"], "gears__3": None},
-        ("is no neutral", "a gear of ratio 2.106"),
+        ("is not neutral", "a gear of ratio 2.106"),
     ),
     "sets that lock": (
         {"sets__P5": {**LOCKS, "teeth_ring": 60}, "sets__P6": {**LOCKS, "teeth_ring": 70}},
@@ -125,4 +125,4 @@ def test_a_wrong_shift_table_of_a_spreadsheet(tmp_path: Path) -> None:
     with pytest.raises(cw.ModelError) as raised:
         cw.Gearbox.import_table(EIGHT_SPEED, tmp_path / "table.csv")
     text = str(raised.value)
-    assert all(words in text for words in ("is no mark", "appears twice", "3 cells for 4 columns", "'abc'"))
+    assert all(words in text for words in ("is not a mark", "appears twice", "3 cells for 4 columns", "'abc'"))

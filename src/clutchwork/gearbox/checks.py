@@ -64,7 +64,9 @@ def _member_problems(box: Definition) -> Iterator[Problem]:
         member = getattr(box, name)
         if member not in places and member != HOUSING:
             meant = near(member, places)
-            yield Problem("gearbox", name, f"is no member of a set or element{meant}", shown(member), _known(places))
+            yield Problem(
+                "gearbox", name, f"is not a member of any set or element{meant}", shown(member), _known(places)
+            )
     for member, where in places.items():
         if len(where) == 1 and member not in ends and where[0].startswith("element"):
             others = [other for other in places if other != member]
@@ -97,7 +99,9 @@ def _row_problems(box: Definition) -> Iterator[Problem]:
             if name not in names:
                 meant = near(name, names)
                 remedy = "" if meant else f"known elements: {listed(names)}" if names else "give elements: [elements]"
-                yield Problem(path, "", f"closes {shown(name)}, which is no element of this box{meant}", remedy=remedy)
+                yield Problem(
+                    path, "", f"closes {shown(name)}, which is not an element of this box{meant}", remedy=remedy
+                )
     seen: dict[frozenset[str], str] = {}
     for gear in box.gears:
         closed = frozenset(box.closed_in(gear))
@@ -109,7 +113,7 @@ def _row_problems(box: Definition) -> Iterator[Problem]:
         if gear not in box.gears:
             meant = near(gear, box.gears)
             remedy = "" if meant else f"known gears: {listed(box.gears)}"
-            yield Problem(f'published "{gear}"', "", f"is no gear of the shift table{meant}", remedy=remedy)
+            yield Problem(f'published "{gear}"', "", f"is not a gear of the shift table{meant}", remedy=remedy)
 
 
 def _rigid_problems(box: Definition) -> Iterator[Problem]:
@@ -132,13 +136,13 @@ def _rigid_problems(box: Definition) -> Iterator[Problem]:
 
 
 def _gear_problems(box: Definition, gear: str) -> Iterator[Problem]:
-    """A row that is no gear with one degree of freedom."""
+    """A row that does not make a gear with one degree of freedom."""
     found, path = combination(box, box.closed_in(gear)), f'gear "{gear}"'
     if gear in NO_GEARS:
         if found.kind not in NO_GEARS[gear]:
             ratio = f" of ratio {float(found.ratio):.4g}" if found.ratio is not None else ""
             fault = (
-                f"is no {'neutral' if gear == 'N' else 'park'}: closing {_named(found)} makes {_a(found.kind)}{ratio}"
+                f"is not {'neutral' if gear == 'N' else 'park'}: closing {_named(found)} makes {_a(found.kind)}{ratio}"
             )
             yield Problem(path, "", fault, remedy="correct the row or rename it")
         return

@@ -65,7 +65,7 @@ class Gearbox(Definition):
         made(where).write_text(store.toml(plain(self)), encoding="utf-8")
 
     def check(self) -> list[Problem]:
-        """All mistakes: names, teeth, rows of the shift table that are no gear, published ratios that are missed."""
+        """All mistakes: names, teeth, rows of the shift table that do not make a gear, published ratios that are missed."""
         return checks.problems(self)
 
     def state(self, gear: str | Sequence[str]) -> GearState:
@@ -75,13 +75,17 @@ class Gearbox(Definition):
         """
         if isinstance(gear, str):
             if gear not in self.gears:
-                raise UseError("box.state", [f"{shown(gear)} is no gear{near(gear, self.gears, _known(self.gears))}"])
+                raise UseError(
+                    "box.state", [f"{shown(gear)} is not a gear{near(gear, self.gears, _known(self.gears))}"]
+                )
             closed = self.closed_in(gear)
         else:
             closed = tuple(gear)
             names = [element.name for element in self.elements]
             wrong = [
-                f"{shown(name)} is no element{near(name, names, _known(names))}" for name in closed if name not in names
+                f"{shown(name)} is not an element{near(name, names, _known(names))}"
+                for name in closed
+                if name not in names
             ]
             if wrong:
                 raise UseError("box.state", wrong)
@@ -89,7 +93,7 @@ class Gearbox(Definition):
         if found is None:
             kind = self.combination(closed).kind
             raise UseError(
-                "box.state", [f"{listed(closed) or 'nothing'} closed is no gear but {kind}; close other elements"]
+                "box.state", [f"{listed(closed) or 'nothing'} closed make {kind}, not a gear; close other elements"]
             )
         return found
 

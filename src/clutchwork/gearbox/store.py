@@ -57,7 +57,7 @@ def _text(path: Path) -> str:
         why = reason(error) if isinstance(error, OSError) else "it is not UTF-8 text"
         missing = isinstance(error, FileNotFoundError)
         fault = "does not exist" if missing else f"cannot be read: {why}"
-        remedy = "check the path" if missing else "give a text file in UTF-8"
+        remedy = "check the path" if missing else "give a TOML, JSON or CSV file in UTF-8"
         raise ModelFileError([Problem("file", "", fault, remedy=remedy)], str(path)) from None
 
 
@@ -140,7 +140,7 @@ def shift_table(text: str) -> tuple[dict[str, list[str]], dict[str, float], list
                 gears[gear].append(name)
             elif cell.lower() not in BLANKS:
                 remedy = "mark closed elements with x, leave others empty"
-                found.append(Problem(path, name, "is no mark", shown(cell), remedy))
+                found.append(Problem(path, name, "is not a mark", shown(cell), remedy))
     return gears, ratios, found
 
 

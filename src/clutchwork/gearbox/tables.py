@@ -1,4 +1,4 @@
-"""Tables of a gearbox as text: gears with ratios, speeds, torques, shifts, combinations."""
+"""Tables of a gearbox in plain characters: gears with ratios, speeds, torques, shifts, combinations."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ STALLS = 0.8
 
 @dataclass(frozen=True)
 class Measured:
-    """What the controller is told at one instant.
+    """What the controller knows at one instant.
 
     Speeds of input and output [rad/s], torque at the input [N m], throttle 0 to 1, slip of elements [rad/s].
     """

@@ -34,7 +34,7 @@ class Sensed:
     output: str = ""
 
     def read(self, sim: Simulator, control: ShiftController, throttle: float) -> Measured:
-        """What the controller is told."""
+        """What the controller knows."""
         box, prefix = control.box, control.prefix
         ends = [self.input or f"{prefix}.{box.input}.speed", self.output or f"{prefix}.{box.output}.speed"]
         names = [element.name for element in box.elements]

@@ -36,7 +36,7 @@ class Fault:
     """One element that is stuck closed or missing in a gear, and what kinematics make of it.
 
     `makes` is what the closed elements are then: "gear" with its `ratio`, "neutral", "input held", "output held" or
-    "tie-up". Elements that are stuck give way by slipping, so what a car then does is told by a simulation.
+    "tie-up". Elements that are stuck give way by slipping, so a simulation shows what a car then does.
     """
 
     gear: str
