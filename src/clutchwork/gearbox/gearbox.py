@@ -65,7 +65,7 @@ class Gearbox(Definition):
         made(where).write_text(store.toml(plain(self)), encoding="utf-8")
 
     def check(self) -> list[Problem]:
-        """All mistakes: names, teeth, rows of the shift table that do not make a gear, published ratios that are missed."""
+        """All mistakes: names, teeth, rows of the shift table that make no gear, published ratios that are missed."""
         return checks.problems(self)
 
     def state(self, gear: str | Sequence[str]) -> GearState:

@@ -37,6 +37,15 @@ def names() -> tuple[str, ...]:
 
 def definition(source: str | Path) -> Definition:
     """A gearbox of the catalogue by its name, or that of a file; ModelError with all mistakes."""
+    return _known(source) if isinstance(source, str) and source in names() else _of_file(source)
+
+
+@cache
+def _known(name: str) -> Definition:
+    return _of_file(name)
+
+
+def _of_file(source: str | Path) -> Definition:
     path = Path(source)
     if isinstance(source, str) and path.suffix.lower() not in ENDINGS:
         if source not in names():
