@@ -21,10 +21,10 @@ Line = Sequence[tuple[float, float]]
 class ShiftSchedule:
     """Which gear to drive in: up above one speed of the input over the throttle, down below another.
 
-    Use it to make a `ShiftController` shift by itself. Both lines are speeds [rad/s] of the input of the gearbox
-    over the throttle [0 to 1], linear between their points and held outside. It shifts up where the input is faster than `up` in
-    the gear that is in, and down where it is slower than `down`. Where a line is crossed by so much that the next gear
-    is too low as well, gears are skipped if `skips` says so.
+    Use it to make a `ShiftController` shift by itself. Both lines are speeds [rad/s] of the input of the gearbox over
+    the throttle, 0 to 1, linear between their points and held outside. It shifts up where the input is faster than
+    `up` in the gear that is in, and down where it is slower than `down`. Where a line is crossed by so much that the
+    next gear is too low as well, gears are skipped if `skips` says so.
 
     ModelError where an upshift would fall below the line of the downshift, so that gears hunted.
     """
