@@ -49,6 +49,7 @@ NAMES = {
     "catalogue": "gearbox.gearbox",
     "break_away": "sweeps.outputs",
     "compare": "results.plot.compare",
+    "diagram": "diagrams.draw",
     "draw": "face.draw",
     "drive_cycle": "signals.bases.cycles",
     "integral": "sweeps.outputs",

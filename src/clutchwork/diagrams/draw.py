@@ -1,0 +1,87 @@
+"""Diagrams of a gearbox."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.base.errors import UseError, near
+from clutchwork.base.paths import path_fault
+from clutchwork.base.shown import listed, shown
+from clutchwork.declare.calls import explained
+from clutchwork.diagrams.picture import Diagram
+from clutchwork.gearbox.gearbox import Gearbox
+
+if TYPE_CHECKING:
+    from clutchwork.diagrams.marks import Mark
+    from clutchwork.gearbox.state import GearState
+
+KINDS = {
+    "stick": "half section with the lines of all members",
+    "lever": "a lever for each gear set, its members at distances by the teeth",
+    "speeds": "speed plan after Kutzbach: members at distances by the teeth, a straight line for each gear",
+    "chart": "bars of the speed of every member in every gear",
+}
+
+
+@explained("cw.diagram")
+def diagram(
+    box: Gearbox | str | Path,
+    kind: str = "stick",
+    *,
+    gear: str | Sequence[str] | None = None,
+    path: str | Path | None = None,
+    merged: bool = False,
+) -> Diagram:
+    """A picture of a gearbox, laid out by itself, as SVG; notebooks show it. Needs no further package.
+
+    Use it to see how a gearbox is built and where power goes in a gear.
+
+    Parameters: box, a Gearbox, or what `cw.Gearbox.load` takes; kind, "stick", the half section of papers, "lever",
+    levers with distances by the teeth, "speeds", the speed plan after Kutzbach, or "chart", the speed of every member;
+    gear, its name or the elements that are closed: what turns with power, as wide as the power, what is held, what is
+    idle, of the others the speeds; path, an SVG file, written when given; merged, whether gear sets that share two
+    members are one lever. UseError for what does not fit.
+
+    Sources: K. Kutzbach, Mehrgliedrige Radgetriebe und ihre Gesetze, Maschinenbau 22 (1927); H. Benford and M. Leising,
+    The lever analogy: a new tool in transmission analysis, SAE 810102 (1981), doi:10.4271/810102.
+    """
+    if isinstance(box, str | Path):
+        box = Gearbox.load(box)
+    problems = list(_problems(box, kind, path, merged))
+    if problems:
+        raise UseError("cw.diagram", problems)
+    now = None if gear is None else box.state(gear)
+    title = f"{box.title or box.name}, {kind}" + (f", gear {now.gear or listed(now.closed)}" if now else "")
+    made = Diagram(kind, title, _marks(box, kind, now, merged))
+    if path is not None:
+        made.save(path)
+    return made
+
+
+def _problems(box: Any, kind: Any, path: Any, merged: Any) -> Any:
+    if not isinstance(box, Gearbox):
+        yield f"{shown(box)} is no gearbox: give cw.Gearbox.load(...), or a name of the catalogue"
+    if kind not in KINDS:
+        yield f"kind is {shown(kind)}{near(str(kind), KINDS, f'choose from {listed(KINDS)}')}"
+    if path is not None and (fault := path_fault(path, "gearbox.svg")):
+        yield fault
+    if not isinstance(merged, bool):
+        yield f"merged is {shown(merged)}: give True or False"
+
+
+def _marks(box: Gearbox, kind: str, now: GearState | None, merged: bool) -> list[Mark]:
+    if kind == "stick":
+        from clutchwork.diagrams.stick import layout, paint
+
+        return paint.painted(box, layout.layout(box), now)
+    if kind == "lever":
+        from clutchwork.diagrams.lever import layout as hung
+        from clutchwork.diagrams.lever import paint as lever
+
+        return lever.painted(box, hung.layout(box, merged=merged), now)
+    from clutchwork.diagrams.speed import chart, plan
+
+    states = list(box.states().values())
+    return plan.painted(box, states, now) if kind == "speeds" else chart.painted(box, states, now)

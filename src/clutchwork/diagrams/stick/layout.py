@@ -1,0 +1,123 @@
+"""A gearbox laid out as a stick diagram: which order and side of its sets is best, and the grid without empty rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+
+from clutchwork.base.classes import dataclass
+from clutchwork.diagrams.stick.board import Edge
+from clutchwork.diagrams.stick.bodies import Body, Node, body
+from clutchwork.diagrams.stick.improve import routed
+from clutchwork.diagrams.stick.route import NoRoomError, Router
+from clutchwork.diagrams.stick.search import Symbol
+from clutchwork.diagrams.stick.spots import CELL
+from clutchwork.gearbox.definition import Definition
+
+ENDS, BETWEEN, ABOVE = 8, 7, 9  # free columns at the ends and between sets, free rows above sets
+MORE, TRIES = 4, 5
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Bodies, lines by member and symbols on a grid, whose rows and columns stand at distances of their own."""
+
+    bodies: tuple[Body, ...]
+    lines: Mapping[str, frozenset[Edge]]
+    symbols: Mapping[str, Symbol]
+    gates: Mapping[str, Node]
+    ends: Mapping[Node, str]  # whose line ends there: at sets, at symbols, at the edges
+    roots: Mapping[tuple[str, str], Node]  # by set and port
+    columns: Sequence[float]  # column of the grid -> its place in the picture [px]
+    rows: Sequence[float]  # height above the centre line [px]
+    wheels: Mapping[Node, int]  # 1 at suns, below their teeth, -1 at rings
+    crossings: int
+    cost: float
+
+
+class _Structure:
+    """What a layout depends on: not on teeth, and not on gears."""
+
+    def __init__(self, box: Definition) -> None:
+        self.box = box
+        self.bodies = [body(one) for one in box.sets]
+        self.key = repr((self.bodies, box.elements, box.members[:2]))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Structure) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+
+def layout(box: Definition) -> Layout:
+    """The best of a few arrangements; one that is known is not sought again."""
+    return _best(_Structure(box))
+
+
+@lru_cache(maxsize=32)
+def _best(one: _Structure) -> Layout:
+    return _routed(one.box, one.bodies, [False] * len(one.bodies))
+
+
+def _routed(box: Definition, bodies: Sequence[Body], mirrored: Sequence[bool]) -> Layout:
+    for more in range(0, MORE * TRIES, MORE):
+        column, placed = ENDS + more, []
+        for one, turned in zip(bodies, mirrored, strict=True):
+            placed.append(one.placed(column, mirrored=turned))
+            column += one.width + 1 + BETWEEN + more
+        rows = max(one.top for one in bodies) + 2 + ABOVE + more
+        router = routed(box, placed, column - BETWEEN + ENDS, rows)
+        if router is not None:
+            return _made(router, placed)
+    raise NoRoomError
+
+
+def _made(router: Router, bodies: Sequence[Body]) -> Layout:
+    columns, rows = used(router)
+    rows.add(0)
+    roots = {(one.name, port): piece.root for one in bodies for port, piece in one.pieces.items()}
+    return laid(router, bodies, roots, _places(columns, router.board.columns), _places(rows, router.board.rows))
+
+
+def laid(
+    router: Router,
+    bodies: Sequence[Body],
+    roots: Mapping[tuple[str, str], Node],
+    columns: Sequence[float],
+    rows: Sequence[float],
+) -> Layout:
+    """What a router made, with its columns and rows at their places [px]."""
+    return Layout(
+        bodies=tuple(bodies),
+        lines={member: frozenset(some) for member, some in router.board.lines.items()},
+        symbols=dict(router.symbols),
+        gates=dict(router.gates),
+        ends=dict(router.board.ends),
+        roots=roots,
+        columns=columns,
+        rows=rows,
+        wheels={bar.at: 1 if bar.up else -1 for one in bodies for bar in one.bars},
+        crossings=router.crossings(),
+        cost=router.cost(),
+    )
+
+
+def used(router: Router) -> tuple[set[int], set[int]]:
+    """Columns and rows that hold more than lines that go straight through."""
+    board = router.board
+    nodes = {*board.solid, *board.ends}
+    columns, rows = {c for c, _ in nodes}, {r for _, r in nodes}
+    for some in board.lines.values():
+        columns |= {a[0] for a, b in some if a[0] == b[0]}
+        rows |= {a[1] for a, b in some if a[1] == b[1]}
+    return columns, rows
+
+
+def _places(used: set[int], count: int) -> list[float]:
+    """Where each row comes to lie when those that are not used are left out [px]."""
+    places, place = list[float](), 0
+    for number in range(count):
+        places.append(CELL * place)
+        place += number in used
+    return places
