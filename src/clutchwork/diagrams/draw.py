@@ -10,19 +10,13 @@ from clutchwork.base.errors import UseError, near
 from clutchwork.base.paths import path_fault
 from clutchwork.base.shown import listed, shown
 from clutchwork.declare.calls import explained
+from clutchwork.diagrams.kinds import KINDS
 from clutchwork.diagrams.picture import Diagram
 from clutchwork.gearbox.gearbox import Gearbox
 
 if TYPE_CHECKING:
     from clutchwork.diagrams.marks import Mark
     from clutchwork.gearbox.state import GearState
-
-KINDS = {
-    "stick": "half section with the lines of all members",
-    "lever": "a lever for each gear set, its members at distances by the teeth",
-    "speeds": "speed plan after Kutzbach: members at distances by the teeth, a straight line for each gear",
-    "chart": "bars of the speed of every member in every gear",
-}
 
 
 @explained("cw.diagram")

@@ -46,6 +46,19 @@ def _known(name: str) -> Definition:
 
 
 def _of_file(source: str | Path) -> Definition:
+    path = _path(source)
+    text = _text(path)
+    return from_data(_parsed(path, text), str(path), _lines(text) if path.suffix.lower() == ".toml" else {})
+
+
+def content(source: str | Path) -> Any:
+    """What stands in a gearbox file, not checked."""
+    path = _path(source)
+    return _parsed(path, _text(path))
+
+
+def _path(source: str | Path) -> Path:
+    """The file of a gearbox."""
     path = Path(source)
     if isinstance(source, str) and path.suffix.lower() not in ENDINGS:
         if source not in names():
@@ -54,9 +67,8 @@ def _of_file(source: str | Path) -> Definition:
             )
             fault = f"is not in the catalogue{near(source, names())}"
             raise ModelFileError([Problem(f"gearbox {shown(source)}", "", fault, remedy=remedy)])
-        path = CATALOGUE / f"{source}.toml"
-    text = _text(path)
-    return from_data(_parsed(path, text), str(path), _lines(text) if path.suffix.lower() == ".toml" else {})
+        return CATALOGUE / f"{source}.toml"
+    return path
 
 
 def _text(path: Path) -> str:
