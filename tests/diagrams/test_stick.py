@@ -34,13 +34,20 @@ def test_box(name: str) -> None:
     assert drawings.faulty_crossings(plan) == []
     assert drawings.covered(plan) == []
     wanted = [*(one.name for one in box.sets), *(one.name for one in box.elements), "input", "output"]
-    wanted += [str(teeth) for one in box.sets for teeth in one.teeth.values()]
+    # sets that share planets share a wheel
+    teeth = {(one.name, name): str(number) for one in box.sets for name, number in one.teeth.items()}
+    wanted += [teeth[bar.source] for body in plan.bodies for bar in body.bars if bar.source in teeth]
+    wanted += [teeth[one.teeth] for body in plan.bodies for one in body.planets if one.teeth in teeth]
+    assert {source for body in plan.bodies for source in body.pieces} == {
+        (s.name, port) for s in box.sets for port in s.members
+    }
     for now in (None, *box.states().values()):
         marks = painted(box, plan, now)
         assert drawings.overlapping_labels(marks) == []
         assert drawings.struck_labels(marks) == []
         assert drawings.touching_members(box, marks) == []
-        texts = [mark.text for mark in marks if isinstance(mark, Label)]
+        # sets that share planets have one label
+        texts = [text for mark in marks if isinstance(mark, Label) for text in mark.text.split(" + ")]
         assert [text for text in wanted if texts.count(text) < wanted.count(text)] == []
         assert min(mark.size for mark in marks if isinstance(mark, Label)) >= 9.0
         assert {mark.what for mark in marks if isinstance(mark, Line)} >= set(box.members)

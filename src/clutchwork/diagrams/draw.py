@@ -56,7 +56,7 @@ def diagram(
 
 def _problems(box: Any, kind: Any, path: Any, merged: Any) -> Any:
     if not isinstance(box, Gearbox):
-        yield f"{shown(box)} is no gearbox: give cw.Gearbox.load(...), or a name of the catalogue"
+        yield f"{shown(box)} is not a gearbox: give cw.Gearbox.load(...), or a name of the catalogue"
     if kind not in KINDS:
         yield f"kind is {shown(kind)}{near(str(kind), KINDS, f'choose from {listed(KINDS)}')}"
     if path is not None and (fault := path_fault(path, "gearbox.svg")):

@@ -100,11 +100,12 @@ class Pen:
         """A filled circle."""
         self.marks.append(Disc(x, y, radius, fill, colour, width))
 
-    def arrow(self, tip: Point, way: Point, size: float, fill: str = INK) -> None:
+    def arrow(self, tip: Point, way: Point, size: float, fill: str = INK, what: str = "") -> None:
         """A filled head; `way` has the length 1."""
         (x, y), (a, b) = tip, way
         back, wide = (x - size * a, y - size * b), 0.45 * size
-        self.area(tip, (back[0] - wide * b, back[1] + wide * a), (back[0] + wide * b, back[1] - wide * a), fill=fill)
+        sides = ((back[0] - wide * b, back[1] + wide * a), (back[0] + wide * b, back[1] - wide * a))
+        self.area(tip, *sides, fill=fill, what=what)
 
     def label(
         self, x: float, y: float, text: str, size: float = SMALL, colour: str = INK,

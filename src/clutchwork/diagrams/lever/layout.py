@@ -59,7 +59,7 @@ def _body(one: Hung, rows: Sequence[float], column: int) -> Body:
     words = max(width_of(one.lever.label(member), SMALL) for member in one.heights)
     width = 1 + max(2, ceil((words + 9.0) / CELL))
     places = {member: _row(rows, height) for member, height in one.heights.items()}
-    pieces = {member: _piece(member, (column, row), width) for member, row in places.items()}
+    pieces = {("", member): _piece(member, (column, row), width) for member, row in places.items()}
     made = Body("+".join(one.lever.sets), width, max(places.values()), pieces=pieces)
     low = min(places.values())
     made.solid.update((column + c, r) for c in range(width + 1) for r in range(low - 1, made.top + 2))
@@ -80,14 +80,14 @@ def _plan(router: Router, made: Sequence[Hung], bodies: Sequence[Body], rows: Se
     board = router.board
     columns, needed = used(router)
     roots = {
-        source: body.pieces[member].root
+        source: body.pieces["", member].root
         for one, body in zip(made, bodies, strict=True)
         for member, ports in one.lever.ports.items()
         for source in ports
     }
     places = [CELL * sum(c in columns for c in range(number)) for number in range(board.columns)]
-    low, top = min(needed), max(needed - {board.rows - 1, board.rows - 2}, default=0)
-    brakes = any(symbol.first == symbol.second for symbol in router.symbols.values())
-    roof = rows[min(top + 1, len(rows) - 1)] if brakes else rows[top]
-    heights = [height - rows[low] for height in rows[:-2]] + [roof - rows[low] + CELL, roof - rows[low] + 2 * CELL]
+    # what stands on the housing comes right above the rest
+    low, top = min(needed), max(needed - {board.rows - n for n in (1, 2, 3)})
+    heights = [min(height, rows[top]) - rows[low] for height in rows]
+    heights[-3:] = [heights[top] + CELL * n for n in (1, 2, 3)]
     return laid(router, bodies, roots, places, heights)

@@ -45,7 +45,7 @@ def _draw_lever(pen: Pen, scene: Scene, one: Hung, body: Body) -> None:
     places = [scene.at(piece.root) for piece in body.pieces.values()]
     x, low, high = places[0][0], max(y for _, y in places), min(y for _, y in places)
     pen.line((x, low), (x, high), colour=INK, width=3.2, what=body.name)
-    for member, piece in body.pieces.items():
+    for (_, member), piece in body.pieces.items():
         _, y = scene.at(piece.root)
         if member == HOUSING:
             end = scene.at(piece.ends[0])

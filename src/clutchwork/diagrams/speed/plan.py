@@ -1,6 +1,6 @@
 """The speed plan of Kutzbach: members at places by the teeth, speeds above them, a straight line for each gear.
 
-A gearbox that is no one lever has a ladder for each; a member that stands in several has the same speed in all.
+A gearbox that is not one lever has a ladder for each; a member that stands in several has the same speed in all.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import field
 from typing import NamedTuple
 
@@ -9,6 +10,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.gearbox.gear_set import HOUSING, GearSet
 
 Node = tuple[int, int]  # column from the left, row above the centre line
+Source = tuple[str, str]  # a set and its port
 
 BASE = 5  # row of suns: as many lines less one pass between the centre line and a sun
 REACH, APART = 2, 3  # columns from a wheel to the edge of its set, and from wheel to wheel
@@ -17,7 +19,7 @@ REACH, APART = 2, 3  # columns from a wheel to the edge of its set, and from whe
 class Bar(NamedTuple):
     """The teeth of a wheel that faces its planet: at `row`, upwards where it is a sun."""
 
-    port: str
+    source: Source
     at: Node
     up: bool
 
@@ -28,7 +30,7 @@ class Planet(NamedTuple):
     at: Node
     low: int
     high: int
-    teeth: str = ""
+    teeth: Source = ("", "")
     wide: int = 0
 
 
@@ -51,7 +53,7 @@ class Body:
     top: int
     bars: list[Bar] = field(default_factory=list)
     planets: list[Planet] = field(default_factory=list)
-    pieces: dict[str, Piece] = field(default_factory=dict)
+    pieces: dict[Source, Piece] = field(default_factory=dict)
     solid: set[Node] = field(default_factory=set)
     # planets that turn together, by the columns of the first and the last wheel and their row
     joined: list[tuple[Node, Node]] = field(default_factory=list)
@@ -75,15 +77,31 @@ class Body:
             self.name, self.width, self.top,
             [bar._replace(at=to(bar.at)) for bar in self.bars],
             [planet(one) for one in self.planets],
-            {port: piece(one) for port, one in self.pieces.items()},
+            {source: piece(one) for source, one in self.pieces.items()},
             {to(node) for node in self.solid},
             [(first, last) for first, last in joined],
         )  # fmt: skip
 
 
-def body(one: GearSet) -> Body:
-    """A gear set at column 0."""
-    made = _ravigneaux(one) if one.kind == "ravigneaux" else _double(one) if one.kind == "double" else _planes(one)
+def bodies(sets: Sequence[GearSet]) -> list[Body]:
+    """All gear sets at column 0; those that share their planets are one."""
+    groups: dict[object, list[GearSet]] = {}
+    for one in sets:
+        groups.setdefault(_shared(one), []).append(one)
+    return [_body(group) for group in groups.values()]
+
+
+def _shared(one: GearSet) -> object:
+    """What two sets have in common whose planets turn alike: their carrier, and one wheel with its planet wheel."""
+    if one.kind not in ("stepped", "two_suns") or one.ratios:
+        return one.name
+    last = one.shape.wheels[-1]
+    return one.kind, one.carrier, one.members[last.port], one.teeth[last.port], one.teeth[last.planet]
+
+
+def _body(group: Sequence[GearSet]) -> Body:
+    one = group[0]
+    made = _ravigneaux(one) if one.kind == "ravigneaux" else _double(one) if one.kind == "double" else _planes(group)
     ends = {end for piece in made.pieces.values() for end in piece.ends if piece.member != HOUSING}
     made.solid.difference_update(ends)
     return made
@@ -93,79 +111,93 @@ def _wheel(made: Body, one: GearSet, port: str, at: Node, *, up: bool) -> None:
     """A sun with its end below, or a ring with its end above."""
     column, row = at
     end = (column, row - 1) if up else (column, row + 1)
-    made.bars.append(Bar(port, at, up))
-    made.pieces[port] = Piece(one.members[port], at, ((at, end),), (end,))
+    made.bars.append(Bar((one.name, port), at, up))
+    made.pieces[one.name, port] = Piece(one.members[port], at, ((at, end),), (end,))
     if one.members[port] == HOUSING:
         made.solid.update((column + n, end[1] + step) for n in (-1, 0, 1) for step in ((0, -1) if up else (0, 1)))
 
 
-def _pin(
-    made: Body, port: str, member: str, middle: Node, width: int, more: tuple[tuple[Node, Node], ...] = ()
-) -> None:
+def _pin(made: Body, source: Source, member: str, middle: Node, more: tuple[tuple[Node, Node], ...] = ()) -> None:
     """A pin through planets, from edge to edge of the set."""
-    left, right = (0, middle[1]), (width, middle[1])
-    made.pieces[port] = Piece(member, middle, ((left, middle), (middle, right), *more), (left, right))
+    left, right = (0, middle[1]), (made.width, middle[1])
+    made.pieces[source] = Piece(member, middle, ((left, middle), (middle, right), *more), (left, right))
 
 
 def _cover(made: Body, left: int, right: int, low: int, high: int) -> None:
     made.solid.update((c, r) for c in range(left, right + 1) for r in range(low, high + 1))
 
 
-def _planes(one: GearSet) -> Body:
+class _Plane(NamedTuple):
+    """A plane of wheels: its set, the ports in it, the name of the teeth of its planet wheel."""
+
+    one: GearSet
+    ports: tuple[str, ...]
+    planet: str
+
+    @property
+    def size(self) -> int:
+        """Teeth of its planet wheel."""
+        return self.one.teeth.get(self.planet, 0)
+
+
+def _planes(group: Sequence[GearSet]) -> Body:
     """Planets on one pin, with a wheel for each plane: single, stepped, two suns, two rings, a pair of gears."""
-    if one.kind == "gear":
-        planes = [(("first", ""), "")]
-    elif one.kind == "single":
-        planes = [(("sun", "ring"), "planet")]
+    one = group[0]
+    if len(one.shape.wheels) > 1 and one.shape.wheels[-1].planet:
+        *firsts, last = one.shape.wheels
+        planes = [_Plane(other, (wheel.port,), wheel.planet) for other in group for wheel in firsts]
+        planes.append(_Plane(one, (last.port,), last.planet))
     else:
-        planes = [((wheel.port, ""), wheel.planet) for wheel in one.shape.wheels]
-    sizes = [one.teeth.get(planet, 0) for _, planet in planes]
-    radii = [3 if len(planes) > 1 and size == max(sizes) and min(sizes) < size else 2 for size in sizes]
-    width, pin = 2 * REACH + APART * (len(planes) - 1), BASE + max(radii)
-    made = Body(one.name, width, pin + max(radii))
-    _cover(made, 0, width, BASE, made.top)
-    for number, ((ports, planet), radius) in enumerate(zip(planes, radii, strict=True)):
+        planes = [_Plane(one, ("first",), "second") if one.kind == "gear" else _Plane(one, ("sun", "ring"), "planet")]
+    # larger planets are drawn larger, in at most three sizes
+    ranks = sorted({plane.size for plane in planes})
+    radii = [2 + min(2, ranks.index(plane.size)) for plane in planes]
+    pin = BASE + max(radii)
+    made = Body("+".join(other.name for other in group), 2 * REACH + APART * (len(planes) - 1), pin + max(radii))
+    for number, (plane, radius) in enumerate(zip(planes, radii, strict=True)):
         column = REACH + APART * number
-        made.planets.append(Planet((column, pin), pin - radius, pin + radius, planet))
-        for port in filter(None, ports):
+        # an end of a wheel is free below it or above it
+        _cover(made, column - REACH, column + REACH, pin - radius, pin + radius)
+        made.planets.append(Planet((column, pin), pin - radius, pin + radius, (plane.one.name, plane.planet)))
+        for port in plane.ports:
             ring = "ring" in port
-            _wheel(made, one, port, (column, pin + radius if ring else pin - radius), up=not ring)
+            _wheel(made, plane.one, port, (column, pin + radius if ring else pin - radius), up=not ring)
     if len(planes) > 1:
-        made.joined.append(((REACH, pin), (width - REACH, pin)))
+        made.joined.append(((REACH, pin), (made.width - REACH, pin)))
     turned = "second" if one.kind == "gear" else "carrier"
-    _pin(made, turned, one.members[turned], (REACH, pin), width)
-    if turned == "second":
-        # it turns with its shaft, so its teeth stand at the wheel
-        made.planets[0] = made.planets[0]._replace(teeth="second")
+    _pin(made, (one.name, turned), one.members[turned], (REACH, pin))
+    for other in group[1:]:
+        # what they share is drawn once
+        shared = {(other.name, port): made.pieces[one.name, port] for port in ("carrier", one.shape.wheels[-1].port)}
+        made.pieces.update(shared)
     return made
 
 
 def _double(one: GearSet) -> Body:
     """Two planets, one above the other, whose pins a web joins on the left."""
-    width, inner, outer = 2 * REACH, BASE + 2, BASE + 6
-    made = Body(one.name, width, BASE + 8)
-    _cover(made, 0, width, BASE, made.top)
+    inner, outer = BASE + 2, BASE + 6
+    made = Body(one.name, 2 * REACH, BASE + 8)
+    _cover(made, 0, made.width, BASE, made.top)
     made.planets.extend(Planet((REACH, pin), pin - 2, pin + 2) for pin in (inner, outer))
     _wheel(made, one, "sun", (REACH, BASE), up=True)
     _wheel(made, one, "ring", (REACH, made.top), up=False)
     more = (((0, inner), (0, outer)), ((0, outer), (REACH, outer)))
-    _pin(made, "carrier", one.members["carrier"], (REACH, inner), width, more)
+    _pin(made, (one.name, "carrier"), one.members["carrier"], (REACH, inner), more)
     return made
 
 
 def _ravigneaux(one: GearSet) -> Body:
     """The large sun on the left below the long planet; on the right a short one between it and the small sun."""
     near, far = REACH, REACH + 4
-    width, short, long = far + REACH, BASE + 2, BASE + 6
-    made = Body(one.name, width, BASE + 8)
-    _cover(made, 0, width, BASE + 4, made.top)
-    _cover(made, far - REACH, width, BASE, made.top)
-    made.planets.extend(
-        (Planet((far, short), BASE, BASE + 4), Planet((near, long), BASE + 4, BASE + 8, wide=far - near))
-    )
+    short, long = BASE + 2, BASE + 6
+    made = Body(one.name, far + REACH, BASE + 8)
+    _cover(made, 0, made.width, BASE + 4, made.top)
+    _cover(made, far - REACH, made.width, BASE, made.top)
+    made.planets.append(Planet((far, short), BASE, BASE + 4))
+    made.planets.append(Planet((near, long), BASE + 4, BASE + 8, wide=far - near))
     _wheel(made, one, "large_sun", (near, BASE + 4), up=True)
     _wheel(made, one, "small_sun", (far, BASE), up=True)
     _wheel(made, one, "ring", (near, made.top), up=False)
-    more = (((width, long), (width, short)), ((width, short), (far, short)))
-    _pin(made, "carrier", one.members["carrier"], (near, long), width, more)
+    web = (made.width, long), (made.width, short)
+    _pin(made, (one.name, "carrier"), one.members["carrier"], (near, long), (web, (web[1], (far, short))))
     return made

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from clutchwork.base.classes import dataclass
 from clutchwork.diagrams.stick.board import Edge
-from clutchwork.diagrams.stick.bodies import Body, Node, body
+from clutchwork.diagrams.stick.bodies import Body, Node, bodies
 from clutchwork.diagrams.stick.improve import routed
 from clutchwork.diagrams.stick.route import NoRoomError, Router
 from clutchwork.diagrams.stick.search import Symbol
@@ -40,7 +40,7 @@ class _Structure:
 
     def __init__(self, box: Definition) -> None:
         self.box = box
-        self.bodies = [body(one) for one in box.sets]
+        self.bodies = bodies(box.sets)
         self.key = repr((self.bodies, box.elements, box.members[:2]))
 
     def __eq__(self, other: object) -> bool:
@@ -76,7 +76,7 @@ def _routed(box: Definition, bodies: Sequence[Body], mirrored: Sequence[bool]) -
 def _made(router: Router, bodies: Sequence[Body]) -> Layout:
     columns, rows = used(router)
     rows.add(0)
-    roots = {(one.name, port): piece.root for one in bodies for port, piece in one.pieces.items()}
+    roots = {source: piece.root for one in bodies for source, piece in one.pieces.items()}
     return laid(router, bodies, roots, _places(columns, router.board.columns), _places(rows, router.board.rows))
 
 

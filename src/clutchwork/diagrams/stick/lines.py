@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from itertools import pairwise
 
 from clutchwork.diagrams.marks import POWER, Pen, Point
@@ -94,20 +94,38 @@ def _draw_chain(
     pen: Pen, scene: Scene, member: str, chain: list[Node], power: float, across: dict[Node, float]
 ) -> None:
     colour, width = scene.colour(member, power), scene.width(power)
-    points = [place(scene, node) for node in chain]
-    part = [points[0]]
-    for number in range(1, len(chain) - 1):
-        here, after, x = points[number], points[number + 1], chain[number]
-        if chain[number - 1][0] == chain[number + 1][0] and x in across:
-            # a gap for the line that goes across
-            sign, half = (1.0 if after[1] > here[1] else -1.0), GAP + 0.5 * across[x]
-            pen.line(*_straight([*part, (here[0], here[1] - sign * half)]), colour=colour, width=width, what=member)
-            part = [(here[0], here[1] + sign * half)]
-        else:
-            part.append(here)
-    pen.line(*_straight([*part, points[-1]]), colour=colour, width=width, what=member)
+    free = list[list[Point]]()
+    for points, gap in _runs(scene, chain, across):
+        pen.line(*_straight(points), colour=colour, width=width, what=member)
+        free += gap
     if colour == POWER:
-        _draw_head(pen, points if power > 0 else points[::-1], width)
+        _draw_head(pen, free, power > 0, width, member)
+
+
+def _runs(
+    scene: Scene, chain: list[Node], across: dict[Node, float]
+) -> Iterator[tuple[list[Point], list[list[Point]]]]:
+    """Parts of a chain that are drawn, cut where a line goes across, and parts of these that cross nothing."""
+    points = [place(scene, node) for node in chain]
+    part, free, now = [points[0]], list[list[Point]](), [points[0]]
+    for number in range(1, len(chain) - 1):
+        (x, y), node = points[number], chain[number]
+        if node not in across:
+            part.append((x, y))
+            now.append((x, y))
+            continue
+        upright, half = chain[number - 1][0] == chain[number + 1][0], GAP + 0.5 * across[node]
+        a, b = _sign(chain[number][0] - chain[number - 1][0]), _sign(chain[number - 1][1] - chain[number][1])
+        free.append([*now, (x - half * a, y - half * b)])
+        now = [(x + half * a, y + half * b)]
+        if upright:
+            yield [*part, (x, y - half * b)], []
+            part = [(x, y + half * b)]
+    yield [*part, points[-1]], [*free, [*now, points[-1]]]
+
+
+def _sign(value: int) -> float:
+    return float((value > 0) - (value < 0))
 
 
 def place(scene: Scene, node: Node) -> Point:
@@ -129,17 +147,16 @@ def _straight(points: list[Point]) -> list[Point]:
     return [*kept, points[-1]]
 
 
-def _draw_head(pen: Pen, points: list[Point], width: float) -> None:
+def _draw_head(pen: Pen, parts: list[list[Point]], forward: bool, width: float, member: str) -> None:
     """An arrow in the middle of the longest straight part, where there is room."""
-    corners = _straight(points)
-    (a, b), (c, d) = max(
-        pairwise(corners), key=lambda pair: abs(pair[0][0] - pair[1][0]) + abs(pair[0][1] - pair[1][1])
-    )
+    straight = [pair for part in parts for pair in pairwise(_straight(part))]
+    start, end = max(straight, key=lambda pair: abs(pair[0][0] - pair[1][0]) + abs(pair[0][1] - pair[1][1]))
+    (a, b), (c, d) = (start, end) if forward else (end, start)
     long, size = abs(a - c) + abs(b - d), HEAD + width
     if long >= size + 6.0:
         way = ((c - a) / long, (d - b) / long)
-        middle = (0.5 * (a + c) + 0.5 * size * way[0], 0.5 * (b + d) + 0.5 * size * way[1])
-        pen.arrow(middle, way, size, POWER)
+        tip = (0.5 * (a + c) + 0.5 * size * way[0], 0.5 * (b + d) + 0.5 * size * way[1])
+        pen.arrow(tip, way, size, POWER, member)
 
 
 def _draw_joints(pen: Pen, scene: Scene, member: str, some: set[Edge], flow: dict[Edge, float]) -> None:
