@@ -86,6 +86,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
         "processes": shared.processes,
         "inputs": tuple(wires.inputs),
         "links": tuple(wires.links),
+        "gearboxes": tuple(table for one in whole.elements if (table := one.shift_table()) is not None),
         "sums": parts.sums,
         "independent": tuple(model.nodes[n].name for n in made.independent),
         "parameters": pools.places,

@@ -26,7 +26,7 @@ from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE
-from clutchwork.declare.node import Component, Node, ThermalNode
+from clutchwork.declare.node import Component, Node, ShiftTable, ThermalNode
 from clutchwork.declare.schema import Role
 from clutchwork.model.changes import renewed
 from clutchwork.model.findings import may_change
@@ -68,6 +68,7 @@ class System:
     processes: tuple[Component, ...] = ()
     inputs: tuple[Input, ...] = ()
     links: tuple[Link, ...] = ()
+    gearboxes: tuple[ShiftTable, ...] = ()  # gears by name
     sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # "c1" -> parts that count as "c1"
     independent: tuple[str, ...] = ()  # names of the nodes with independent speeds
     parameters: Mapping[str, int] = field(default_factory=dict)  # "c1.gain" -> place in params

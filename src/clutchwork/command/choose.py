@@ -52,9 +52,10 @@ def given_units(wanted: Sequence[str], known: Mapping[str, Channel]) -> dict[str
 
 
 def chosen_shafts(system: System, asked: str | None) -> tuple[str, str] | None:
-    """The two shafts of `--ratio A/B`, by default drive and load; None where there are none."""
+    """The two shafts of `--ratio A/B`, by default drive and load, or those of a gearbox; None where there are none."""
     if asked is None:
-        return input_and_output(wiring(system))
+        ends = [(table.input, table.output) for table in system.gearboxes]
+        return input_and_output(wiring(system)) or (ends[0] if len(ends) == 1 else None)
     names = [node.name for node in wiring(system).nodes]
     # a name may hold a slash itself
     cuts = [(asked[:place], asked[place + 1 :]) for place, sign in enumerate(asked) if sign == "/"]

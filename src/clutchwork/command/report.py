@@ -13,6 +13,7 @@ from clutchwork.base.shown import LONGEST, shortened
 from clutchwork.base.text import columns, counted
 from clutchwork.model.changes import all_names, targets_of
 from clutchwork.results.channels import channels
+from clutchwork.results.gears import named_closed
 from clutchwork.results.hints.registry import of_model
 from clutchwork.results.overview import number, sizes
 from clutchwork.results.ratios import Gears, Phase, follows_from, gears, head_of
@@ -35,8 +36,9 @@ def run_text(run: Trajectory, phases: Sequence[Phase], shafts: tuple[str, str] |
     parts = [event_text(run.events)]
     if phases and shafts is not None:
         why = follows_from(run.system)
-        parts.append(phase_text(phases, shafts, why))
+        parts.append(phase_text(run.system, phases, shafts, why))
         parts += change_text(phases, shafts, why)
+    parts += [str(run.gears(table.name)) for table in run.system.gearboxes]
     parts += dependent_text(run)
     if run.options.work:
         parts.append(str(run.energy))
@@ -51,14 +53,14 @@ def event_text(events: Events) -> str:
     return text + (f"\n... and {len(events) - MOST_LINES} more" if len(events) > MOST_LINES else "")
 
 
-def phase_text(phases: Sequence[Phase], shafts: tuple[str, str], why: str) -> str:
+def phase_text(system: System, phases: Sequence[Phase], shafts: tuple[str, str], why: str) -> str:
     """Which contacts were locked when, and the ratio that they gave.
 
     Parameters: why, what the ratio follows from.
     """
     head = ("from s", "to s", "locked", f"{shafts[0]}/{shafts[1]} {why}", "at the end")
     lines = [
-        (f"{p.begin:.6f}", f"{p.end:.6f}", " ".join(p.closed) or "-", number(p.kinematic), number(p.measured))
+        (f"{p.begin:.6f}", f"{p.end:.6f}", named_closed(system, p.closed), number(p.kinematic), number(p.measured))
         for p in phases[:MOST_LINES]
     ]
     return columns([head, *lines], right={0, 1, 3, 4})
@@ -111,6 +113,7 @@ def run_data(
         "events": [asdict(event) for event in run.events],
         "ratio_of": list(shafts) if shafts else None,
         "phases": [asdict(phase) for phase in phases],
+        "gears": {table.name: [asdict(one) for one in run.gears(table.name)] for table in run.system.gearboxes},
         "dependent": [asdict(phase) for phase in run.dependent] if len(run) else [],
         "energy": run.energy.to_dict() if run.options.work and len(run) else None,
         "final": {name: float(run[name][-1]) for name in run.names if name.endswith(FINAL) and len(run)},
@@ -137,7 +140,7 @@ def model_text(system: System, shafts: tuple[str, str] | None) -> str:
     if shafts is None:
         return "\n\n".join([*parts, *advice])
     found = gears(system, shafts)
-    lines = [(" ".join(closed) or "-", number(value)) for closed, value in found.ratios]
+    lines = [(named_closed(system, closed), number(value)) for closed, value in found.ratios]
     if lines:
         table = columns([("closed", head_of(system, shafts)), *lines], right={1}).split("\n")
         parts.append("\n".join([table[0], *_first(table[1:])]))

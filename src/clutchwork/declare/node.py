@@ -159,6 +159,7 @@ class ShiftTable(NamedTuple):
     elements: tuple[str, ...]  # "gearbox.A"
     freewheels: tuple[str, ...]
     gears: Mapping[str, tuple[str, ...]]  # gear -> closed elements
+    ratios: Mapping[str, float | None]  # gear -> speed of the input over that of the output, None in neutral
 
 
 class Listed(type):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
+from numbers import Real
 from typing import Any, ClassVar
 
 from clutchwork.base.errors import near
@@ -29,7 +30,7 @@ from clutchwork.declare import (
 )
 from clutchwork.elements.bases.gear_trains import train
 from clutchwork.elements.bases.heating import Heating
-from clutchwork.elements.bases.shift_elements import DRAG, KINDS, Ends, entry, load, usual
+from clutchwork.elements.bases.shift_elements import DRAG, KINDS, Ends, entry, load, ratios, usual
 from clutchwork.elements.gear import Gear
 from clutchwork.gearbox.definition import Definition
 from clutchwork.gearbox.motion import speeds
@@ -84,9 +85,34 @@ class Transmission(Heating):
     efficiencies: Mapping[str, float] | None = named("1", "efficiency of the meshes by set", above=0.0, at_most=1.0)
     gear: str | None = text("gear at the start, none: all elements are open", default=None)
 
+    def _accept(self) -> None:
+        """Values with units are put into SI, those in the tables too."""
+        super()._accept()
+        for found in self._entries:
+            field, name = found.quantity.split(".", 1)
+            table = getattr(self, field) or {}
+            if found.made is not None and isinstance(table.get(name), Mapping):
+                own = {key: getattr(found.made, key, value) for key, value in table[name].items()}
+                vars(self)[field] = frozen({**table, name: own | {k: v for k, v in table[name].items() if k == "type"}})
+
     @cached_property
     def _read(self) -> Read:
         return read(self.gearbox)
+
+    @cached_property
+    def _box(self) -> Definition | None:
+        """Its gearbox; None where that has mistakes, or values that its parts are made of."""
+        tables = (self.inertias, self.speeds, self.shift, self.drag, self.efficiencies)
+        numbers = (self.torque, self.efficiency or 1.0, self.inertia, *self._numbers())
+        sound = all(table is None or isinstance(table, Mapping) for table in tables)
+        sound = sound and all(isinstance(number, Real) for number in numbers)
+        return self._read.box if sound and isinstance(self.input, Node) and isinstance(self.output, Node) else None
+
+    def _numbers(self) -> Iterator[Any]:
+        for table in (self.inertias, self.speeds, self.efficiencies):
+            yield from table.values() if isinstance(table, Mapping) else ()
+        for node in (self.input, self.output):
+            yield 0.0 if not isinstance(node, Node) or node.speed is None else node.speed
 
     @cached_property
     def _made(self) -> tuple[Part, ...]:
@@ -117,7 +143,7 @@ class Transmission(Heating):
         return self._made
 
     def _parts(self) -> Iterator[Part]:
-        box = self._read.box
+        box = self._box
         if box is None:
             return
         nodes = self._nodes(box)
@@ -142,7 +168,7 @@ class Transmission(Heating):
         """Speeds of the members in the gear at the start, where one port has a speed and the other follows."""
         ports = ((box.input, self.input.speed), (box.output, self.output.speed))
         known = [(member, speed) for member, speed in ports if speed is not None]
-        if self.gear not in box.gears or len(known) != 1:
+        if not self._in_gear(box) or len(known) != 1:
             return {}
         rows, (member, speed) = speeds(box, box.closed_in(str(self.gear))), known[0]
         column = next(iter(rows[member]), None)
@@ -151,6 +177,9 @@ class Transmission(Heating):
         if column is None or len(rows[member]) > 1:
             return {}
         return {name: float(row.get(column, 0) / rows[member][column]) * speed for name, row in own.items()}
+
+    def _in_gear(self, box: Definition) -> bool:
+        return isinstance(self.gear, str) and self.gear in box.gears
 
     def _heat(self) -> dict[str, Any]:
         return {} if self.heat is None else {"heat": self.heat, "heat_share": self.heat_share}
@@ -161,12 +190,11 @@ class Transmission(Heating):
 
     @cached_property
     def _entries(self) -> tuple[Entry, ...]:
-        box = self._read.box
-        return () if box is None else tuple(self._all_entries(box))
+        return () if self._box is None else tuple(self._all_entries(self._box))
 
     def _all_entries(self, box: Definition) -> Iterator[Entry]:
         nodes = {**self._nodes(box), HOUSING.name: HOUSING}
-        closed = box.closed_in(str(self.gear)) if self.gear in box.gears else box.always_closed
+        closed = box.closed_in(str(self.gear)) if self._in_gear(box) else box.always_closed
         shift, drag = self.shift or {}, self.drag or {}
         loads = load(box)
         for element in box.elements:
@@ -213,11 +241,11 @@ class Transmission(Heating):
 
     def shift_table(self) -> ShiftTable | None:
         """Gears by the elements that are closed in them."""
-        box = self._read.box
+        box = self._box
         if box is None:
             return None
         own = {element.name: f"{self.name}.{element.name}" for element in box.elements}
         ways = [e.made.name for e in self._entries if e.made is not None and e.made.one_way]
         gears = {gear: tuple(own[name] for name in box.closed_in(gear)) for gear in box.gears}
         ends = (f"{self.name}.{box.input}", f"{self.name}.{box.output}")
-        return ShiftTable(self.name, *ends, tuple(own.values()), tuple(ways), gears)
+        return ShiftTable(self.name, *ends, tuple(own.values()), tuple(ways), frozen(gears), ratios(box))

@@ -9,7 +9,7 @@ from typing import Any
 
 from clutchwork.base.errors import Problem
 
-_HEAD = re.compile(r'\s*(\[\[?)\s*"?([A-Za-z_]+)"?\s*\]\]?\s*(#.*)?')
+_HEAD = re.compile(r'\s*(\[\[?)\s*"?([A-Za-z_]+)"?\s*((?:\.\s*(?:"[^"]*"|[\w-]+)\s*)*)\]\]?\s*(#.*)?')
 _KEY = re.compile(r'\s*"?([A-Za-z_][\w-]*)"?\s*[=.]')
 _PATH = re.compile(r'(\w+)(?: number (\d+)| "(.*?)"(?= \(| and |$))?', re.DOTALL)
 
@@ -24,15 +24,21 @@ class Lines:
 
     def _read(self, text: str) -> None:
         counts: dict[str, int] = {}
-        inside, table = False, ("file", 0)
+        inside, table, below = False, ("file", 0), ""
         for number, line in enumerate(text.split("\n"), 1):
             head = None if inside else _HEAD.fullmatch(line)
-            if head:
+            if head and head[3]:
+                # a table inside of the last one: [element.shift.A]
+                below = re.sub(r"[\s\"]", "", head[3])[1:] + "."
+                table = (head[2], counts.get(head[2], 0))
+                self._keys.setdefault((*table, below[:-1]), number)
+            elif head:
+                below = ""
                 counts[head[2]] = counts.get(head[2], 0) + 1
                 table = (head[2], counts[head[2]] if head[1] == "[[" else 0)
                 self._heads.setdefault(table, number)
             elif not inside and (key := _KEY.match(line)):
-                self._keys.setdefault((*table, key[1]), number)
+                self._keys.setdefault((*table, below + key[1]), number)
             # a text over several lines may look like anything
             if (line.count('"""') + line.count("'''")) % 2:
                 inside = not inside
@@ -50,8 +56,11 @@ class Lines:
             listed = entries if isinstance(entries, list) else []
             names = [entry.get("name") if isinstance(entry, Mapping) else None for entry in listed]
             number = names.index(match[3]) + 1 if match[3] in names else -1
-        key = re.split(r"[., ]", problem.quantity, maxsplit=1)[0]
-        line = self._keys.get((kind, number, key)) or self._heads.get((kind, number), 0)
+        words = re.split(r"[., ]", problem.quantity)
+        key = words[0]
+        ways = [".".join(words[:cut]) for cut in range(len(words), 0, -1)]
+        line = next((self._keys[kind, number, way] for way in ways if (kind, number, way) in self._keys), 0)
+        line = line or self._heads.get((kind, number), 0)
         if kind == "file":
             # a table with an unknown head
             line = line or self._heads.get((key, 1)) or self._heads.get((key, 0), 0)

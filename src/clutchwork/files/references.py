@@ -52,6 +52,12 @@ class References(Container[str]):
         known: list[Node | ThermalNode | Component] = [*parts.nodes, *parts.thermal, *parts.components]
         return next((part for part in known if part.name == name), None)
 
+    def unknown_part(self, name: object) -> bool:
+        """Whether a name may be that of a part of an element with mistakes, which are reported where it stands."""
+        words = name.split(".") if isinstance(name, str) else []
+        wholes = [".".join(words[:cut]) for cut in range(len(words) - 1, 0, -1)]
+        return any(whole in self and self.get(whole) is None for whole in wholes)
+
     def broken(self, name: str) -> bool:
         """Whether an element was read and has mistakes."""
         return self._places[name] in self._made

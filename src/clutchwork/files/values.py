@@ -189,6 +189,8 @@ class Values:
         part = self.elements.part(value)
         if isinstance(part, ThermalNode if spec.what == "thermal" else Node):
             return part
+        if self.elements.unknown_part(value):
+            return BROKEN
         moving = any(node.domain is Domain.TRANSLATION for node in self.nodes.values())
         what = PORTS[spec.domain if moving else spec.domain or "rotation"] if spec.what == "port" else "thermal node"
         if isinstance(value, str) and value in self.strays:
@@ -207,6 +209,8 @@ class Values:
         if name in self.elements and found is None:
             # its own mistakes are reported where it stands
             return BROKEN if self.elements.broken(name) else self._report(at, "refers back to itself", shown(name))
+        if found is None and self.elements.unknown_part(name):
+            return BROKEN
         if found is None:
             known = [*self.thermal, *self.elements, *self.nodes]
             message = "is not a thermal node, element or shaft of this model" + near(name, known)

@@ -13,7 +13,7 @@ from clutchwork.declare.node import Component, Entry, Law, Node, ThermalNode
 from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.declare.speech import path_of
-from clutchwork.model.fields import object_problems
+from clutchwork.model.fields import is_sound, object_problems
 from clutchwork.model.numbers import At, as_float
 from clutchwork.model.thermal import Within
 from clutchwork.signals.constant import Constant
@@ -26,7 +26,9 @@ def component_problems(component: Component, at: At | None = None) -> Iterator[P
     """
     at = at or At(path_of(component), "")
     found = list(object_problems(component, at))
-    found += () if found else [problem for entry in component.entries() for problem in _entry_problems(entry, at)]
+    # rules between values may be broken, values themselves may not
+    entries = component.entries() if not found or is_sound(component) else ()
+    found += [problem for entry in entries for problem in _entry_problems(entry, at)]
     found = found or list(_beyond_numbers(component, at))
     yield from found
     yield from locked_problems(component, at)
@@ -37,10 +39,16 @@ def component_problems(component: Component, at: At | None = None) -> Iterator[P
 
 def type_problem(kind: Any, at: At) -> Problem:
     """A kind of an element in a composite that there is not."""
-    known = [kind for role in (Role.CONTACT, Role.TORQUE) for kind in REGISTRY[role]]
-    meant = near(kind, known)
+    known = [name for role in (Role.CONTACT, Role.COMPOSITE) for name, cls in REGISTRY[role].items() if _joins_two(cls)]
+    meant = near(kind, [*known, *REGISTRY[Role.TORQUE]])
     remedy = "" if meant else f"known types: {listed(known)}"
     return at.inner("type").problem(f"is an unknown type{meant}", shown(kind), remedy)
+
+
+def _joins_two(cls: Any) -> bool:
+    """Whether an element is one between two shafts, with friction."""
+    names = {item.name for item, _ in specs(cls)}
+    return "friction" in names and ({"base", "follower"} <= names or "shaft" in names)
 
 
 def _entry_problems(entry: Entry, owner: At) -> Iterator[Problem]:

@@ -12,6 +12,7 @@ import numpy as np
 from clutchwork.assembly.wiring import HOUSING, Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Work
+from clutchwork.results.gears import rows_of
 from clutchwork.results.stretches import stretches
 
 if TYPE_CHECKING:
@@ -85,11 +86,26 @@ class Gears:
 def gears(system: System, shafts: tuple[str, str]) -> Gears:
     """Look for the gears of a model, up to sets of as many contacts as can be tried in a moment."""
     names, tried = [contact.name for contact in system.contacts], 0
+    if system.gearboxes:
+        return Gears(tuple(_by_name(system, shafts, names)), None)
     for size in range(len(names) + 1):
         tried += comb(len(names), size)
         if tried > MOST_COMBINATIONS:
             return Gears(tuple(_gears(system, shafts, names, size)), size)
     return Gears(tuple(_gears(system, shafts, names, len(names) + 1)), None)
+
+
+def _by_name(system: System, shafts: tuple[str, str], names: list[str]) -> Iterator[tuple[tuple[str, ...], float]]:
+    """The gears of the shift tables, each with as few of the other contacts as fix a ratio, one at most."""
+    inside = {name for table in system.gearboxes for name in table.elements}
+    others = [(), *((name,) for name in names if name not in inside)]
+    for row in rows_of(system):
+        for some in others:
+            value = ratio(system, (*row, *some), shafts)
+            if value is not None:
+                if np.isfinite(value) and abs(value) > ROUND_OFF:
+                    yield (*row, *some), value
+                break
 
 
 def _gears(

@@ -22,13 +22,19 @@ class Stretch(NamedTuple):
     last: int  # its last instant there
 
 
-def stretches(run: Recorded) -> Iterator[Stretch]:
-    """All of them, with the times of the events even where the output has a grid of its own."""
+def in_full(run: Recorded) -> Recorded:
+    """A run with the times of its events, even where the output has a grid of its own."""
     if len(run) and run.finished and (run.options.dt is not None or run.options.times is not None):
         ends = [run.time[0], run.time[-1]]
         at = np.array([event.time for event in run.events if ends[0] < event.time < ends[1]])
         # just before and just after each event
-        run = run.at([*ends, *at, *np.nextafter(at, ends[1])])
+        return run.at([*ends, *at, *np.nextafter(at, ends[1])])
+    return run
+
+
+def stretches(run: Recorded) -> Iterator[Stretch]:
+    """All of them."""
+    run = in_full(run)
     names = [branch.name for branch in run.wiring.contacts]
     locked = run.rows[:, run.wiring.columns["contact_mode"]] == LOCKED
     cuts = [0, *(np.flatnonzero(np.any(locked[1:] != locked[:-1], axis=1)) + 1), len(run)]

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from clutchwork.results.dependence import DependentPhase
     from clutchwork.results.energy import EnergyBalance
     from clutchwork.results.events import Event
+    from clutchwork.results.gears import GearTable
     from clutchwork.results.hints.hint import Hints
     from clutchwork.results.losses import Losses
     from clutchwork.results.plot.canvas import Picture
@@ -158,6 +159,18 @@ class Trajectory(Exports):
 
         window = [e for e in self.events if self.time[0] <= e.time <= self.time[-1]]
         return balance(self.wiring, self.rows, Events(window))
+
+    @explained("run.gears", name="'gearbox'")
+    def gears(self, name: str = "") -> GearTable:
+        """Which gear of a gearbox was in when: stretches with begin and end [s], gear and closed elements; print it.
+
+        Parameters: name, of the `Transmission`, which may be left out where there is one. A gear is in while exactly
+        the elements of its row are closed; freewheels that hold beside them change nothing. It is "neutral" where no
+        element carries torque, and None while elements slip. UnknownName, a KeyError, where there is no such gearbox.
+        """
+        from clutchwork.results.gears import gears_of
+
+        return gears_of(self, name)
 
     @explained("run.losses", start="1.0", end="2.0")
     def losses(self, start: Number | None = None, end: Number | None = None, *, power: bool = False) -> Losses:

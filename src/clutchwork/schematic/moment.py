@@ -10,6 +10,7 @@ import numpy as np
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.schema import Role
 from clutchwork.results.forms import LOCKED as LOCKED_MODE
+from clutchwork.results.gears import NEUTRAL, gears_of
 from clutchwork.schematic.diagram import Thing
 from clutchwork.schematic.look import LOCKED, OPEN, SLIPPING
 from clutchwork.schematic.values import number
@@ -115,6 +116,9 @@ class Instant(Moment):
             # an open contact has its slip alone
             if value is not None and (value or (signal == "torque" and self.state(thing) != OPEN)):
                 lines.append(("slip " if signal == "slip" else "") + self._shown(f"{name}.{signal}", value))
+        if any(table.name == name for table in self.run.system.gearboxes):
+            gear = gears_of(self.run, name).at(self.time)
+            lines.append("between gears" if gear is None else gear if gear == NEUTRAL else f"gear {gear}")
         flow = self._value(f"{name}.heat_flow") if thing.source.role is Role.FLOW else None
         return [*lines, *([self._shown(f"{name}.heat_flow", flow)] if flow is not None else [])]
 

@@ -7,9 +7,10 @@ from dataclasses import MISSING, fields
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from clutchwork.base.frozen import Frozen
 from clutchwork.declare import HOUSING, Entry, Node
 from clutchwork.declare.schema import REGISTRY, Role, inputs, specs
-from clutchwork.gearbox.analysis import capacities
+from clutchwork.gearbox.analysis import capacities, states
 from clutchwork.laws.coulomb import Coulomb
 
 if TYPE_CHECKING:
@@ -112,3 +113,10 @@ def usual(element: ShiftElement, torque: float) -> dict[str, Any]:
 def load(box: Definition) -> dict[str, float]:
     """The most that each element carries in any gear, per torque 1 at the input."""
     return {name: max(found.torque, LEAST) for name, found in capacities(box).items()}
+
+
+@lru_cache
+def ratios(box: Definition) -> Mapping[str, float | None]:
+    """Ratio of each row of the shift table, None where it gives none."""
+    found = states(box)
+    return Frozen({gear: found[gear].ratio if gear in found else None for gear in box.gears})
