@@ -80,9 +80,9 @@ class Transmission(Heating):
     )
     speeds: Mapping[str, float] | None = named("rad/s", "speed at the start by member, others follow")
     efficiency: float | None = param(
-        "1", "efficiency of each mesh of all sets; none: what the gearbox says", default=None, above=0.0, at_most=1.0
+        "1", "efficiency of each set, wheel to wheel; none: what the gearbox says", default=None, above=0.0, at_most=1.0
     )
-    efficiencies: Mapping[str, float] | None = named("1", "efficiency of the meshes by set", above=0.0, at_most=1.0)
+    efficiencies: Mapping[str, float] | None = named("1", "that efficiency by set", above=0.0, at_most=1.0)
     gear: str | None = text("gear at the start, none: all elements are open", default=None)
 
     def _accept(self) -> None:
@@ -217,8 +217,9 @@ class Transmission(Heating):
     def held(self) -> Mapping[str, Part]:
         """Members and shift elements, whose values are changed as those of shafts and elements of the driveline."""
         start = len(self.name) + 1
-        there = [part for part in self._made if isinstance(part, Node)]
-        return {part.name[start:]: part for part in (*there, *(e.made for e in self._entries if e.made is not None))}
+        named: dict[str, Part] = {part.name[start:]: part for part in self._made if isinstance(part, Node)}
+        members = {name: named[name] for name in (self._box.members if self._box else ())}
+        return members | {e.made.name[start:]: e.made for e in self._entries if e.made is not None}
 
     def with_held(self, name: str, values: Mapping[str, Any]) -> Component:
         """Itself with other values of a member or a shift element."""

@@ -192,11 +192,17 @@ def _a(kind: str) -> str:
 
 
 def _freewheel_problems(box: Definition, gear: str) -> Iterator[Problem]:
-    """Freewheels of the row that would overrun under torque from the input."""
+    """Freewheels of the row that would overrun under torque from the input, and others that would hold."""
     found = state(box, box.closed_in(gear), gear)
-    wheels: list[ShiftElement] = [e for e in box.elements if e.kind == "freewheel" and e.name in box.gears[gear]]
+    if found is None:
+        return
+    wheels: list[ShiftElement] = [e for e in box.elements if e.kind == "freewheel"]
     for wheel in wheels:
-        if found is not None and found.torques[wheel.name] < 0.0:
+        if found.slips.get(wheel.name, 0.0) < 0.0:
+            fault = f"freewheel {wheel.name} would hold, and it is not in this row"
+            remedy = "swap its members, or correct the row"
+            yield Problem(f'gear "{gear}"', "", fault, remedy=remedy)
+        elif found.torques.get(wheel.name, 0.0) < 0.0:
             fault = f"freewheel {wheel.name} would overrun under torque from {box.input}"
             remedy = f"swap its members: [{shown(wheel.second)}, {shown(wheel.first)}]"
             yield Problem(f'gear "{gear}"', "", fault, remedy=remedy)

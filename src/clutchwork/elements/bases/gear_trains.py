@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from math import sqrt
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.declare import HOUSING, Component, Node
+from clutchwork.declare import HOUSING, Node, Part
 from clutchwork.declare.schema import REGISTRY, Role
 
 if TYPE_CHECKING:
@@ -23,11 +24,11 @@ PLAIN = {
 
 def train(
     name: str, one: GearSet, nodes: Mapping[str, Node], efficiency: float, heat: Mapping[str, Any]
-) -> Iterator[Component]:
+) -> Iterator[Part]:
     """A gear set as elements on the shafts of its members.
 
-    Parameters: name, of the first element; nodes, by member; efficiency, of each of its meshes; heat, where the heat
-    of its meshes goes.
+    Parameters: name, of the first element; nodes, by member; efficiency, of the way from wheel to wheel with the
+    carrier at rest; heat, where the heat of its meshes goes.
     """
     if efficiency < 1.0:
         yield from _lossy(name, one, nodes, efficiency, heat)
@@ -63,12 +64,20 @@ def _ends(one: GearSet, nodes: Mapping[str, Node], first: str, second: str) -> d
 
 def _lossy(
     name: str, one: GearSet, nodes: Mapping[str, Node], efficiency: float, heat: Mapping[str, Any]
-) -> Iterator[Component]:
-    """One gear with losses for each pair of wheels, carried by the carrier."""
-    for number, (first, second, ratio) in enumerate(one.meshes(), 1):
-        ends = _ends(one, nodes, first, second)
-        lossy = REGISTRY[Role.COMPOSITE]["lossy_gear"]
-        yield lossy(_numbered(name, number), **ends, ratio=float(ratio), efficiency=efficiency, **heat)
+) -> Iterator[Part]:
+    """A gear with losses from wheel to wheel, carried by the carrier; of more wheels, from each to the planets."""
+    lossy = REGISTRY[Role.COMPOSITE]["lossy_gear"]
+    if len(one.wheels) == 2:
+        ((first, second, ratio),) = one.meshes()
+        yield lossy(name, **_ends(one, nodes, first, second), ratio=float(ratio), efficiency=efficiency, **heat)
+        return
+    planets = Node(f"{name}.planets")
+    yield planets
+    # on the way from one wheel to another there are two of them
+    half = sqrt(efficiency)
+    for number, (wheel, size) in enumerate(zip(one.wheels, one.speeds_of_planets(), strict=True), 1):
+        ends = {**_ends(one, nodes, wheel, wheel), "output": planets}
+        yield lossy(_numbered(name, number), **ends, ratio=float(1 / size), efficiency=half, **heat)
 
 
 def _numbered(name: str, number: int) -> str:
