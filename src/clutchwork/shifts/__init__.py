@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from clutchwork.shifts.comfort import jerk, vibration_dose
-from clutchwork.shifts.controller import Measured, ShiftController, ShiftRecord
-from clutchwork.shifts.detect import InGear, Shift, gears_of, shifts_of
+from clutchwork.shifts.controller import ShiftController
+from clutchwork.shifts.detect import Shift, shifts_of
 from clutchwork.shifts.drive import Sensed, drive
 from clutchwork.shifts.exchange import Exchange, exchanges
 from clutchwork.shifts.faults import Fault, FaultResult, FaultTable, fault_table, single_faults
+from clutchwork.shifts.gears import InGear, gears_of
 from clutchwork.shifts.metrics import ShiftQuality, qualities
 from clutchwork.shifts.plant import Plant, plant_of
+from clutchwork.shifts.record import Measured, ShiftRecord
 from clutchwork.shifts.report import overview, picture, table
 from clutchwork.shifts.schedule import ShiftSchedule
 from clutchwork.shifts.settings import ShiftSettings
+from clutchwork.shifts.survey import Survey, Surveyed, neighbours, survey
 
 __all__ = [
     "Exchange",
@@ -29,17 +32,21 @@ __all__ = [
     "ShiftRecord",
     "ShiftSchedule",
     "ShiftSettings",
+    "Survey",
+    "Surveyed",
     "drive",
     "exchanges",
     "fault_table",
     "gears_of",
     "jerk",
+    "neighbours",
     "overview",
     "picture",
     "plant_of",
     "qualities",
     "shifts_of",
     "single_faults",
+    "survey",
     "table",
     "vibration_dose",
 ]

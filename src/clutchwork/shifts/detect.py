@@ -2,34 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clutchwork.base.classes import dataclass
-from clutchwork.results.stretches import stretches
+from clutchwork.shifts.gears import NOTHING, InGear, gears_of
+from clutchwork.shifts.record import NEUTRAL
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.results.recorded import Recorded
-
-# torque that counts as none, as a share of the largest one of the shift
-NOTHING = 0.02
-# a gear that is held for less is passed through [s]
-SHORTEST = 0.3
-
-
-@dataclass(frozen=True)
-class InGear:
-    """A stretch of a run in which one gear is in."""
-
-    gear: str
-    begin: float  # s
-    end: float  # s
 
 
 @dataclass(frozen=True)
@@ -38,7 +25,9 @@ class Shift:
 
     The inertia phase is from the last instant at which the old ratio holds to the first one of the new ratio. The
     torque phase is when both elements carry torque while one of both ratios holds: before the inertia phase or after
-    it. `begin` is when the element that closes begins to carry torque, or the one that opens lets go.
+    it. `begin` is when the element that closes begins to carry torque, or the one that opens lets go. Out of neutral,
+    where `before` is "N", there is no torque phase, and the inertia phase begins when an element begins to carry
+    torque.
     """
 
     before: str
@@ -66,56 +55,13 @@ class Shift:
         return self.end - self.begin
 
 
-def gears_of(run: Recorded, box: Gearbox, prefix: str = "gearbox", *, least: float = SHORTEST) -> list[InGear]:
-    """When which gear was in, by the elements that were locked.
-
-    Parameters: least, time [s] for which a gear must be held, but for the first one and the last one.
-    """
-    names = {f"{prefix}.{element.name}": element.name for element in box.elements}
-    known: dict[frozenset[str], str] = {}
-    found: list[InGear] = []
-    for part in stretches(run):
-        locked = frozenset(names[name] for name in part.locked if name in names)
-        if locked not in known:
-            known[locked] = gear_with(box, locked)
-        gear = known[locked]
-        if found and found[-1].gear == gear:
-            found[-1] = InGear(gear, found[-1].begin, part.end)
-        elif part.end > part.begin or not found:
-            found.append(InGear(gear, part.begin, part.end))
-    ends = (float(run.time[0]), float(run.time[-1])) if len(run) else ()
-    held = (one for one in found if one.end - one.begin >= least or one.begin in ends or one.end in ends)
-    return list(_joined(one for one in held if one.gear))
-
-
-def gear_with(box: Gearbox, locked: frozenset[str]) -> str:
-    """The gear whose elements are locked and whose ratio holds, empty where there is none."""
-    ratio = box.combination(sorted(locked)).ratio
-    if ratio is None:
-        return ""
-    fitting = [gear for gear in box.gears if set(box.closed_in(gear)) <= locked]
-    return next((gear for gear in fitting if box.combination(box.closed_in(gear)).ratio == ratio), "")
-
-
-def _joined(parts: Iterator[InGear]) -> Iterator[InGear]:
-    """Stretches of one gear that follow one another are one."""
-    last: InGear | None = None
-    for part in parts:
-        if last is not None and last.gear == part.gear:
-            last = InGear(last.gear, last.begin, part.end)
-            continue
-        if last is not None:
-            yield last
-        last = part
-    if last is not None:
-        yield last
-
-
 def shifts_of(run: Recorded, box: Gearbox, prefix: str = "gearbox") -> list[Shift]:
-    """Every shift from one gear to another that a run shows."""
+    """Every shift from one gear to another that a run shows, and from neutral into a gear; not those into neutral."""
     gears = gears_of(run, box, prefix)
     made = []
     for number, (old, new) in enumerate(pairwise(gears)):
+        if new.gear == NEUTRAL:
+            continue
         first = gears[number - 1].end if number else float(run.time[0])
         made.append(_shift(run, box, prefix, (old, new), max(first, old.begin)))
     return made
@@ -123,11 +69,15 @@ def shifts_of(run: Recorded, box: Gearbox, prefix: str = "gearbox") -> list[Shif
 
 def _shift(run: Recorded, box: Gearbox, prefix: str, gears: tuple[InGear, InGear], earliest: float) -> Shift:
     old, new = gears
-    before, after = box.closed_in(old.gear), box.closed_in(new.gear)
+    before = () if old.gear == NEUTRAL else box.closed_in(old.gear)
+    after = box.closed_in(new.gear)
     opens = tuple(name for name in before if name not in after)
     closes = tuple(name for name in after if name not in before)
     time = np.asarray(run.time)
     on = _carries(run, [f"{prefix}.{name}" for name in closes], (old.begin, new.end))
+    if old.gear == NEUTRAL:
+        begin, end = _last_run(time, on, old.begin, new.begin)
+        return Shift(old.gear, new.gear, opens, closes, begin, (begin, begin), (begin, end), end)
     off = _carries(run, [f"{prefix}.{name}" for name in opens], (old.begin, new.end))
     ahead = _last_run(time, on, earliest, old.end)
     behind = _first_run(time, off, new.begin, new.end)

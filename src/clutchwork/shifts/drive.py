@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from clutchwork.base.classes import dataclass
-from clutchwork.shifts.controller import Measured, ShiftController
+from clutchwork.shifts.controller import ShiftController
+from clutchwork.shifts.record import Measured
 
 if TYPE_CHECKING:
     from clutchwork.results.trajectory import Trajectory
@@ -34,18 +35,32 @@ class Sensed:
     output: str = ""
 
     def read(self, sim: Simulator, control: ShiftController, throttle: float) -> Measured:
-        """What the controller knows."""
-        box, prefix = control.box, control.prefix
-        ends = [self.input or f"{prefix}.{box.input}.speed", self.output or f"{prefix}.{box.output}.speed"]
-        names = [element.name for element in box.elements]
-        values = [float(v) for v in sim[[*ends, *(f"{prefix}.{name}.slip" for name in names), *self._plain]]]
-        torques = values[2 + len(names) :]
-        total = sum(-v if name[0] == "-" else v for name, v in zip(self.torque, torques, strict=True))
-        return Measured(values[0], values[1], total, throttle, dict(zip(names, values[2:], strict=False)))
+        """What the controller knows at the present time of a run; throttle, of the driver."""
+        return _Reader(self, sim, control)(throttle)
 
-    @property
-    def _plain(self) -> tuple[str, ...]:
-        return tuple(name.removeprefix("-") for name in self.torque)
+
+class _Reader:
+    """Reads what the controller knows; the names are put together once."""
+
+    def __init__(self, sensed: Sensed, sim: Simulator, control: ShiftController) -> None:
+        box, prefix = control.box, control.prefix
+        self.sim, self.control = sim, control
+        self.ends = [sensed.input or f"{prefix}.{box.input}.speed", sensed.output or f"{prefix}.{box.output}.speed"]
+        self.signs = [-1.0 if name[0] == "-" else 1.0 for name in sensed.torque]
+        self.plain = [*self.ends, *(name.removeprefix("-") for name in sensed.torque)]
+        names = [f"{prefix}.{element.name}" for element in box.elements]
+        self.elements = [element.name for element in box.elements]
+        # a dog clutch has a rate of its angle
+        self.slips = [f"{name}.slip" if f"{name}.slip" in sim else f"{name}.rate" for name in names]
+        self.dogs = [name for name in self.elements if f"{prefix}.{name}.sleeve" in sim]
+        self.sleeves = [f"{prefix}.{name}.sleeve" for name in self.dogs]
+
+    def __call__(self, throttle: float) -> Measured:
+        first, second, *torques = self.sim[self.plain].tolist()
+        total = sum(sign * torque for sign, torque in zip(self.signs, torques, strict=True))
+        slips = dict(zip(self.elements, self.sim[self.slips].tolist(), strict=True))
+        sleeves = dict(zip(self.dogs, self.sim[self.sleeves].tolist(), strict=True)) if self.dogs else {}
+        return Measured(first, second, total, throttle, slips, sleeves)
 
 
 def drive(
@@ -67,19 +82,19 @@ def drive(
     Parameters: throttle, of the driver over time, 0 to 1; also, what else is set, such as brakes; period, from one call
     of the controller to the next while it shifts [s]; resting, the same between shifts.
     """
+    read = _Reader(sensed, sim, control)
     set_: dict[str, float] = {}
     while sim.time < until - 1e-9:
-        pedal = float(throttle(sim.time))
-        now = sensed.read(sim, control, pedal)
-        wanted = control.commands if sim.time == 0.0 else {}
-        wanted |= control.step(sim.time, now)
+        time, pedal = sim.time, float(throttle(sim.time))
+        wanted = {} if set_ else control.commands
+        wanted |= control.step(time, read(pedal))
         if sensed.throttle:
-            wanted[sensed.throttle] = min(1.0, pedal * control.torque_factor)
-        wanted |= dict(also(sim.time, sim)) if also else {}
+            wanted[sensed.throttle] = min(1.0, pedal * control.torque_factor + control.blip)
+        if also is not None:
+            wanted |= also(time, sim)
         changed = {name: value for name, value in wanted.items() if set_.get(name) != value}
         if changed:
             sim.set(changed)
             set_ |= changed
-        wait = period if control.shifting else resting
-        sim.advance(min(wait, until - sim.time))
+        sim.advance(min(period if control.shifting else resting, until - time))
     return sim.run

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import pairwise, product
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.gearbox.state import GearState
+
+# kinds that slip with a torque
+FRICTION = ("clutch", "brake")
 
 
 @dataclass(frozen=True)
@@ -41,26 +45,40 @@ def exchanges(
     """What a shift takes: one exchange, or several in a row where more than one element changes.
 
     Parameters: before and after, closed elements; inertias, of members [kg m2]. The way goes through gears, from which
-    the next exchange starts; of several ways the one whose ratios stay closest to those of both gears is taken.
-    UseError where there is none.
+    the next exchange starts; of several ways the one whose ratios stay closest to those of both gears is taken. Where
+    there is none, and between forward and reverse, all that opens does so at once, and one element engages the gear.
+    None where the new elements are no gear.
     """
-    opens = [name for name in before if name not in after]
-    closes = [name for name in after if name not in before]
-    if not opens and not closes:
+    opens = tuple(name for name in before if name not in after)
+    closes = tuple(name for name in after if name not in before)
+    old, new = _ratio(box, before), _ratio(box, after)
+    if not new or not opens + closes:
         return ()
-    if not box.combination(before).ratio or not opens:
-        return _engage(box, after, closes, inertias)
-    ways = list(_ways(box, tuple(before), tuple(opens), tuple(closes)))
+    ways = _ways(box, before, opens, closes) if old * new > 0.0 else []
     if not ways:
-        fault = f"there is no way of single exchanges from {listed(before)} to {listed(after)} through gears"
-        raise UseError("shift", [f"{fault}; shift through another gear"])
+        return (_engage(box, after, closes, inertias),)
     way = min(ways, key=lambda one: _detour(box, before, one))
-    made, closed = [], tuple(before)
+    made, closed = [], before
     for off, on in way:
-        later = tuple(name for name in closed if name != off) + ((on,) if on else ())
+        later = _swapped(closed, off, on)
         made.append(_exchange(box, off, on, closed, later, inertias))
         closed = later
     return tuple(made)
+
+
+def _swapped(closed: tuple[str, ...], off: str, on: str) -> tuple[str, ...]:
+    return tuple(name for name in closed if name != off) + ((on,) if on else ())
+
+
+@lru_cache(maxsize=4096)
+def _state(box: Gearbox, closed: tuple[str, ...]) -> GearState:
+    return box.state(closed)
+
+
+@lru_cache(maxsize=4096)
+def _ratio(box: Gearbox, closed: tuple[str, ...]) -> float:
+    """Of a combination, 0 where it is no gear."""
+    return float(box.combination(closed).ratio or 0.0)
 
 
 def _ways(
@@ -71,8 +89,8 @@ def _ways(
         return [()]
     found = []
     for off, on in product(opens or ("",), closes or ("",)):
-        later = tuple(name for name in closed if name != off) + ((on,) if on else ())
-        if box.combination(later).ratio is None:
+        later = _swapped(closed, off, on)
+        if not _ratio(box, later):
             continue
         rest = tuple(name for name in opens if name != off), tuple(name for name in closes if name != on)
         found += [((off, on), *more) for more in _ways(box, later, *rest)]
@@ -80,42 +98,33 @@ def _ways(
 
 
 def _detour(box: Gearbox, before: tuple[str, ...], way: tuple[tuple[str, str], ...]) -> float:
-    """How far the ratios of a way go beyond its ends, as the sum of steps."""
-    closed, ratios = before, [_ratio(box, before)]
+    """How far the ratios of a way go beyond its ends: equation (4)."""
+    closed, speeds_ = before, [1.0 / _ratio(box, before)]
     for off, on in way:
-        closed = tuple(name for name in closed if name != off) + ((on,) if on else ())
-        ratios.append(_ratio(box, closed))
-    speeds = [1.0 / ratio for ratio in ratios]
-    return sum(abs(second - first) for first, second in pairwise(speeds))
+        closed = _swapped(closed, off, on)
+        speeds_.append(1.0 / _ratio(box, closed))
+    return sum(abs(second - first) for first, second in pairwise(speeds_))
 
 
-def _ratio(box: Gearbox, closed: tuple[str, ...]) -> float:
-    return float(box.combination(closed).ratio or 0.0)
-
-
-def _engage(
-    box: Gearbox,
-    after: tuple[str, ...],
-    closes: list[str],
-    inertias: Mapping[str, float],
-) -> tuple[Exchange, ...]:
-    """From neutral into a gear by the element that turns fastest against what it joins; or out of one."""
-    if not box.combination(after).ratio:
-        return ()
-    state = box.state(after)
-    # a brake or clutch whose torque is the least makes the softest engagement
-    usable = [name for name in closes if box.element(name).kind in ("clutch", "brake")]
+def _engage(box: Gearbox, after: tuple[str, ...], closes: tuple[str, ...], inertias: Mapping[str, float]) -> Exchange:
+    """Into a gear by one element that slips, the softest: a clutch or brake that carries the least, but something."""
+    state = _state(box, after)
+    usable = [
+        name
+        for name in closes or after
+        if box.element(name).kind in FRICTION and not _ratio(box, tuple(one for one in after if one != name))
+    ]
     if not usable:
         raise UseError("shift", [f"{listed(closes)} cannot slip; close a clutch or a brake to engage a gear"])
-    on = min(usable, key=lambda name: abs(state.torques[name]))
+    on = min(usable, key=lambda name: abs(_torque(state, name)))
     kept = tuple(name for name in after if name != on)
-    return (Exchange("", on, kept, 0.0, state.torques[on], 0.0, state.ratio, _inertia(box, kept, inertias)),)
+    return Exchange("", on, kept, 0.0, _torque(state, on), 0.0, state.ratio, _inertia(box, kept, inertias))
 
 
 def _exchange(
     box: Gearbox, off: str, on: str, before: tuple[str, ...], after: tuple[str, ...], inertias: Mapping[str, float]
 ) -> Exchange:
-    old, new = box.state(before), box.state(after)
+    old, new = _state(box, before), _state(box, after)
     kept = tuple(name for name in before if name != off)
     torque = _torque(new, on) if on else 0.0
     inertia = _inertia(box, kept, inertias)
@@ -123,6 +132,7 @@ def _exchange(
 
 
 def _torque(state: GearState, name: str) -> float:
+    """0 where several elements share one in more than one way."""
     value = state.torques[name]
     return 0.0 if value != value else value
 

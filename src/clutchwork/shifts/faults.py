@@ -13,7 +13,7 @@ from clutchwork.base.paths import target
 from clutchwork.base.text import columns
 from clutchwork.gearbox.motion import GEAR, NEUTRAL, OUTPUT_HELD, TIE_UP
 from clutchwork.shifts.comfort import low_pass
-from clutchwork.shifts.detect import gears_of
+from clutchwork.shifts.gears import gears_of
 from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.detect import Shift, shifts_of
+from clutchwork.shifts.record import NEUTRAL
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
@@ -30,8 +31,8 @@ class ShiftQuality:
         rms_jerk: root of the mean of its square, from begin to end and half a second more [m/s3]
         vibration_dose: vibration dose value of the same stretch [m/s1.75]
         torque_hole: how far the torque of the output falls below its lower value before and after, in N m
-        hole_share: the same over its value before
-        flare: how far the input runs above the speeds of both gears [rad/s]
+        hole_share: the same over its value before; NaN out of neutral
+        flare: how far the input runs above the speeds of both gears [rad/s], out of neutral above that of its start
         sag: how far it falls below both [rad/s]
         tie_up: largest torque with which an element that opens works against its direction in the old gear [N m]
         slip_energy: heat that each element made [J]
@@ -86,7 +87,8 @@ def _quality(
     dose = vibration_dose(part[acceleration], STEP) if acceleration else float("nan")
     hole, share = _hole(part[torque], time, shift) if torque else (float("nan"), float("nan"))
     flare, sag = _overshoot(part, shift, box, prefix, inside)
-    names = [element.name for element in box.elements]
+    # a dog clutch makes none that is counted
+    names = [element.name for element in box.elements if f"{prefix}.{element.name}.heat" in part]
     return ShiftQuality(
         shift=shift,
         peak_jerk=float(np.max(np.abs(jerks))),
@@ -121,7 +123,8 @@ def _hole(torque: Array, time: Array, shift: Shift) -> tuple[float, float]:
     inside = sign * torque[(time >= shift.begin) & (time <= shift.end)]
     least = float(np.min(inside, initial=sign * before))
     hole = max(0.0, min(sign * before, sign * later) - least)
-    return hole, hole / abs(before) if before else float("nan")
+    known = shift.before != NEUTRAL and before != 0.0
+    return hole, hole / abs(before) if known else float("nan")
 
 
 def _overshoot(
@@ -129,7 +132,9 @@ def _overshoot(
 ) -> tuple[float, float]:
     """How far the input leaves the range between the speeds of both gears, up and down."""
     speed, output = part[f"{prefix}.{box.input}.speed"], part[f"{prefix}.{box.output}.speed"]
-    both = np.array([box.ratios[shift.before] * output, box.ratios[shift.after] * output])
+    first, second = (box.ratios.get(gear) for gear in (shift.before, shift.after))
+    start = speed[inside][0] if np.any(inside) else speed[0]
+    both = np.array([np.full_like(speed, start) if first is None else first * output, (second or 0.0) * output])
     above = speed - np.max(both, axis=0)
     below = np.min(both, axis=0) - speed
     flare, sag = (float(np.max(values[inside], initial=0.0)) for values in (above, below))

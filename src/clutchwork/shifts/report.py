@@ -25,20 +25,31 @@ HEADS = (
 )
 
 
-def table(found: Sequence[ShiftQuality]) -> str:
-    """All shifts, a line for each."""
-    return columns([list(HEADS), *map(_line, found)], right=range(3, len(HEADS)))
+def table(found: Sequence[ShiftQuality], *, names: Sequence[str] = ()) -> str:
+    """All shifts, a line for each. Parameters: names, of the shifts in the first column, by default "1-2"."""
+    lines = map(_line, found, names or map(_name, found))
+    return columns([list(HEADS), *lines], right=range(3, len(HEADS)))
 
 
-def _line(one: ShiftQuality) -> list[str]:
+def _name(one: ShiftQuality) -> str:
+    return f"{one.shift.before}-{one.shift.after}"
+
+
+def _line(one: ShiftQuality, name: str) -> list[str]:
     shift = one.shift
     energy = ", ".join(f"{name} {heat / 1e3:.2f}" for name, heat in one.slip_energy.items() if heat > 1.0)
     hottest = max(one.temperature.values(), default=float("nan"))
     values = [(shift.begin, 2), (shift.torque_time, 3), (shift.inertia_time, 3), (one.peak_jerk, 1), (one.rms_jerk, 2)]
     values += [(one.vibration_dose, 3), (one.torque_hole, 0), (one.flare, 1), (one.sag, 1), (one.tie_up, 0)]
     numbers = ["-" if isnan(value) else f"{value:.{digits}f}" for value, digits in values]
-    names = [f"{shift.before}-{shift.after}", "+".join(shift.opens), "+".join(shift.closes)]
-    return [*names, *numbers, energy or "-", "-" if isnan(hottest) else f"{hottest:.0f}"]
+    return [
+        name,
+        "+".join(shift.opens),
+        "+".join(shift.closes),
+        *numbers,
+        energy or "-",
+        "-" if isnan(hottest) else f"{hottest:.0f}",
+    ]
 
 
 def picture(
@@ -64,8 +75,11 @@ def picture(
     return run.plot(*panels, *more, zoom=zoom, path=path)
 
 
-def overview(found: Sequence[ShiftQuality], path: str | Path) -> None:
-    """All shifts of a box beside each other: phases, jerk, slip energy. Needs matplotlib."""
+def overview(found: Sequence[ShiftQuality], path: str | Path, *, names: Sequence[str] = ()) -> None:
+    """All shifts of a box beside each other: phases, jerk, slip energy. Needs matplotlib.
+
+    Parameters: path, png, svg or pdf; names, of the shifts, by default "1-2".
+    """
     if not found:
         raise UseError("cw.shifts.overview", ["there is no shift to draw; give what cw.shifts.qualities returned"])
     where = target("cw.shifts.overview", path, "shifts.png", (".png", ".svg", ".pdf"))
@@ -73,7 +87,7 @@ def overview(found: Sequence[ShiftQuality], path: str | Path) -> None:
     figure = figures.Figure(figsize=(max(5.0, 0.55 * len(found) + 2.0), 7.0), layout="constrained")
     axes = figure.subplots(3, 1, sharex=True)
     places = np.arange(len(found))
-    labels = [f"{one.shift.before}-{one.shift.after}" for one in found]
+    labels = list(names) or [_name(one) for one in found]
     torque = np.array([one.shift.torque_time for one in found])
     axes[0].bar(places, torque, label="torque phase", color="#8AA4C8")
     axes[0].bar(

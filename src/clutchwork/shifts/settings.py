@@ -23,6 +23,9 @@ class ShiftSettings:
         proportional: of the controller of that speed [1/s]
         integral: of the same [1/s2]
         sync_slip: below which an element is taken as synchronous [rad/s]
+        dog_slip: slip below which a dog clutch is commanded to engage, below the one at which its teeth mesh [rad/s]
+        blip: most throttle that the engine is asked for where nothing else can bring the input to the speed of a dog
+            clutch, or unload one that opens, 0 to 1
         longest: after which an exchange is closed whatever the slip [s]
         launch_speed: that the input keeps while an element drives off, where no converter does [rad/s]; 0: there is one
         launch_throttle: above which it drives off
@@ -41,6 +44,8 @@ class ShiftSettings:
     proportional: float = 25.0
     integral: float = 100.0
     sync_slip: float = 1.0
+    dog_slip: float = 4.0
+    blip: float = 0.4
     longest: float = 2.5
     launch_speed: float = 0.0
     launch_throttle: float = 0.02

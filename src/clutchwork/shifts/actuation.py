@@ -1,0 +1,66 @@
+"""Commands of shift elements: pressures of clutches and brakes, sleeves of dog clutches, none of freewheels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from clutchwork.shifts.exchange import FRICTION
+
+if TYPE_CHECKING:
+    from clutchwork.gearbox.gearbox import Gearbox
+    from clutchwork.shifts.plant import Plant
+    from clutchwork.shifts.settings import ShiftSettings
+
+
+@dataclass
+class Actuation:
+    """The commands that hold at present, by element; freewheels have none and are passed over."""
+
+    box: Gearbox
+    plant: Plant
+    prefix: str
+    commands: dict[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.kinds = {element.name: element.kind for element in self.box.elements}
+        ends = {"clutch": "pressure", "brake": "pressure", "dog": "command"}
+        self._signals = {
+            name: f"{self.prefix}.{name}.{ends[kind]}" for name, kind in self.kinds.items() if kind in ends
+        }
+
+    def slides(self, name: str) -> bool:
+        """Whether it is there and can be made to slip with a torque."""
+        return self.kinds.get(name) in FRICTION
+
+    def is_dog(self, name: str) -> bool:
+        """Whether it is there and engages by teeth."""
+        return self.kinds.get(name) == "dog"
+
+    def carries(self, name: str, torque: float) -> bool:
+        """Whether it is there and could carry a torque on its follower [N m]; a freewheel pushes one way only."""
+        return bool(name) and (self.kinds[name] != "freewheel" or torque > 0.0)
+
+    def open(self, *names: str) -> None:
+        """Take all pressure away, or pull the sleeve out."""
+        self.commands.update({name: 0.0 for name in names if name in self._signals})
+
+    def close(self, names: Iterable[str], with_: ShiftSettings) -> None:
+        """Full pressure, or the sleeve in."""
+        wanted = {name: 1.0 if self.is_dog(name) else with_.full_pressure for name in names if name in self._signals}
+        self.commands.update(wanted)
+
+    def carry(self, name: str, torque: float, with_: ShiftSettings) -> None:
+        """The pressure with which an element that slips carries a torque [N m]."""
+        if self.slides(name):
+            self.commands[name] = self.pressure(name, torque, with_)
+
+    def pressure(self, name: str, torque: float, with_: ShiftSettings) -> float:
+        """Pressure [Pa] at which an element that slips carries a torque [N m], up to the full one."""
+        touch = max(with_.fill_pressure, self.plant.touch[name])
+        return min(with_.full_pressure, touch + torque / self.plant.capacity[name])
+
+    def signals(self, names: Iterable[str]) -> dict[str, float]:
+        """Commands of some elements by signal."""
+        return {self._signals[name]: self.commands[name] for name in names}

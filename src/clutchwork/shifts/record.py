@@ -1,0 +1,71 @@
+"""What a shift controller knows, and what it writes down."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from clutchwork.shifts.exchange import Exchange
+
+NEUTRAL = "N"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What the controller knows at one instant.
+
+    Parameters:
+        input_speed: of the gearbox [rad/s]
+        output_speed: of the gearbox [rad/s]
+        input_torque: at the input of the gearbox [N m]
+        throttle: of the driver, 0 to 1
+        slips: of elements [rad/s], those of a shift that goes on at least
+        sleeves: position of dog clutches, 0 out, 1 in
+    """
+
+    input_speed: float
+    output_speed: float
+    input_torque: float
+    throttle: float
+    slips: Mapping[str, float]
+    sleeves: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass
+class ShiftRecord:
+    """One shift as it was commanded.
+
+    Parameters:
+        before: gear that was in
+        after: gear that was asked for
+        begin: instant of the command [s]
+        power_on: whether the engine drove then
+        exchanges: of elements, one after the other
+        phases: instants [s] at which the states of the controller began
+        end: instant at which the controller was done [s]; none: the shift is still going on
+        problem: why the gear was not reached, empty where it was
+    """
+
+    before: str
+    after: str
+    begin: float
+    power_on: bool
+    exchanges: tuple[Exchange, ...] = ()
+    phases: list[tuple[float, str]] = field(default_factory=list)
+    end: float | None = None
+    problem: str = ""
+
+    @property
+    def reached(self) -> bool:
+        """Whether the gear is in: the controller is done and has seen that its elements do not slip."""
+        return self.end is not None and not self.problem
+
+    @property
+    def kind(self) -> str:
+        """Such as "power-on upshift", "garage shift", "power-off double downshift"."""
+        if not self.exchanges or not self.exchanges[0].before or NEUTRAL in (self.before, self.after):
+            return "garage shift"
+        up = abs(self.exchanges[-1].after) < abs(self.exchanges[0].before)
+        power = "power-on" if self.power_on else "power-off"
+        many = " double" if len(self.exchanges) > 1 else ""
+        return f"{power}{many} {'upshift' if up else 'downshift'}"

@@ -1,0 +1,106 @@
+"""A car around any gearbox of the catalogue, for tests of shifts: engine, converter, gearbox, axle, road."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import clutchwork as cw
+
+RADIUS, MASS, FINAL_DRIVE, IDLE = 0.33, 1800.0, 3.2, 75.0  # m, kg, 1, rad/s
+FULL_LOAD = ((0.0, 150.0), (100.0, 250.0), (180.0, 380.0), (500.0, 380.0), (650.0, 300.0), (720.0, 0.0))
+MOTORING = ((0.0, -25.0), (700.0, -70.0))
+SENSED = cw.shifts.Sensed(torque=("converter.turbine.torque",), throttle="combustion.throttle")
+SPEED = 200.0  # rad/s of the input in a drive
+
+
+def car(box: cw.Gearbox, gear: str, turbine: float = SPEED, **transmission: Any) -> cw.Driveline:
+    """The car in a gear, its input at a speed [rad/s]; in neutral it stands."""
+    d = cw.Driveline(f"{box.name} in {gear}")
+    ratio = box.ratios.get(gear)
+    turning = turbine / ratio if ratio else 0.0
+    engine = d.shaft("engine", inertia=0.2, speed=max(IDLE, turbine))
+    shaft = d.shaft("turbine", inertia=0.06, speed=turbine)
+    output = d.shaft("output", inertia=0.02, speed=None if ratio else 0.0)
+    d.add(
+        cw.Engine(
+            "combustion",
+            shaft=engine,
+            throttle=0.0,
+            full_load=FULL_LOAD,
+            motoring=MOTORING,
+            lag=0.05,
+            idle_speed=IDLE,
+            idle_gain=0.02,
+            idle_integral=0.05,
+            idle_limit=0.5,
+            initial_idle=0.1,
+        )
+    )
+    d.add(
+        cw.TorqueConverter(
+            "converter",
+            impeller=engine,
+            turbine=shaft,
+            speed_ratio=(0.0, 0.4, 0.8, 0.9, 1.0),
+            torque_ratio=(2.0, 1.58, 1.09, 1.0, 1.0),
+            capacity=(7.0e-3, 6.5e-3, 4.4e-3, 2.9e-3, 0.0),
+        )
+    )
+    values = {"inertia": 0.008, "torque": 600.0, **transmission}
+    d.add(cw.Transmission("gearbox", gearbox=box, input=shaft, output=output, gear=gear if ratio else None, **values))
+    _axle(d, output, turning)
+    return d
+
+
+def rigid(box: cw.Gearbox, gear: str, engine: float = 100.0, **transmission: Any) -> cw.Driveline:
+    """The same without a converter: the engine drives the gearbox by a stiff shaft."""
+    d = cw.Driveline(f"{box.name} in {gear}, no converter")
+    ratio = box.ratios.get(gear)
+    turning = engine / ratio if ratio else 0.0
+    shaft = d.shaft("engine", inertia=0.25, speed=engine)
+    output = d.shaft("output", inertia=0.02, speed=None if ratio else 0.0)
+    d.add(
+        cw.Engine(
+            "combustion",
+            shaft=shaft,
+            throttle=0.0,
+            full_load=FULL_LOAD,
+            motoring=MOTORING,
+            lag=0.05,
+            idle_speed=IDLE,
+            idle_gain=0.02,
+            idle_integral=0.05,
+            idle_limit=0.5,
+            initial_idle=0.1,
+        )
+    )
+    values = {"inertia": 0.008, "torque": 450.0, **transmission}
+    d.add(cw.Transmission("gearbox", gearbox=box, input=shaft, output=output, gear=gear if ratio else None, **values))
+    _axle(d, output, turning)
+    return d
+
+
+def _axle(d: cw.Driveline, output: Any, turning: float) -> None:
+    """Final drive, half shafts, wheels that roll, brakes and road."""
+    axle = d.shaft("axle", inertia=0.08)
+    wheels = d.shaft("wheels", inertia=2.4)
+    mass = d.mass("car", mass=MASS, speed=turning / FINAL_DRIVE * RADIUS)
+    d.add(cw.Gear("final_drive", input=output, output=axle, ratio=FINAL_DRIVE))
+    d.add(cw.SpringDamper("half_shafts", base=axle, follower=wheels, stiffness=1.8e4, damping=60.0))
+    d.add(cw.RollingWheel("tyres", shaft=wheels, mass=mass, radius=RADIUS))
+    d.add(cw.Brake("brakes", shaft=mass, friction=cw.Coulomb(static=1.0, kinetic=0.9), gain=14e3, normal_force=0.0))
+    d.add(cw.Vehicle("road", mass=mass, drag_area=0.7, rolling_coefficient=0.011))
+
+
+def survey(box: cw.Gearbox, shifts: Any = (), **more: Any) -> cw.shifts.Survey:
+    """Shifts of that car."""
+    return cw.shifts.survey(
+        lambda gear: car(box, gear),
+        box,
+        shifts,
+        sensed=SENSED,
+        torque="half_shafts.torque",
+        acceleration="car.acceleration",
+        rtol=1e-6,
+        **more,
+    )
