@@ -30,7 +30,15 @@ law: cw.Law = cw.Stribeck(static=0.12, kinetic=0.1, speed=1.0)
 clutch = cw.DiskClutch("c", base=d.housing, follower=shaft, radius=0.1, pressure=cw.Ramp(height=1e6, duration=0.1))
 """
 # values by the sort of the field
-VALUES = {"port": "shaft", "thermal": "node", "law": "law", "signal": "cw.Step(height=1.0)", "alternative": "1.0"}
+VALUES = {
+    "named": '{"sun": 0.1}',
+    "elements": '{"B": {"gain": 1.0}}',
+    "port": "shaft",
+    "thermal": "node",
+    "law": "law",
+    "signal": "cw.Step(height=1.0)",
+    "alternative": "1.0",
+}
 
 RIGHT = """
 same: cw.DiskClutch = d.add(clutch)

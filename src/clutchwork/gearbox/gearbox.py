@@ -12,6 +12,7 @@ from clutchwork.base.errors import Problem, UseError, near
 from clutchwork.base.paths import fitting, made, path_of
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import counted
+from clutchwork.declare.calls import explain, explained, explained_methods
 from clutchwork.gearbox import analysis, checks, motion, store
 from clutchwork.gearbox.definition import Definition
 from clutchwork.gearbox.reader import plain
@@ -19,6 +20,7 @@ from clutchwork.gearbox.state import GearState, state
 from clutchwork.gearbox.tables import summary
 
 
+@explained_methods("box")
 @dataclass(frozen=True, repr=False)
 class Gearbox(Definition):
     """A gearbox of planetary sets: its teeth, its members, its shift elements and its shift table.
@@ -136,6 +138,10 @@ class Gearbox(Definition):
         return summary(self)
 
 
+explain(Gearbox)
+
+
+@explained("cw.catalogue")
 def catalogue() -> dict[str, Gearbox]:
     """The gearboxes that are known, by name; each with its source and its published ratios."""
     return {name: Gearbox.load(name) for name in store.names()}

@@ -60,7 +60,7 @@ def _gate(router: Router, name: str) -> None:
 
 
 def _tried(router: Router, cost: float, change: Callable[[], None]) -> float:
-    """Make a change, and take it back where it is no better."""
+    """Make a change, and take it back where that does not help."""
     board, symbols, gates = router.board.copy(), dict(router.symbols), dict(router.gates)
     try:
         change()
