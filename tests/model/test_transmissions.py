@@ -258,3 +258,13 @@ def test_a_line_of_a_file_is_named(tmp_path: Path) -> None:
     (tmp_path / "t.toml").write_text("\n".join(lines))
     with pytest.raises(cw.ModelError, match=f"line {place + 1}: .*shift.overdrive.outer_diameter"):
         cw.Driveline.load(tmp_path / "t.toml")
+
+
+def test_members_without_inertia_are_named() -> None:
+    found = told(python(inertia=0.0))
+    assert found, "two members of the Ravigneaux set are free"
+    for text in found:
+        assert text.startswith('shaft "gearbox.')
+        assert "give it inertia > 0 kg m2 where 'gearbox' is written" in text
+    # enough of them have some
+    assert told(python(inertia=0.0, inertias={"S1": 0.01, "S2": 0.01})) == []

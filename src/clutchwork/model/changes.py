@@ -196,7 +196,8 @@ def _unknown(model: Model, owners: Mapping[str, Any], name: object) -> Problem:
         return Problem(path, "", "is not a number", remedy="build another driveline for it")
     message, owner = "is not a number, initial value or signal of this driveline", owner_of(owners, path)
     if owner:
-        return Problem(path, "", f"{message}{of_owner(path, owner, own_names(owners[owner]), RESULTS)}")
+        own = [word for word in own_names(owners[owner]) if target(owners, f"{owner}.{word}") is not None]
+        return Problem(path, "", f"{message}{of_owner(path, owner, own, RESULTS)}")
     such = 'names are such as "engine.inertia", "c1.gain", "c1.friction.kinetic"'
     return Problem(path, "", f"{message}{near(path, all_names(model)) or f'; {such}'}")
 

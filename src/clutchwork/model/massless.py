@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.errors import Problem
+from clutchwork.base.shown import shown
 from clutchwork.declare.node import Domain
 from clutchwork.declare.rational import ONE, ZERO, Row, eliminate, exact, plus
 from clutchwork.declare.schema import Role
@@ -108,6 +109,9 @@ def problems(model: Mechanism, made: Kinematics, incomplete: frozenset[str]) -> 
             continue
         is_mass = model.nodes[speed].domain is Domain.TRANSLATION
         quantity, more = ("mass", "mass > 0 kg") if is_mass else ("inertia", "inertia > 0 kg m2")
+        if speed >= len(model.nodes) - model.inner:
+            # inside of a composite
+            more += f" where {shown(model.nodes[speed].name.partition('.')[0])} is written"
         jumping = _names(_acting(model, made, {speed: ONE}), _needs_inertia)
         if jumping:
             message = f"is missing at {jumping}, whose torque jumps"
