@@ -136,3 +136,11 @@ def test_tables_name_everything() -> None:
         assert name in text
     # all combinations, none left out
     assert sum(1 for _ in box.combinations()) == 2**5
+
+
+def test_elements_that_share_a_torque_must_each_hold_it() -> None:
+    second = {"members": ["ring", "housing"]}
+    box = cw.Gearbox.from_dict(changed(REDUCTION, elements__B2=second, gears__1=["B", "B2"]))
+    alone = cw.Gearbox.from_dict(REDUCTION).capacities()["B"].torque
+    assert isnan(box.state("1").torques["B"])
+    assert [box.capacities()[name].torque for name in ("B", "B2")] == [pytest.approx(alone)] * 2

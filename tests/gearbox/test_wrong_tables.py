@@ -56,6 +56,15 @@ WRONG: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
             "hold out, C3 without any element",
         ),
     ),
+    "set of two types": ({"sets__P1__type": ["single"]}, ('set "P1"', "unknown type")),
+    "element of two types": ({"elements__A": {"type": ["brake"], "members": ["S12", "housing"]}}, ("unknown type",)),
+    "teeth without end": ({"sets__P1__teeth_ring": 10**400}, ("teeth_ring", "<= 1e+06")),
+    "housing written large": ({"elements__A": ["S12", "Housing"]}, ("'Housing' is not the name", "write 'housing'")),
+    "element without name": ({"elements__": ["C3", "out"]}, ("'' cannot name a set, an element",)),
+    "shaft that turns freely": (
+        {"elements__P": ["in", "pump"], "shafts": []},
+        ('element "P"', "'pump'", "under `shafts`"),
+    ),
     "set twice": ({"sets__P5": EIGHT_SPEED["sets"]["P4"]}, ('set "P5"', "says again")),
 }
 
@@ -126,3 +135,49 @@ def test_a_wrong_shift_table_of_a_spreadsheet(tmp_path: Path) -> None:
         cw.Gearbox.import_table(EIGHT_SPEED, tmp_path / "table.csv")
     text = str(raised.value)
     assert all(words in text for words in ("is not a mark", "appears twice", "3 cells for 4 columns", "'abc'"))
+
+
+def test_neutral_and_park_may_open_the_same_elements() -> None:
+    box = cw.Gearbox.from_dict(changed(EIGHT_SPEED, gears__N=[], gears__P=[]))
+    assert box.combination(box.closed_in("P")).kind == "neutral"
+
+
+def test_what_is_listed_under_shafts_may_turn_freely() -> None:
+    box = cw.Gearbox.from_dict(changed(EIGHT_SPEED, elements__P=["in", "pump"], shafts=["pump"]))
+    assert box.combination(box.closed_in("3")).idle
+    assert box.state("3").ratio == cw.Gearbox.from_dict(EIGHT_SPEED).state("3").ratio
+
+
+def test_numbers_as_names_of_gears() -> None:
+    rows = {int(gear): row for gear, row in EIGHT_SPEED["gears"].items() if gear.isdigit()}
+    assert "3" in cw.Gearbox.from_dict(changed(EIGHT_SPEED, gears=rows, published={})).ratios
+
+
+@pytest.mark.parametrize("ask", ["state", "combination"])
+@pytest.mark.parametrize("closed", [["A", "Z"], 3, None])
+def test_elements_that_the_box_does_not_have(ask: str, closed: Any) -> None:
+    with pytest.raises(cw.UseError, match=f"box.{ask}"):
+        getattr(cw.Gearbox.from_dict(EIGHT_SPEED), ask)(closed)
+
+
+def test_the_large_sun_of_a_ravigneaux_set() -> None:
+    suns = {"large_sun": "low", "small_sun": "in", "teeth_large_sun": 23, "teeth_small_sun": 28}
+    sets = {"P": {"type": "ravigneaux", "ring": "R", "carrier": "out", "teeth_ring": 79, **suns}}
+    data = {"name": "two", "input": "in", "output": "out", "sets": sets, "elements": {"L": ["low", "housing"]}}
+    data["gears"] = {"1": ["L"]}
+    with pytest.raises(cw.ModelError, match="the ring meshes the short planets"):
+        cw.Gearbox.from_dict(data)
+    # so such a set is written as the two that it is
+    own = {"single": {"sun": "low", "teeth_sun": 23}, "double": {"sun": "in", "teeth_sun": 28}}
+    data["sets"] = {
+        kind: {"type": kind, "ring": "R", "carrier": "out", "teeth_ring": 79, **sun} for kind, sun in own.items()
+    }
+    assert cw.Gearbox.from_dict(data).ratios["1"] == pytest.approx(1 + 23 / 28)
+
+
+@pytest.mark.parametrize("ending", ["toml", "json"])
+def test_a_file_without_bottom(tmp_path: Path, ending: str) -> None:
+    path = tmp_path / f"deep.{ending}"
+    path.write_text(("a = " if ending == "toml" else "") + "[" * 100_000)
+    with pytest.raises(cw.ModelError, match="nested too deeply"):
+        cw.Gearbox.load(path)

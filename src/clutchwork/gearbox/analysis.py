@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import permutations
+from itertools import combinations, permutations
+from math import isnan
 from typing import TYPE_CHECKING
 
 from clutchwork.base.classes import dataclass
@@ -36,7 +37,10 @@ class Swap:
 
 @dataclass(frozen=True)
 class Capacity:
-    """The torque that an element must hold: the largest over all gears, per torque 1 at the input."""
+    """The torque that an element must hold: the largest over all gears, per torque 1 at the input.
+
+    Of elements that share a torque each must hold what it has where the others give way.
+    """
 
     element: str
     torque: float
@@ -69,9 +73,7 @@ def capacities(box: Definition) -> dict[str, Capacity]:
     made = {}
     for element in box.elements:
         name = element.name
-        held = {gear: abs(one.torques[name]) for gear, one in found.items() if name in one.torques}
-        # what several elements share has no value of its own
-        held = {gear: torque for gear, torque in held.items() if torque == torque}
+        held = {gear: _most(box, one, name) for gear, one in found.items() if name in one.torques}
         slips = {gear: abs(one.slips[name]) for gear, one in found.items() if name in one.slips}
         most, fastest = (max(values, key=values.__getitem__, default="") for values in (held, slips))
         made[name] = Capacity(
@@ -83,3 +85,17 @@ def capacities(box: Definition) -> dict[str, Capacity]:
             fastest,
         )
     return made
+
+
+def _most(box: Definition, one: GearState, name: str) -> float:
+    """Torque of a closed element; where it shares it, the largest with others of those that share open."""
+    if not isnan(one.torques[name]):
+        return abs(one.torques[name])
+    others = [other for other, torque in one.torques.items() if isnan(torque) and other != name]
+    for size in range(1, len(others) + 1):
+        left = (tuple(n for n in one.closed if n not in some) for some in combinations(others, size))
+        alone = [made.torques[name] for closed in left if (made := state(box, closed)) is not None]
+        known = [abs(torque) for torque in alone if not isnan(torque)]
+        if known:
+            return max(known)
+    return 0.0

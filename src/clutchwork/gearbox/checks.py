@@ -39,6 +39,9 @@ def _name_problems(box: Definition) -> Iterator[Problem]:
             yield Problem(f'{what} "{name}"', "", "appears twice", remedy="give each its own name")
     shared = {one.name for one in box.sets} & {element.name for element in box.elements}
     taken = shared | set(box.members) & ({one.name for one in box.sets} | {e.name for e in box.elements})
+    named = [*(one.name for one in box.sets), *(element.name for element in box.elements), *box.gears]
+    for name in dict.fromkeys(name for name in named if name in ("", HOUSING)):
+        yield Problem("gearbox", "", f"{shown(name)} cannot name a set, an element or a gear", remedy="rename it")
     for name in sorted(taken):
         yield Problem("gearbox", "", f"{shown(name)} names two things", remedy="rename one of them")
     for name in ("input", "output"):
@@ -59,6 +62,10 @@ def _member_problems(box: Definition) -> Iterator[Problem]:
     for element in box.elements:
         for member in element.members:
             places.setdefault(member, []).append(f'element "{element.name}"')
+    for member in box.members:
+        if member.strip().lower() == HOUSING:
+            remedy = f"write {HOUSING!r}, all small, for what never turns"
+            yield Problem("gearbox", "", f"{shown(member)} is not the name of a member", remedy=remedy)
     ends = {box.input, box.output, HOUSING, *box.shafts}
     for name in ("input", "output"):
         member = getattr(box, name)
@@ -105,7 +112,8 @@ def _row_problems(box: Definition) -> Iterator[Problem]:
     seen: dict[frozenset[str], str] = {}
     for gear in box.gears:
         closed = frozenset(box.closed_in(gear))
-        if closed in seen:
+        # neutral and park may open the same elements: a pawl holds the output
+        if closed in seen and not {gear, seen[closed]} <= set(NO_GEARS):
             fault = f'closes the same as gear "{seen[closed]}": {listed(sorted(closed)) or "nothing"}'
             yield Problem(f'gear "{gear}"', "", fault, remedy="correct one of the two rows")
         seen.setdefault(closed, gear)
@@ -132,7 +140,10 @@ def _rigid_problems(box: Definition) -> Iterator[Problem]:
             known.add(row)
             if len(known.spare) > before:
                 fault = "says again what other sets say of the speeds of its members"
-                yield Problem(f'set "{one.name}"', "", fault, remedy="correct its members, or remove it")
+                remedy = (
+                    "correct its members, or write sets that share their torque, such as twin countershafts, as one"
+                )
+                yield Problem(f'set "{one.name}"', "", fault, remedy=remedy)
 
 
 def _gear_problems(box: Definition, gear: str) -> Iterator[Problem]:
@@ -177,8 +188,10 @@ def _fault(box: Definition, found: Combination) -> tuple[str, str]:
         )
     if found.idle:
         column = next(iter(moving[box.output]))
-        idle = [member for member, row in moving.items() if set(row) - {column}]
-        return f"closing {some} leaves {found.dof} speeds free: {listed(idle)} turn freely", "close one more element"
+        idle = [member for member, row in moving.items() if set(row) - {column} and member not in box.shafts]
+        if idle:
+            fault = f"closing {some} leaves {found.dof} speeds free, those of {listed(idle)}"
+            return fault, "close one more element, or list under `shafts` what may turn freely"
     return "", ""
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -83,15 +83,7 @@ class Gearbox(Definition):
                 )
             closed = self.closed_in(gear)
         else:
-            closed = tuple(gear)
-            names = [element.name for element in self.elements]
-            wrong = [
-                f"{shown(name)} is not an element{near(name, names, _known(names))}"
-                for name in closed
-                if name not in names
-            ]
-            if wrong:
-                raise UseError("box.state", wrong)
+            closed = self._elements("box.state", gear)
         found = state(self, closed, gear if isinstance(gear, str) else "")
         if found is None:
             kind = self.combination(closed).kind
@@ -116,8 +108,23 @@ class Gearbox(Definition):
         return {gear: one.ratio for gear, one in self.states().items()}
 
     def combination(self, closed: Sequence[str]) -> motion.Combination:
-        """What closed elements make of the box: a gear, neutral, input or output held, a tie-up."""
-        return motion.combination(self, closed)
+        """What closed elements make of the box: a gear, neutral, input or output held, a tie-up.
+
+        UseError for elements that the box does not have.
+        """
+        return motion.combination(self, self._elements("box.combination", closed))
+
+    def _elements(self, call: str, closed: Sequence[str]) -> tuple[str, ...]:
+        """Names of elements, as they were given; UseError for others."""
+        if isinstance(closed, str) or not isinstance(closed, Iterable):
+            raise UseError(call, [f"{shown(closed)} is not a list of elements; write ('A', 'B')"])
+        names = [element.name for element in self.elements]
+        wrong = [name for name in closed if name not in names]
+        if wrong:
+            raise UseError(
+                call, [f"{shown(name)} is not an element{near(name, names, _known(names))}" for name in wrong]
+            )
+        return tuple(closed)
 
     def combinations(self) -> Iterator[motion.Combination]:
         """Every combination of closed elements, all of them: 2 to the power of their number."""

@@ -16,6 +16,8 @@ TOP = (
     *("shafts", "always_closed", "sets", "elements", "gears", "published"),
 )
 FORMS = ("in/out", "out/in")
+# of teeth and of ratios, far above any gear; what follows from them stays within floating-point numbers
+MOST = 1e6
 SET = ("type", "planets", "equally_spaced", "efficiency")
 
 
@@ -77,7 +79,7 @@ class Reader:
     def _table(self, data: Mapping[str, Any], key: str) -> Mapping[str, Any]:
         value = data.get(key, {})
         if isinstance(value, Mapping):
-            return value
+            return {str(name): entry for name, entry in value.items()}
         self._report("gearbox", key, "must be a table", shown(value), f"write [{key}] above its lines")
         return {}
 
@@ -119,7 +121,7 @@ class Reader:
                 self._report(path, "", "must be a table", shown(entry), f"write [sets.{name}] above its keys")
                 continue
             kind = entry.get("type", "")
-            if kind not in KINDS:
+            if not isinstance(kind, str) or kind not in KINDS:
                 message = "is missing" if "type" not in entry else f"is an unknown type{near(kind, KINDS)}"
                 value = shown(kind) if "type" in entry else ""
                 self._report(path, "type", message, value, f"choose one of {listed(KINDS)}")
@@ -144,9 +146,11 @@ class Reader:
                 rest = "" if by_ratio else f", or {' and '.join(shape.ratios)} in place of all teeth"
                 self._report(path, key, "is missing", remedy=f"give {key}{rest}")
             elif by_ratio:
-                ratios[key] = self._number(entry[key], path, key, above=0.0)
+                ratios[key] = self._number(entry[key], path, key, above=0.0, at_most=MOST)
             else:
-                teeth[key.removeprefix("teeth_")] = self._number(entry[key], path, key, above=0, whole=True)
+                teeth[key.removeprefix("teeth_")] = self._number(
+                    entry[key], path, key, above=0, at_most=MOST, whole=True
+                )
         planets = entry.get("planets")
         if planets is not None:
             self._number(planets, path, "planets", at_least=1, whole=True)
@@ -175,7 +179,7 @@ class Reader:
                 found = f"has {len(members)} members"
                 self._report(path, "", found, remedy='give two: ["S1", "housing"] of a brake, ["in", "C2"] of a clutch')
             kind = table.get("type", "brake" if HOUSING in members else "clutch")
-            if kind not in ELEMENTS:
+            if not isinstance(kind, str) or kind not in ELEMENTS:
                 fault = f"is an unknown type{near(kind, ELEMENTS)}"
                 self._report(path, "type", fault, shown(kind), f"choose one of {listed(ELEMENTS)}")
             if len(self.problems) == before:

@@ -89,6 +89,9 @@ def _parsed(path: Path, text: str) -> Any:
         import tomllib
 
         return tomllib.loads(text)
+    except RecursionError:
+        deep = Problem("file", "", "is nested too deeply", remedy="a gearbox file needs four levels")
+        raise ModelError([deep], str(path)) from None
     except ValueError as error:
         fault = f"is not valid {path.suffix[1:].upper()}: {shortened(str(error))}"
         raise ModelError([Problem("file", "", fault, remedy="fix the syntax")], str(path)) from None

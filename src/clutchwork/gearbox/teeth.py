@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 SHIFT = 3
 # the tips of planets stand out by one module each
 TIPS = 2
+SHORT = "swap the two; where the ring meshes the short planets, write a single and a double set on one ring and carrier"
 
 
 def teeth_problems(one: GearSet) -> Iterator[Problem]:
@@ -57,7 +58,10 @@ def _size_problems(one: GearSet, path: str) -> Iterator[Problem]:
     if one.kind == "ravigneaux":
         pairs.append(("small_sun", "large_sun"))
     for small, large in pairs:
-        if teeth[large] <= teeth[small]:
+        if teeth[large] <= teeth[small] and small == "small_sun":
+            fault = f"is {teeth[large]}, not above teeth_small_sun = {teeth[small]}: the long planets would meet it"
+            yield Problem(path, "teeth_large_sun", fault, remedy=SHORT)
+        elif teeth[large] <= teeth[small]:
             fault = f"is {teeth[large]}, not above teeth_{small} = {teeth[small]}: they cannot mesh"
             yield Problem(path, f"teeth_{large}", fault, remedy="correct one of the two")
     if "planet" in teeth and abs(teeth["sun"] + 2 * teeth["planet"] - teeth["ring"]) > SHIFT:
