@@ -11,7 +11,6 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import Problem, UseError, near
 from clutchwork.base.paths import fitting, made, path_of
 from clutchwork.base.shown import listed, shown
-from clutchwork.declare.calls import explain, explained
 from clutchwork.base.text import counted
 from clutchwork.declare.calls import explain, explained, explained_methods
 from clutchwork.gearbox import analysis, checks, motion, store
