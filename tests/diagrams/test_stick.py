@@ -71,7 +71,7 @@ def test_power_of_each_member_adds_up_to_nothing(name: str) -> None:
             assert abs(sum(power.values())) < 1e-9, member
 
 
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(definitions())
 def test_random_boxes(box: Any) -> None:
     plan = layout(box)

@@ -33,7 +33,7 @@ def painted(box: Definition, drawn: Levers, now: GearState | None) -> list[Mark]
     draw_parts(pen, scene, min(columns), max(columns))
     for body in drawn.plan.bodies:
         x, _ = scene.at(next(iter(body.pieces.values())).root)
-        pen.label(x, NAMES, body.name, NAME + 0.5, INK, bold=True)
+        pen.label(x, NAMES, body.name.replace("+", " + "), NAME + 0.5, INK, bold=True)
     if now is not None:
         draw_legend(pen, around(pen.marks), LEGEND)
         _draw_speeds(pen, now, drawn)
@@ -70,7 +70,7 @@ def _draw_speeds(pen: Pen, now: GearState, drawn: Levers) -> None:
         zero = x + 8.0 - scale * min(0.0, *shown.values())
         _draw_arrows(pen, {m: (zero, top + 8.0 + high - h) for m, h in one.heights.items()}, shown, scale)
         words = max(width_of(_words(m, v), SMALL) for m, v in shown.items())
-        pen.label(zero, top + 28.0 + high - min(one.heights.values()), "+".join(one.lever.sets), NAME, INK, bold=True)
+        pen.label(zero, top + 28.0 + high - min(one.heights.values()), " + ".join(one.lever.sets), NAME, INK, bold=True)
         x = zero + scale * max(0.0, *shown.values()) + words + 34.0
 
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from clutchwork.gearbox.definition import Definition
     from clutchwork.gearbox.state import GearState
 
-# px: a ladder at least, a gap between members at least, between ladders, the whole height at most, of a speed of 1
-LADDER, STEP, BETWEEN, TALLEST, UNIT = 150.0, 15.0, 44.0, 460.0, 130.0
+# px: a ladder, and more where it is alone; gaps of members and ladders; at most the height, and a speed of 1
+LADDER, ALONE, STEP, BETWEEN, TALLEST, UNIT = 120.0, 120.0, 15.0, 44.0, 460.0, 130.0
 TICK, ROW = 30.0, 12.5
 # apart for every eye, dark enough on white
 COLOURS = ("#00497A", "#B8430A", "#0B6E4F", "#7A2E8E", "#8A6D00", "#A3123F", "#3B5BA5", "#5A5A5A", "#00797A", "#6B3E1E")
@@ -40,11 +40,12 @@ class Ladder:
 def ladders(box: Definition, words: float) -> list[Ladder]:
     """Ladders side by side, with room for words on the right of each; sets that share two members are one."""
     made, left = list[Ladder](), 0.0
-    for lever in levers(box.sets, merged=True):
+    found = levers(box.sets, merged=True)
+    for lever in found:
         places = {member: float(place) for member, place in lever.places.items()}
         steps = sorted(places.values())
         least = max(STEP / (b - a) for a, b in pairwise(steps))
-        wide = max(LADDER, least)
+        wide = max(LADDER + ALONE / len(found), least)
         made.append(Ladder(lever, {member: left + wide * place for member, place in places.items()}))
         left += wide + BETWEEN + words
     return made
@@ -65,10 +66,10 @@ def painted(box: Definition, states: Sequence[GearState], now: GearState | None)
     columns = [column for one in made for column in one.columns.values()]
     _draw_scale(pen, low, high, scale, min(columns), max(columns))
     for one in made:
-        _draw_members(pen, one.columns, low, high, scale)
+        below = _draw_members(pen, one.columns, low, high, scale)
         _draw_gears(pen, one.columns, speeds, scale, now)
         middle = 0.5 * (min(one.columns.values()) + max(one.columns.values()))
-        pen.label(middle, -scale * low + 60.0, "+".join(one.lever.sets), NAME + 0.5, INK, bold=True)
+        pen.label(middle, below + 18.0, " + ".join(one.lever.sets), NAME + 0.5, INK, bold=True)
     draw_title(pen, around(pen.marks), box, now)
     return pen.marks
 
@@ -91,8 +92,9 @@ def _draw_scale(pen: Pen, low: float, high: float, scale: float, left: float, ri
     pen.label(left - TICK - 6.0, -scale * high - 26.0 - ROW, text, SMALL, GREY, anchor="start")
 
 
-def _draw_members(pen: Pen, columns: Mapping[str, float], low: float, high: float, scale: float) -> None:
-    """A line for each member; names in as many rows as they need."""
+def _draw_members(pen: Pen, columns: Mapping[str, float], low: float, high: float, scale: float) -> float:
+    """A line for each member; names in as many rows as they need; where the last of these is."""
+    last = float("-inf")
     ends = [float("-inf")] * 8
     for member, x in sorted(columns.items(), key=lambda item: item[1]):
         half = 0.5 * width_of(member, SMALL) + 3.0
@@ -101,6 +103,8 @@ def _draw_members(pen: Pen, columns: Mapping[str, float], low: float, high: floa
         top, bottom = -scale * high - 8.0, -scale * low + 10.0
         pen.line((x, top), (x, bottom), colour=GREY, width=1.0, what=member)
         pen.label(x, bottom + 10.0 + ROW * row, member, SMALL, INK)
+        last = max(last, bottom + 10.0 + ROW * row)
+    return last
 
 
 def _draw_gears(

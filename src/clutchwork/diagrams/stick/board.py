@@ -12,6 +12,8 @@ from clutchwork.diagrams.stick.bodies import Node
 Edge = tuple[Node, Node]  # two neighbours, the lesser first
 STEPS: tuple[Node, ...] = ((1, 0), (-1, 0), (0, 1), (0, -1))
 CROSSING, NEAR = 14.0, 3.0
+# directions of a line that goes along a row, and across it
+ALONG, ACROSS = {0, 1}, {2, 3}
 
 
 def edge(one: Node, other: Node) -> Edge:
@@ -110,8 +112,11 @@ class Board:
 
     def _bare(self, node: Node) -> bool:
         """Whether an end beside it is joined by nothing but its own set."""
-        ends = [(node[0] + a, node[1] + b) for a, b in STEPS]
-        return any(end in self.ends and sum(map(len, self.at.get(end, {}).values())) < 2 for end in ends)
+        for a, b in STEPS:
+            end = (node[0] + a, node[1] + b)
+            if end in self.ends and sum(map(len, self.at.get(end, {}).values())) < 2:
+                return True
+        return False
 
     def inside(self, node: Node) -> bool:
         """Whether it is on the grid."""
@@ -120,19 +125,19 @@ class Board:
     def crossed(self, node: Node, member: str) -> bool:
         """Whether a line of another member lies there."""
         here = self.at.get(node)
-        return here is not None and any(other != member for other in here)
+        return here is not None and (len(here) > 1 or member not in here)
 
     def cost(self, node: Node, way: int, member: str) -> float | None:
         """What it costs to get there in a direction; None where one must not."""
-        if not self.inside(node) or node in self.solid or self.ends.get(node, member) != member:
+        if node in self.solid or self.ends.get(node, member) != member or not self.inside(node):
             return None
-        others = {name: ways for name, ways in self.at.get(node, {}).items() if name != member}
-        if others:
+        here = self.at.get(node)
+        if here is not None and (len(here) > 1 or member not in here):
             # straight across one other line
-            across = {2, 3} if way < 2 else {0, 1}
-            passes = len(self.at[node]) == 1 and next(iter(others.values())) == across
-            return CROSSING if passes else None
-        return NEAR if any(owner != member for owner in self.near.get(node, ())) else 0.0
+            across = ACROSS if way < 2 else ALONG
+            return CROSSING if len(here) == 1 and next(iter(here.values())) == across else None
+        near = self.near.get(node)
+        return NEAR if near and near != {member} else 0.0
 
 
 def _ways(one: Edge) -> tuple[tuple[Node, int], tuple[Node, int]]:

@@ -58,6 +58,11 @@ class Body:
     # planets that turn together, by the columns of the first and the last wheel and their row
     joined: list[tuple[Node, Node]] = field(default_factory=list)
 
+    @property
+    def lopsided(self) -> bool:
+        """Whether it is another drawing when it is turned about."""
+        return len(self.planets) > 1
+
     def placed(self, column: int, *, mirrored: bool) -> Body:
         """The same with its left edge in a column, or turned about."""
 

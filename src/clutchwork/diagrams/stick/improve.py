@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from math import inf
 
 from clutchwork.diagrams.stick.board import Board
 from clutchwork.diagrams.stick.bodies import Body
 from clutchwork.diagrams.stick.route import IN, OUT, NoRoomError, Router
-from clutchwork.gearbox.definition import Definition, ShiftElement
+from clutchwork.gearbox.definition import Definition
 
 RETRIES, PASSES = 5, 4
+SLACK = 8.0  # what a search counts and a finished board does not
+# what takes something off the board, and what lays it anew
+Change = tuple[Callable[[], None], Callable[[], None]]
 
 
 def routed(box: Definition, bodies: Sequence[Body], columns: int, rows: int) -> Router | None:
@@ -33,9 +37,9 @@ def routed(box: Definition, bodies: Sequence[Body], columns: int, rows: int) -> 
 def _improve(router: Router) -> None:
     """Elements, members, input and output once more, one after the other, until nothing gets better."""
     cost = router.cost()
-    changes: list[Callable[[], None]] = [partial(_element, router, one) for one in router.box.elements]
-    changes += [partial(_member, router, member) for member in router.order()]
-    changes += [partial(_gate, router, name) for name in (IN, OUT)]
+    changes: list[Change] = [(partial(router.lift, one), partial(router.place, one)) for one in router.box.elements]
+    changes += [(partial(router.strip, member), partial(router.join, member)) for member in router.order()]
+    changes += [(partial(router.close_gate, name), partial(router.open_gate, name)) for name in (IN, OUT)]
     for _ in range(PASSES):
         before = cost
         for change in changes:
@@ -44,29 +48,19 @@ def _improve(router: Router) -> None:
             return
 
 
-def _element(router: Router, element: ShiftElement) -> None:
-    router.lift(element)
-    router.place(element)
-
-
-def _member(router: Router, member: str) -> None:
-    router.strip(member)
-    router.join(member)
-
-
-def _gate(router: Router, name: str) -> None:
-    router.close_gate(name)
-    router.open_gate(name)
-
-
-def _tried(router: Router, cost: float, change: Callable[[], None]) -> float:
-    """Make a change, and take it back where that does not help."""
+def _tried(router: Router, cost: float, change: Change) -> float:
+    """Take something off the board and lay it anew; what was there comes back where that does not make it better."""
     board, symbols, gates = router.board.copy(), dict(router.symbols), dict(router.gates)
+    off, on = change
+    off()
+    # a way that costs more than what was there is not sought to its end
+    router.limit = cost - router.cost() + SLACK
     try:
-        change()
+        on()
         better = router.cost()
     except NoRoomError:
         better = cost
+    router.limit = inf
     if better < cost - 1e-9:
         return better
     router.board, router.symbols, router.gates = board, symbols, gates

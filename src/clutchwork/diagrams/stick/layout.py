@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 from clutchwork.base.classes import dataclass
@@ -13,6 +14,7 @@ from clutchwork.diagrams.stick.route import NoRoomError, Router
 from clutchwork.diagrams.stick.search import Symbol
 from clutchwork.diagrams.stick.spots import CELL
 from clutchwork.gearbox.definition import Definition
+from clutchwork.gearbox.gear_set import HOUSING
 
 ENDS, BETWEEN, ABOVE = 8, 7, 9  # free columns at the ends and between sets, free rows above sets
 MORE, TRIES = 4, 5
@@ -57,10 +59,25 @@ def layout(box: Definition) -> Layout:
 
 @lru_cache(maxsize=32)
 def _best(one: _Structure) -> Layout:
-    return _routed(one.box, one.bodies, [False] * len(one.bodies))
+    """The cheapest over some orders in which elements are laid, then over both ways round of lopsided sets."""
+    box, sides = one.box, [False] * len(one.bodies)
+    orders = [box.elements, box.elements[::-1], tuple(sorted(box.elements, key=lambda e: HOUSING not in e.members))]
+    boxes = [replace(box, elements=order) for order in dict.fromkeys(orders)]
+    found = [(made, case) for case in boxes if (made := _routed(case, one.bodies, sides)) is not None]
+    if not found:
+        raise NoRoomError
+    best, case = min(found, key=lambda pair: pair[0].cost)
+    for number, drawn in enumerate(one.bodies):
+        if not drawn.lopsided:
+            continue
+        turned = [side != (place == number) for place, side in enumerate(sides)]
+        made = _routed(case, one.bodies, turned)
+        if made is not None and made.cost < best.cost:
+            best, sides = made, turned
+    return best
 
 
-def _routed(box: Definition, bodies: Sequence[Body], mirrored: Sequence[bool]) -> Layout:
+def _routed(box: Definition, bodies: Sequence[Body], mirrored: Sequence[bool]) -> Layout | None:
     for more in range(0, MORE * TRIES, MORE):
         column, placed = ENDS + more, []
         for one, turned in zip(bodies, mirrored, strict=True):
@@ -70,7 +87,7 @@ def _routed(box: Definition, bodies: Sequence[Body], mirrored: Sequence[bool]) -
         router = routed(box, placed, column - BETWEEN + ENDS, rows)
         if router is not None:
             return _made(router, placed)
-    raise NoRoomError
+    return None
 
 
 def _made(router: Router, bodies: Sequence[Body]) -> Layout:

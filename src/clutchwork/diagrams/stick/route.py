@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from math import inf
 
 from clutchwork.diagrams.stick.board import CROSSING, Board, Edge, edge, edges
 from clutchwork.diagrams.stick.bodies import Body, Node, Piece
@@ -28,6 +29,7 @@ class Router:
         self.board = board
         self.symbols: dict[str, Symbol] = {}
         self.gates: dict[str, Node] = {}
+        self.limit = inf  # what a way may cost
         self.fixed: dict[str, set[Edge]] = {member: set() for member in box.members}
         self.pieces = [piece for one in bodies for piece in one.pieces.values() if piece.member != HOUSING]
         for one in bodies:
@@ -99,7 +101,10 @@ class Router:
         parts = self._parts(member)
         while len(parts) > 1:
             joinable = self.board.nodes(member)
-            ways = find(self.board, Task((member, member), parts[0] & joinable, set().union(*parts[1:]) & joinable))
+            ways = find(
+                self.board,
+                Task((member, member), parts[0] & joinable, set().union(*parts[1:]) & joinable, limit=self.limit),
+            )
             if ways is None:
                 raise NoRoomError
             self._draw(member, ways.before)
@@ -133,7 +138,10 @@ class Router:
         goals = [(column, row) for row in range(1, self.board.rows - 3) if self.board.free((column, row))]
         nodes = self.board.nodes(member)
         if nodes:
-            way = find(self.board, Task((member, member), nodes, set(goals), price=lambda node: HIGHER * node[1]))
+            way = find(
+                self.board,
+                Task((member, member), nodes, set(goals), price=lambda node: HIGHER * node[1], limit=self.limit),
+            )
             if way is None:
                 raise NoRoomError
             self._draw(member, way.before)
@@ -169,7 +177,7 @@ class Router:
             placer, goals = on_housing(self.board, element.name), set[Node]()
         else:
             placer, goals = between_members(self.board, element.name), self.board.nodes(second)
-        way = find(self.board, Task((first, second), self.board.nodes(first), goals, placer))
+        way = find(self.board, Task((first, second), self.board.nodes(first), goals, placer, limit=self.limit))
         if way is None or way.symbol is None:
             raise NoRoomError(element.name)
         self._put(element, first, second, way, way.symbol)

@@ -14,7 +14,7 @@ from clutchwork.diagrams.stick.bodies import Node
 BEND, JOIN = 3.0, 1.0
 NO_WAY = -1  # direction at the begin
 BACK = (1, 0, 3, 2)
-MOST_BANNED = 40
+MOST_BANNED = 12
 
 
 class Symbol(NamedTuple):
@@ -57,7 +57,7 @@ class Task:
     """A way that is sought: from one of some nodes to a goal, through one symbol where a placer is given.
 
     Parameters: members, before and behind the symbol; placer, symbols that may stand at a node; price, what a goal
-    costs. Without goals a way ends behind its symbol.
+    costs; limit, what a way may cost. Without goals a way ends behind its symbol.
     """
 
     members: tuple[str, str]
@@ -65,6 +65,7 @@ class Task:
     goals: Collection[Node]
     placer: Placer | None = None
     price: Callable[[Node], float] | None = None
+    limit: float = inf
 
     def ends(self, state: _State) -> bool:
         """Whether a way may end there."""
@@ -75,9 +76,9 @@ class Task:
 
 def find(board: Board, task: Task) -> Way | None:
     """The cheapest way; None: there is none."""
-    banned = set[Symbol]()
+    banned, spots = set[Symbol](), dict[tuple[Node, int], list[Symbol]]()
     for _ in range(MOST_BANNED):
-        found = _Search(board, task, banned).run()
+        found = _Search(board, task, banned, spots).run()
         if found is None or found.symbol is None or _clean(found, found.symbol):
             return found
         banned.add(found.symbol)
@@ -94,8 +95,10 @@ def _clean(way: Way, symbol: Symbol) -> bool:
 class _Search:
     """The method of Dijkstra over nodes, directions, and whether the symbol is placed."""
 
-    def __init__(self, board: Board, task: Task, banned: set[Symbol]) -> None:
-        self.board, self.task, self.banned = board, task, banned
+    def __init__(
+        self, board: Board, task: Task, banned: set[Symbol], spots: dict[tuple[Node, int], list[Symbol]]
+    ) -> None:
+        self.board, self.task, self.banned, self.spots = board, task, banned, spots
         self.open: list[tuple[float, int, _State]] = []
         self.best: dict[tuple[Node, int, bool], float] = {}
         self.before: dict[_State, _State] = {}
@@ -118,7 +121,7 @@ class _Search:
     def push(self, cost: float, state: _State, source: _State | None) -> None:
         """A state that may be reached at a cost."""
         key = (state.node, state.way, state.symbol is not None)
-        if cost >= self.best.get(key, inf):
+        if cost > self.task.limit or cost >= self.best.get(key, inf):
             return
         self.best[key] = cost
         if source is not None:
@@ -141,14 +144,15 @@ class _Search:
             more += self.task.price(node) if self.task.price is not None and node in self.task.goals else 0.0
             self.push(cost + more, _State(node, way, state.symbol), state)
         if self.task.placer is not None and state.symbol is None and straight and not crossing:
-            for symbol in self.task.placer(state.node, way):
-                if self.fits(symbol, way):
+            key = (state.node, way)
+            if key not in self.spots:
+                self.spots[key] = [one for one in self.task.placer(state.node, way) if self.fits(one, way)]
+            for symbol in self.spots[key]:
+                if symbol not in self.banned:
                     self.push(cost + 2.0, _State(symbol.second, way, symbol), state)
 
     def fits(self, symbol: Symbol, way: int) -> bool:
-        """Whether a symbol is not banned, and ends at the housing, on a free node or on the other member."""
-        if symbol in self.banned:
-            return False
+        """Whether a symbol ends at the housing, on a free node or on the other member."""
         member = self.task.members[1]
         return symbol.second == symbol.first or self.board.cost(symbol.second, way, member) in (0.0, NEAR)
 

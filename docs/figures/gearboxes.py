@@ -1,0 +1,26 @@
+"""Draw the gearboxes of the documentation, whose build calls this; they are never committed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import clutchwork as cw
+
+# file -> gearbox, kind of the picture, gear, whether levers are merged
+PICTURES: dict[str, tuple[str, str, str | None, bool]] = {
+    "eight_speed": ("zf-8hp70", "stick", None, False),
+    "eight_speed_fourth": ("zf-8hp70", "stick", "4", False),
+    "lepelletier": ("zf-6hp26", "stick", "5", False),
+    "lever": ("zf-6hp26", "lever", "2", False),
+    "merged": ("chrysler-62te", "lever", None, True),
+    "plan": ("ford-aode", "speeds", None, False),
+    "chart": ("zf-6hp26", "chart", None, False),
+}
+
+
+def write(folder: Path) -> list[Path]:
+    """The pictures of the guide."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, (box, kind, gear, merged) in PICTURES.items():
+        cw.diagram(box, kind, gear=gear, merged=merged, path=folder / f"{name}.svg")
+    return [folder / f"{name}.svg" for name in PICTURES]
