@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 
+import clutchwork as cw
 from clutchwork.diagrams.lever.layout import layout
 from clutchwork.diagrams.lever.paint import painted
 from clutchwork.diagrams.lever.points import levers
@@ -86,3 +87,30 @@ def test_random_boxes(box: Any) -> None:
     assert drawings.overlapping_labels(marks) == []
     assert drawings.struck_labels(marks) == []
     assert drawings.touching_members(box, marks) == []
+
+
+LOCKED = {
+    "name": "locked in itself",
+    "input": "X",
+    "output": "C",
+    "sets": {
+        "P": {"type": "single", "sun": "X", "ring": "X", "carrier": "out", "teeth_sun": 30, "teeth_ring": 70},
+        "Q": {"type": "single", "sun": "out", "ring": "R", "carrier": "C", "teeth_sun": 30, "teeth_ring": 70},
+    },
+    "elements": {"B": ["R", "housing"]},
+    "gears": {"1": ["B"]},
+}
+
+
+@pytest.mark.parametrize("kind", ["stick", "lever", "speeds", "chart"])
+def test_a_set_whose_sun_and_ring_are_one_member(kind: str) -> None:
+    """It turns as one piece and has no lever; the others are drawn."""
+    text = cw.diagram(cw.Gearbox.from_dict(LOCKED), kind, gear="1").svg
+    # the chart shows members alone
+    assert ("Q" in text) == (kind != "chart")
+
+
+def test_a_gearbox_without_any_lever() -> None:
+    alone = {**LOCKED, "output": "out", "sets": {"P": LOCKED["sets"]["P"]}, "elements": {}, "gears": {"1": []}}
+    with pytest.raises(cw.UseError, match="no lever"):
+        cw.diagram(cw.Gearbox.from_dict(alone), "lever")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +15,12 @@ from clutchwork.diagrams.kinds import KINDS
 from clutchwork.diagrams.picture import Diagram
 from clutchwork.gearbox.gearbox import Gearbox
 
+# kinds that show each set as a lever
+LEVERS = ("lever", "speeds")
+
 if TYPE_CHECKING:
     from clutchwork.diagrams.marks import Mark
+    from clutchwork.gearbox.gear_set import GearSet
     from clutchwork.gearbox.state import GearState
 
 
@@ -48,6 +53,10 @@ def diagram(
         raise UseError("cw.diagram", problems)
     now = None if gear is None else box.state(gear)
     title = f"{box.title or box.name}, {kind}" + (f", gear {now.gear or listed(now.closed)}" if now else "")
+    if kind in LEVERS and not any(map(_has_lever, box.sets)):
+        raise UseError(
+            "cw.diagram", [f"{box.name} has no lever: its sets are locked in themselves; choose stick or chart"]
+        )
     made = Diagram(kind, title, _marks(box, kind, now, merged))
     if path is not None:
         made.save(path)
@@ -65,11 +74,20 @@ def _problems(box: Any, kind: Any, path: Any, merged: Any) -> Any:
         yield f"merged is {shown(merged)}: give True or False"
 
 
+def _has_lever(one: GearSet) -> bool:
+    """Whether the ports of a set are different members; a set that is locked in itself has no lever."""
+    members = list(one.members.values())
+    return len(members) == len(set(members))
+
+
 def _marks(box: Gearbox, kind: str, now: GearState | None, merged: bool) -> list[Mark]:
     if kind == "stick":
         from clutchwork.diagrams.stick import layout, paint
 
         return paint.painted(box, layout.layout(box), now)
+    states = list(box.states().values())
+    if kind in LEVERS:
+        box = replace(box, sets=tuple(filter(_has_lever, box.sets)))
     if kind == "lever":
         from clutchwork.diagrams.lever import layout as hung
         from clutchwork.diagrams.lever import paint as lever
@@ -77,5 +95,4 @@ def _marks(box: Gearbox, kind: str, now: GearState | None, merged: bool) -> list
         return lever.painted(box, hung.layout(box, merged=merged), now)
     from clutchwork.diagrams.speed import chart, plan
 
-    states = list(box.states().values())
     return plan.painted(box, states, now) if kind == "speeds" else chart.painted(box, states, now)
