@@ -10,6 +10,7 @@ RADIUS, MASS, FINAL_DRIVE, IDLE = 0.33, 1800.0, 3.2, 75.0  # m, kg, 1, rad/s
 FULL_LOAD = ((0.0, 150.0), (100.0, 250.0), (180.0, 380.0), (500.0, 380.0), (650.0, 300.0), (720.0, 0.0))
 MOTORING = ((0.0, -25.0), (700.0, -70.0))
 SENSED = cw.shifts.Sensed(torque=("converter.turbine.torque",), throttle="combustion.throttle")
+RIGID = cw.shifts.Sensed(torque=("combustion.torque", "combustion.drag.torque"), throttle="combustion.throttle")
 SPEED = 200.0  # rad/s of the input in a drive
 
 
@@ -17,6 +18,7 @@ def car(box: cw.Gearbox, gear: str, turbine: float = SPEED, **transmission: Any)
     """The car in a gear, its input at a speed [rad/s]; in neutral it stands."""
     d = cw.Driveline(f"{box.name} in {gear}")
     ratio = box.ratios.get(gear)
+    turbine = turbine if ratio else 0.0
     turning = turbine / ratio if ratio else 0.0
     engine = d.shaft("engine", inertia=0.2, speed=max(IDLE, turbine))
     shaft = d.shaft("turbine", inertia=0.06, speed=turbine)
@@ -52,7 +54,7 @@ def car(box: cw.Gearbox, gear: str, turbine: float = SPEED, **transmission: Any)
     return d
 
 
-def rigid(box: cw.Gearbox, gear: str, engine: float = 100.0, **transmission: Any) -> cw.Driveline:
+def rigid(box: cw.Gearbox, gear: str, engine: float = IDLE, **transmission: Any) -> cw.Driveline:
     """The same without a converter: the engine drives the gearbox by a stiff shaft."""
     d = cw.Driveline(f"{box.name} in {gear}, no converter")
     ratio = box.ratios.get(gear)

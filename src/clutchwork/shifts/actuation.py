@@ -6,12 +6,17 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from clutchwork.base.shown import listed
 from clutchwork.shifts.exchange import FRICTION
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.shifts.plant import Plant
+    from clutchwork.shifts.record import Measured
     from clutchwork.shifts.settings import ShiftSettings
+
+# a sleeve that is further in is taken as engaged
+ENGAGED = 0.9
 
 
 @dataclass
@@ -41,6 +46,29 @@ class Actuation:
     def carries(self, name: str, torque: float) -> bool:
         """Whether it is there and could carry a torque on its follower [N m]; a freewheel pushes one way only."""
         return bool(name) and (self.kinds[name] != "freewheel" or torque > 0.0)
+
+    def closed_in(self, gear: str) -> tuple[str, ...]:
+        """Elements of a gear, none in neutral."""
+        return self.box.closed_in(gear) if gear in self.box.gears else ()
+
+    def only(self, gear: str, with_: ShiftSettings) -> None:
+        """The elements of a gear closed at once, all others open.
+
+        In neutral the dog clutches of first gear are in, for they cannot mesh while the input turns.
+        """
+        closed = self.closed_in(gear)
+        if gear not in self.box.gears:
+            first = max(self.box.ratios, key=lambda one: self.box.ratios[one])
+            closed = tuple(name for name in self.closed_in(first) if self.is_dog(name))
+        self.open(*(name for name in self.kinds if name not in closed))
+        self.close(closed, with_)
+
+    def wrong(self, gear: str, with_: ShiftSettings, now: Measured) -> str:
+        """Why a gear is not in: elements that slip, sleeves that are out; empty where it is."""
+        closed = self.closed_in(gear)
+        slips = [name for name in closed if self.slides(name) and abs(now.slips[name]) > with_.sync_slip]
+        out = [name for name in closed if self.is_dog(name) and now.sleeves.get(name, 1.0) < ENGAGED]
+        return "; ".join(f"{listed(names)} {fault}" for names, fault in ((slips, "slips"), (out, "is out")) if names)
 
     def open(self, *names: str) -> None:
         """Take all pressure away, or pull the sleeve out."""

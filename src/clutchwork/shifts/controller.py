@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import listed, shown
 from clutchwork.shifts.actuation import Actuation
-from clutchwork.shifts.course import ENGAGED, Course
+from clutchwork.shifts.choice import Choice
+from clutchwork.shifts.course import Course
 from clutchwork.shifts.exchange import Exchange, exchanges
 from clutchwork.shifts.plant import Plant
 from clutchwork.shifts.record import NEUTRAL, Measured, ShiftRecord
@@ -18,9 +19,6 @@ from clutchwork.shifts.settings import ShiftSettings
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.shifts.schedule import ShiftSchedule
-
-# share of the launch speed below which the input is let go
-STALLS = 0.8
 
 
 @dataclass
@@ -31,6 +29,7 @@ class ShiftController:
     knows nothing of clutchwork's runs. It works out of the gearbox alone which elements are exchanged and what they
     carry; several exchanges follow one another through the gears between them.
 
+    mesh      dog clutches of the gear that stand still go in first
     fill      the element that closes is filled; the one that opens is lowered to what it carries
     torque    one takes over the torque from the other: first in upshifts under power and downshifts without
     inertia   the input follows a profile to its new speed, by the one that closes where it must be pulled there, by
@@ -68,8 +67,6 @@ class ShiftController:
     pause: float = 0.3  # s, from the end of a shift to the next one that the schedule asks for
     # what it remembers
     records: list[ShiftRecord] = field(default_factory=list)
-    _wanted: str = ""
-    _let_go: str = ""  # gear that was let go before the engine stalled
     _left: list[Exchange] = field(default_factory=list)
     _course: Course | None = None
     _called: float = 0.0  # s
@@ -77,12 +74,12 @@ class ShiftController:
 
     def __post_init__(self) -> None:
         self._known(self.gear)
+        self._choice = Choice(self.schedule, self.settings)
         self._do = Actuation(self.box, self.plant, self.prefix)
-        self._do.open(*self._do.kinds)
-        self._do.close(self._closed(self.gear), self.settings)
+        self._do.only(self.gear, self.settings)
         self._ended = -self.pause
         if self.gear == NEUTRAL and self.settings.launch_speed and self.schedule is not None:
-            self._let_go = next(iter(self.schedule.ratios))
+            self._choice.let_go = next(iter(self.schedule.ratios))
 
     # ------------------------------------------------------------------------------------------------ from outside
 
@@ -92,19 +89,22 @@ class ShiftController:
         A shift that is still filling is called off.
         """
         self._known(gear)
-        self._wanted, self._let_go = gear, ""
+        self._choice.request(gear)
 
     def step(self, time: float, now: Measured) -> dict[str, float]:
         """Pressures [Pa] and positions of sleeves by signal, those that change alone, at a time [s]."""
         before = dict(self._do.commands)
         period = max(0.0, time - self._called)
         self._called = time
-        if self._stalls(now):
+        course = self._course
+        if self._choice.stalls(self.gear, course is not None and not course.one.off, period, now):
             self._abandon(time, NEUTRAL, "let go before the engine stalled")
-        if self._course is not None and self._course.state == "fill" and self._wanted not in ("", self.gear):
+        elif course is not None and course.state in ("mesh", "fill") and self._choice.wanted not in ("", self.gear):
             self._call_off(time)
         if self._course is None:
-            self._decide(time, now)
+            wanted = self._choice.take(self.gear, time - self._ended >= self.pause - 1e-9, now)
+            if wanted:
+                self._start(wanted, time, now)
         if self._course is not None:
             self._go_on(self._course, time, period, now)
         return self._do.signals(name for name, value in self._do.commands.items() if value != before[name])
@@ -134,64 +134,33 @@ class ShiftController:
         """All pressures [Pa] and positions of sleeves by signal, such as for the start of a run."""
         return self._do.signals(self._do.commands)
 
-    # ---------------------------------------------------------------------------------------------------- deciding
-
     def _known(self, gear: str) -> None:
         if gear != NEUTRAL and gear not in self.box.gears:
             remedy = f"choose from {listed([*self.box.gears, NEUTRAL])}"
             raise UseError("ShiftController", [f"{shown(gear)} is no gear of {shown(self.box.name)}; {remedy}"])
 
-    def _closed(self, gear: str) -> tuple[str, ...]:
-        return self.box.closed_in(gear) if gear in self.box.gears else ()
-
-    def _decide(self, time: float, now: Measured) -> None:
-        wanted, self._wanted = self._wanted or self._drive_off(now), ""
-        if not wanted and self.schedule is not None and time - self._ended >= self.pause - 1e-9:
-            wanted = self.schedule.gear(self.gear, now.output_speed, now.throttle)
-        if wanted and wanted != self.gear:
-            self._start(wanted, time, now)
-
-    def _drive_off(self, now: Measured) -> str:
-        """The gear to drive off in, where the last one was let go and the driver wants to go."""
-        if not self._let_go or now.throttle <= self.settings.launch_throttle:
-            return ""
-        if self.schedule is None or self._let_go not in self.schedule.ratios:
-            return self._let_go
-        return self.schedule.gear(next(iter(self.schedule.ratios)), now.output_speed, now.throttle)
-
-    def _stalls(self, now: Measured) -> bool:
-        """Whether the output holds an input that is fixed to an engine below its launch speed."""
-        least = STALLS * self.settings.launch_speed
-        if not least or self.gear == NEUTRAL or now.input_speed >= least:
-            return False
-        launches = self._course is not None and not self._course.one.off
-        return not launches or now.throttle <= self.settings.launch_throttle
-
     # --------------------------------------------------------------------------------------------------- the shift
 
     def _start(self, gear: str, time: float, now: Measured) -> None:
-        before, after = self._closed(self.gear), self._closed(gear)
+        before, after = self._do.closed_in(self.gear), self._do.closed_in(gear)
         self._left = list(exchanges(self.box, before, after, self.plant.inertias))
         self.records.append(ShiftRecord(self.gear, gear, time, now.input_torque >= 0.0, tuple(self._left)))
-        self.gear, self._let_go = gear, ""
-        kept = {*self._left[0].kept, self._left[0].off} if self._left else set(after)
-        self._do.open(*(name for name in before if name not in kept and not self._stays_in(name, gear)))
+        self.gear, self._choice.let_go = gear, ""
         if self._left:
             self._begin(time)
         else:
-            self._do.close(after, self.settings)
+            self._do.only(gear, self.settings)
             self._finish(time)
-
-    def _stays_in(self, name: str, gear: str) -> bool:
-        """Dog clutches stay in mesh in neutral: they could not engage again while the engine turns."""
-        return gear == NEUTRAL and self._do.is_dog(name)
 
     def _begin(self, time: float) -> None:
         """The next exchange."""
-        one, with_ = self._left[0], self._with(self.records[-1])
-        self._do.close(one.kept, with_)
-        self._course = Course(one, with_, self._do, time, len(self._left) == 1)
-        self.records[-1].phases.append((time, "fill"))
+        one, record = self._left[0], self.records[-1]
+        opens = tuple(name for name in self._do.kinds if name not in (*one.kept, one.off, one.on))
+        opens += (one.on,) if not one.off else ()
+        filled = len(self._left) < len(record.exchanges)
+        ahead = self._left[1].on if len(self._left) > 1 else ""
+        self._course = Course(one, self._with(record), self._do, time, filled, ahead, opens)
+        self.records[-1].phases.append((time, "mesh"))
 
     def _with(self, record: ShiftRecord) -> ShiftSettings:
         """Calibration of a shift."""
@@ -206,17 +175,10 @@ class ShiftController:
             if self._left:
                 self._begin(time)
             else:
-                self._do.close(self._closed(self.gear), course.with_)
-                self._finish(time, self._slipping(course, now))
+                self._do.only(self.gear, self.settings)
+                self._finish(time, self._do.wrong(self.gear, course.with_, now))
         elif new:
             self.records[-1].phases.append((time, new))
-
-    def _slipping(self, course: Course, now: Measured) -> str:
-        """What says that the gear is not in: elements that slip, sleeves that are out."""
-        closed, do = self._closed(self.gear), self._do
-        slips = [name for name in closed if do.slides(name) and abs(now.slips[name]) > course.with_.sync_slip]
-        out = [name for name in closed if do.is_dog(name) and now.sleeves.get(name, 1.0) < ENGAGED]
-        return "; ".join(f"{listed(names)} {fault}" for names, fault in ((slips, "slips"), (out, "is out")) if names)
 
     def _call_off(self, time: float) -> None:
         """The driver wants another gear, and nothing was exchanged yet."""
@@ -229,10 +191,8 @@ class ShiftController:
         if self._course is None:
             self.records.append(ShiftRecord(self.gear, gear, time, power_on=False))
             why = ""
-        self._let_go = self.gear if gear == NEUTRAL else ""
-        closed = self._closed(gear)
-        self._do.open(*(name for name in self._do.kinds if name not in closed and not self._stays_in(name, gear)))
-        self._do.close(closed, self.settings)
+        self._choice.let_go = self.gear if gear == NEUTRAL else ""
+        self._do.only(gear, self.settings)
         self.gear = gear
         self._finish(time, why)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from clutchwork.shifts.actuation import ENGAGED
 from clutchwork.shifts.profile import Profile
 
 if TYPE_CHECKING:
@@ -13,8 +14,6 @@ if TYPE_CHECKING:
     from clutchwork.shifts.record import Measured
     from clutchwork.shifts.settings import ShiftSettings
 
-# a sleeve that is further in is taken as engaged
-ENGAGED = 0.9
 # torque at the input below which a dog clutch counts as unloaded [N m]
 UNLOADED = 5.0
 
@@ -27,10 +26,13 @@ class Course:
     with_: ShiftSettings
     do: Actuation
     since: float  # s, begin of the state
-    last: bool = True  # else another exchange follows
-    state: str = "fill"
+    filled: bool = False  # whether the one that closes was filled in the exchange before
+    ahead: str = ""  # the one that closes in the exchange that follows, if one does
+    opens: tuple[str, ...] = ()  # what opens at once
+    state: str = "mesh"
     torque_factor: float = 1.0  # what the engine is asked for
     blip: float = 0.0  # throttle on top of that of the driver
+    _closing: tuple[str, ...] = ()  # elements that close beside `on`
     _loaded: float = 0.0  # N m, at the input where the torque phase began
 
     def __post_init__(self) -> None:
@@ -39,6 +41,9 @@ class Course:
     def step(self, time: float, period: float, now: Measured) -> str:
         """Do what the state asks for; the state that begins, if one does. "done": the exchange is made."""
         new: str = getattr(self, self.state)(time - self.since, period, now)
+        if new == "fill":
+            self.state, self.since = new, time
+            return self.fill(0.0, period, now) or new
         if new:
             self.state, self.since = new, time
         if new in ("torque", "inertia"):
@@ -48,11 +53,26 @@ class Course:
 
     # ------------------------------------------------------------------------------------------------------ states
 
+    def mesh(self, passed: float, _: float, now: Measured) -> str:
+        """Dog clutches of the gear that stand still go in before anything turns; then what neither opens nor closes."""
+        one, with_, do = self.one, self.with_, self.do
+        out = [name for name in one.kept if do.is_dog(name) and now.sleeves.get(name, 1.0) < ENGAGED]
+        do.close(out, with_)
+        if passed < with_.fill_time and any(abs(now.slips[name]) < with_.dog_slip for name in out):
+            return ""
+        do.open(*self.opens)
+        # what was closed stays so; what closes beside `on` stops its members softly while that is filled
+        self._closing = tuple(name for name in one.kept if do.slides(name) and not do.commands[name])
+        do.close((name for name in one.kept if name not in self._closing), with_)
+        return "fill"
+
     def fill(self, passed: float, _: float, now: Measured) -> str:
         """The one that closes up to where it touches, the other down to what it carries."""
         one, with_, do = self.one, self.with_, self.do
-        share = _share(passed, with_.fill_time if do.slides(one.on) or do.slides(one.off) else 0.0)
+        takes = not self.filled and (do.slides(one.on) or do.slides(one.off))
+        share = _share(passed, with_.fill_time if takes else 0.0)
         do.carry(one.on, 0.0, with_)
+        do.commands.update(dict.fromkeys(self._closing, share * share * with_.full_pressure))
         if do.slides(one.off):
             full = with_.full_pressure
             held = do.pressure(one.off, with_.margin * abs(one.off_torque * now.input_torque), with_)
@@ -89,6 +109,7 @@ class Course:
         if self._is_synchronous(now) or too_long:
             self.torque_factor, self.blip = 1.0, 0.0
             return "sync"
+        do.carry(self.ahead, 0.0, with_)
         needed = self._profile.needed(passed, period, now)
         pulls = needed * self._profile.slip <= 0.0
         do.carry(one.on, abs(needed * one.on_torque) if pulls else 0.0, with_)
@@ -109,16 +130,17 @@ class Course:
             least = do.pressure(one.on, with_.margin * abs(one.on_torque) * torque, with_)
             touch = do.pressure(one.on, 0.0, with_)
             do.commands[one.on] = max(do.commands[one.on], touch + share * (least - touch))
-        if do.slides(one.off):
-            held = do.pressure(one.off, abs(one.off_torque) * torque, with_)
-            do.commands[one.off] = (1.0 - share) * min(do.commands[one.off], held)
+        if share < 1.0:
+            do.carry(one.off, (1.0 - share) * abs(one.off_torque) * torque, with_)
+        else:
+            do.open(*([one.off] if one.off else []))
         return "end" if share >= 1.0 else ""
 
     def end(self, passed: float, period: float, now: Measured) -> str:
         """The one that closed up to full pressure, until it does not slip any more; before another exchange at once."""
         one, with_, do = self.one, self.with_, self.do
         do.open(*([one.off] if one.off else []))
-        if not do.slides(one.on) or not self.last:
+        if not do.slides(one.on) or self.ahead:
             return "done"
         full = with_.full_pressure
         do.commands[one.on] = min(full, do.commands[one.on] + full * period / max(with_.end_time, 1e-9))
@@ -130,10 +152,10 @@ class Course:
 
     def _takes_over(self, now: Measured) -> bool:
         """Upshifts under power and downshifts without: the one that closes can take over before speeds change."""
-        one = self.one
-        if not self.do.slides(one.on) or not self.do.carries(one.off, one.off_torque * now.input_torque):
+        one, torque = self.one, now.input_torque
+        if not self.do.slides(one.on) or not self.do.carries(one.off, one.off_torque * torque):
             return False
-        return (now.input_torque >= 0.0) == (self._profile.lacks(now) <= 0.0)
+        return (torque >= 0.0) == (self._profile.lacks(now) <= 0.0)
 
     def _unload(self, passed: float, now: Measured) -> str:
         """Less torque of the engine, or more where it drags, until the teeth of a dog clutch are free."""

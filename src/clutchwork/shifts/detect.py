@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.base.classes import dataclass
-from clutchwork.shifts.gears import NOTHING, InGear, gears_of
+from clutchwork.shifts.gears import InGear, gears_of
 from clutchwork.shifts.record import NEUTRAL
 
 if TYPE_CHECKING:
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.results.recorded import Recorded
+
+# torque that counts as none, as a share of the largest one
+NOTHING = 0.02
 
 
 @dataclass(frozen=True)

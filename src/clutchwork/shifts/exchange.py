@@ -109,16 +109,18 @@ def _detour(box: Gearbox, before: tuple[str, ...], way: tuple[tuple[str, str], .
 def _engage(box: Gearbox, after: tuple[str, ...], closes: tuple[str, ...], inertias: Mapping[str, float]) -> Exchange:
     """Into a gear by one element that slips, the softest: a clutch or brake that carries the least, but something."""
     state = _state(box, after)
-    usable = [
-        name
-        for name in closes or after
-        if box.element(name).kind in FRICTION and not _ratio(box, tuple(one for one in after if one != name))
-    ]
+    usable = _usable(box, after, closes) or _usable(box, after, after)
     if not usable:
-        raise UseError("shift", [f"{listed(closes)} cannot slip; close a clutch or a brake to engage a gear"])
+        raise UseError("shift", [f"{listed(after)} cannot slip; close a clutch or a brake to engage a gear"])
     on = min(usable, key=lambda name: abs(_torque(state, name)))
     kept = tuple(name for name in after if name != on)
     return Exchange("", on, kept, 0.0, _torque(state, on), 0.0, state.ratio, _inertia(box, kept, inertias))
+
+
+def _usable(box: Gearbox, after: tuple[str, ...], names: tuple[str, ...]) -> list[str]:
+    """Clutches and brakes without which the gear is none."""
+    slide = [name for name in names if box.element(name).kind in FRICTION]
+    return [name for name in slide if not _ratio(box, tuple(one for one in after if one != name))]
 
 
 def _exchange(

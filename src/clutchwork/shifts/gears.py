@@ -1,103 +1,85 @@
-"""Gears of a trajectory: which elements were closed when, and what that made of the box."""
+"""Gears of a trajectory that shifts lead from and to."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clutchwork.base.classes import dataclass
-from clutchwork.results.stretches import stretches
+from clutchwork.results import gears
 from clutchwork.shifts.record import NEUTRAL
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from clutchwork.gearbox.gearbox import Gearbox
+    from clutchwork.results.gears import GearStretch
     from clutchwork.results.recorded import Recorded
 
-# torque that counts as none, as a share of the largest one
-NOTHING = 0.02
 # a gear that is held for less is passed through [s]
 SHORTEST = 0.3
-# position above which a sleeve is in mesh
-IN_MESH = 0.5
+# torque that counts as none, as a share of what elements carry mostly
+NOTHING = 0.02
 
 
 @dataclass(frozen=True)
 class InGear:
-    """A stretch of a run in which one gear is in; "N": none, and no element that slips carries torque."""
+    """A stretch of a run in which one gear is in; "N": none, and no element carries torque."""
 
     gear: str
     begin: float  # s
     end: float  # s
 
 
-class Closed(NamedTuple):
-    """A stretch of a run in which the same shift elements are closed."""
-
-    begin: float  # s
-    end: float  # s
-    names: frozenset[str]
-
-
 def gears_of(run: Recorded, box: Gearbox, prefix: str = "gearbox", *, least: float = SHORTEST) -> list[InGear]:
-    """When which gear was in, by the elements that were locked and the dog clutches that were in mesh.
+    """The gears that a `cw.Transmission` was in, one after the other, without those that it only passed through.
 
-    Between gears the box is in neutral where nothing that slips carries torque, for `least` at least; a shift in which
-    the input flies free to its new speed is none, for what both gears share stays closed, nor is a gear whose freewheel
-    overruns.
+    What `run.gears()` lists is put together: a gear whose elements let go for a moment stays one, and so does one whose
+    freewheel overruns. Between gears the box is in neutral where no element carries torque for `least`, and something
+    of what both gears share was open; a shift in which the input flies free to its new speed has no neutral.
 
     Parameters: least, time [s] for which a gear must be held, but for the first one and the last one.
     """
-    parts = list(closed_of(run, box, prefix))
-    known = {names: gear_with(box, names) for names in {part.names for part in parts}}
-    found = list(_joined(InGear(known[part.names], part.begin, part.end) for part in parts))
-    if not found:
+    parts = list(gears.gears_of(run, prefix))
+    if not parts:
         return []
-    ends = (found[0].begin, found[-1].end)
-    held = [one for one in found if one.gear and (one.end - one.begin >= least or one.begin in ends or one.end in ends)]
-    idle = _idle(run, box, prefix, parts, held, least)
-    return list(_joined(iter(sorted([*held, *idle], key=lambda one: one.begin))))
+    ends = {parts[0].begin, parts[-1].end}
+    named = list(_joined(InGear(part.gear if part.gear in box.ratios else "", part.begin, part.end) for part in parts))
+    held = [one for one in named if one.gear and (one.end - one.begin >= least or {one.begin, one.end} & ends)]
+    idle = list(_idle(run, box, prefix, list(_between(held, parts[0].begin, parts[-1].end)), least))
+    used = [one for one in idle if not _flies(box, prefix, parts, held, one)]
+    return list(_joined(sorted([*held, *used], key=lambda one: one.begin)))
 
 
-def closed_of(run: Recorded, box: Gearbox, prefix: str) -> Iterator[Closed]:
-    """Which shift elements were closed when: contacts that are locked, dog clutches that are in mesh."""
-    names = {f"{prefix}.{element.name}": element.name for element in box.elements}
-    dogs = [name for path, name in names.items() if f"{path}.sleeve" in run]
-    first = 0
-    for part in stretches(run):
-        locked = frozenset(names[name] for name in part.locked if name in names)
-        if not dogs:
-            yield Closed(part.begin, part.end, locked)
-            continue
-        rows = slice(first, part.last + 1)
-        sleeves = np.array([part.run[f"{prefix}.{name}.sleeve"][rows] > IN_MESH for name in dogs])
-        cuts = np.flatnonzero(np.any(sleeves[:, 1:] != sleeves[:, :-1], axis=0)) + 1
-        times = [part.begin, *part.run.time[rows][cuts].tolist(), part.end]
-        for (begin, end), place in zip(pairwise(times), [0, *cuts], strict=True):
-            meshed = frozenset(name for name, inside in zip(dogs, sleeves[:, place], strict=True) if inside)
-            yield Closed(begin, end, locked | meshed)
-        first = part.last + 1
+def _between(held: Sequence[InGear], first: float, last: float) -> Iterator[tuple[float, float]]:
+    """Stretches in which no gear is in [s]."""
+    times = [first, *(at for one in held for at in (one.begin, one.end)), last]
+    yield from zip(times[::2], times[1::2], strict=True)
 
 
-def gear_with(box: Gearbox, locked: frozenset[str]) -> str:
-    """The gear whose elements are locked and whose ratio holds, empty where there is none."""
-    ratio = box.combination(sorted(locked)).ratio
-    if ratio is None:
-        return ""
-    fitting = [gear for gear in box.gears if set(box.closed_in(gear)) <= locked]
-    return next((gear for gear in fitting if box.combination(box.closed_in(gear)).ratio == ratio), "")
+def _idle(
+    run: Recorded, box: Gearbox, prefix: str, gaps: Sequence[tuple[float, float]], least: float
+) -> Iterator[InGear]:
+    """Where no element carries torque."""
+    long = [(begin, end) for begin, end in gaps if end - begin >= least]
+    if not long:
+        return
+    time = np.asarray(run.time)
+    most = np.max([np.abs(run[f"{prefix}.{element.name}.torque"]) for element in box.elements], axis=0)
+    free = most <= NOTHING * float(np.median(most[most > 0.0])) if np.any(most > 0.0) else most <= 0.0
+    for begin, end in long:
+        inside = np.flatnonzero((time >= begin) & (time <= end))
+        cuts = np.flatnonzero(np.diff(free[inside].astype(int))) + 1
+        idle = (part for part in np.split(inside, cuts) if len(part) and free[part[0]])
+        spans = [(float(time[part[0]]), float(time[part[-1]])) for part in idle]
+        yield from (InGear(NEUTRAL, first, last) for first, last in spans if last - first >= least)
 
 
-def _joined(parts: Iterator[InGear]) -> Iterator[InGear]:
-    """Stretches of one gear that follow one another are one; those of no duration are passed through."""
+def _joined(parts: Iterable[InGear]) -> Iterator[InGear]:
+    """Stretches of one gear that follow one another are one."""
     last: InGear | None = None
     for part in parts:
-        if last is not None and part.end <= part.begin and part.gear != last.gear:
-            continue
         if last is not None and last.gear == part.gear:
             last = InGear(last.gear, last.begin, part.end)
             continue
@@ -108,44 +90,12 @@ def _joined(parts: Iterator[InGear]) -> Iterator[InGear]:
         yield last
 
 
-def _idle(
-    run: Recorded, box: Gearbox, prefix: str, parts: Sequence[Closed], gears: Sequence[InGear], least: float
-) -> list[InGear]:
-    """Neutral before, between and behind gears."""
-    time, found = np.asarray(run.time), []
-    ends = [float(time[0]), *(at for one in gears for at in (one.begin, one.end)), float(time[-1])]
-    around = [None, *gears, None]
-    free: NDArray[np.bool_] | None = None
-    for number, (old, new) in enumerate(pairwise(around)):
-        begin, end = ends[2 * number], ends[2 * number + 1]
-        if end - begin < least or (old and new and _flies(box, parts, old, new)):
-            continue
-        free = _free(run, box, prefix, parts) if free is None else free
-        inside = np.flatnonzero((time >= begin) & (time <= end))
-        cuts = np.flatnonzero(np.diff(free[inside].astype(int))) + 1
-        idle = (part for part in np.split(inside, cuts) if len(part) and free[part[0]])
-        spans = [(float(time[part[0]]), float(time[part[-1]])) for part in idle]
-        found += [InGear(NEUTRAL, first, last) for first, last in spans if last - first >= least]
-    return found
-
-
-def _flies(box: Gearbox, parts: Sequence[Closed], old: InGear, new: InGear) -> bool:
-    """Whether what two gears share stayed closed between them, freewheels left aside."""
-    shared = {*box.closed_in(old.gear)} & {*box.closed_in(new.gear)}
-    shared = {name for name in shared if box.element(name).kind != "freewheel"}
-    between = [part.names for part in parts if old.end <= part.begin and part.end <= new.begin]
-    return all(shared <= names for names in between)
-
-
-def _free(run: Recorded, box: Gearbox, prefix: str, parts: Sequence[Closed]) -> NDArray[np.bool_]:
-    """Where no element that slips carries torque."""
-    time = np.asarray(run.time)
-    free = np.ones(len(time), dtype=bool)
-    for element in box.elements:
-        torque = np.abs(run[f"{prefix}.{element.name}.torque"])
-        carries = torque > NOTHING * float(np.max(torque, initial=0.0))
-        for part in parts:
-            if element.name in part.names:
-                carries[(time > part.begin) & (time < part.end)] = False
-        free &= ~carries
-    return free
+def _flies(box: Gearbox, prefix: str, parts: Sequence[GearStretch], held: Sequence[InGear], idle: InGear) -> bool:
+    """Whether what the gears on both sides share stayed closed, freewheels left aside."""
+    for old, new in pairwise(held):
+        if old.end <= idle.begin and idle.end <= new.begin:
+            shared = {*box.closed_in(old.gear)} & {*box.closed_in(new.gear)}
+            wanted = {f"{prefix}.{name}" for name in shared if box.element(name).kind != "freewheel"}
+            between = [part.closed for part in parts if old.end <= part.begin and part.end <= new.begin]
+            return all(wanted <= {*closed} for closed in between)
+    return False

@@ -69,19 +69,48 @@ def qualities(
     Parameters: torque, signal of the torque behind the output [N m], such as that of a drive shaft; acceleration,
     signal of the vehicle [m/s2]; cut_off, of the jerk [Hz]; after, time behind a shift that counts for jerk [s].
     """
-    found = []
-    for shift in shifts_of(run, box, prefix):
-        begin, end = shift.begin - 0.1, min(shift.end + after, float(run.time[-1]))
-        times = np.arange(max(begin, float(run.time[0])), end, STEP)
-        part = run.at(times)
-        found.append(_quality(part, shift, box, prefix, torque, acceleration, cut_off))
-    return found
+    shifts = shifts_of(run, box, prefix)
+    grids = [_grid(run, shift, after) for shift in shifts]
+    if not grids:
+        return []
+    # one repetition of the run for all of them
+    whole = run.at(np.unique(np.concatenate(grids)))
+    windows = [Window(whole, np.searchsorted(whole.time, grid)) for grid in grids]
+    signals = {"torque": torque, "acceleration": acceleration, "cut_off": cut_off}
+    return [_quality(part, shift, box, prefix, **signals) for part, shift in zip(windows, shifts, strict=True)]
+
+
+def _grid(run: Any, shift: Shift, after: float) -> Array:
+    """Equal steps from a tenth of a second before a shift, and its ends [s]; the ends are the last two."""
+    first, last = max(shift.begin - 0.1, float(run.time[0])), min(shift.end + after, float(run.time[-1]))
+    steps = np.arange(first, last, STEP)
+    return np.array([*steps[steps <= last], shift.begin, shift.end])
+
+
+class Window:
+    """Signals of a run at equal steps around one shift, and at its ends."""
+
+    def __init__(self, run: Recorded, rows: NDArray[np.intp]) -> None:
+        """Rows of the run; the last two are the ends of the shift."""
+        self.run, self.rows = run, rows
+        self.time = np.asarray(run.time)[rows[:-2]]
+
+    def __getitem__(self, name: str) -> Array:
+        return np.asarray(self.run[name][self.rows[:-2]])
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.run
+
+    def rise(self, name: str) -> float:
+        """How much a signal grows from begin to end of the shift."""
+        first, last = self.run[name][self.rows[-2:]]
+        return float(last - first)
 
 
 def _quality(
-    part: Recorded, shift: Shift, box: Gearbox, prefix: str, torque: str, acceleration: str, cut_off: float
+    part: Window, shift: Shift, box: Gearbox, prefix: str, *, torque: str, acceleration: str, cut_off: float
 ) -> ShiftQuality:
-    time = np.asarray(part.time)
+    time = part.time
     inside = (time >= shift.begin) & (time <= shift.end)
     jerks = jerk(part[acceleration], STEP, cut_off) if acceleration else np.array([np.nan])
     dose = vibration_dose(part[acceleration], STEP) if acceleration else float("nan")
@@ -99,17 +128,13 @@ def _quality(
         flare=flare,
         sag=sag,
         tie_up=_tie_up(part, shift, prefix),
-        slip_energy={name: _rise(part[f"{prefix}.{name}.heat"][inside]) for name in names},
+        slip_energy={name: part.rise(f"{prefix}.{name}.heat") for name in names},
         slip_power={name: _peak(part, f"{prefix}.{name}", inside) for name in names},
         temperature=_temperatures(part, prefix, names),
     )
 
 
-def _rise(values: Array) -> float:
-    return float(values[-1] - values[0]) if len(values) else 0.0
-
-
-def _peak(part: Recorded, name: str, inside: NDArray[np.bool_]) -> float:
+def _peak(part: Window, name: str, inside: NDArray[np.bool_]) -> float:
     return float(np.max(np.abs(part[f"{name}.torque"] * part[f"{name}.slip"])[inside], initial=0.0))
 
 
@@ -127,9 +152,7 @@ def _hole(torque: Array, time: Array, shift: Shift) -> tuple[float, float]:
     return hole, hole / abs(before) if known else float("nan")
 
 
-def _overshoot(
-    part: Recorded, shift: Shift, box: Gearbox, prefix: str, inside: NDArray[np.bool_]
-) -> tuple[float, float]:
+def _overshoot(part: Window, shift: Shift, box: Gearbox, prefix: str, inside: NDArray[np.bool_]) -> tuple[float, float]:
     """How far the input leaves the range between the speeds of both gears, up and down."""
     speed, output = part[f"{prefix}.{box.input}.speed"], part[f"{prefix}.{box.output}.speed"]
     first, second = (box.ratios.get(gear) for gear in (shift.before, shift.after))
@@ -143,9 +166,9 @@ def _overshoot(
     return (flare if flare > least else 0.0), (sag if sag > least else 0.0)
 
 
-def _tie_up(part: Recorded, shift: Shift, prefix: str) -> float:
+def _tie_up(part: Window, shift: Shift, prefix: str) -> float:
     """Torque of elements that open against the direction that they had before, in the torque phase."""
-    worst, time = 0.0, np.asarray(part.time)
+    worst, time = 0.0, part.time
     both = (time >= shift.torque_phase[0]) & (time <= shift.torque_phase[1])
     for name in shift.opens:
         torque = part[f"{prefix}.{name}.torque"]
@@ -155,10 +178,10 @@ def _tie_up(part: Recorded, shift: Shift, prefix: str) -> float:
     return worst
 
 
-def _temperatures(part: Recorded, prefix: str, names: list[str]) -> dict[str, float]:
+def _temperatures(part: Window, prefix: str, names: list[str]) -> dict[str, float]:
     """The highest temperature of the thermal node of each element that has one."""
     found = {}
-    for branch in part.wiring.contacts:
+    for branch in part.run.wiring.contacts:
         element = branch.name.removeprefix(f"{prefix}.")
         path = branch.component.heat_path()
         if element in names and branch.name != element and path is not None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import inf
+from dataclasses import dataclass, field
+from math import exp, inf
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -11,10 +11,27 @@ if TYPE_CHECKING:
     from clutchwork.shifts.record import Measured
     from clutchwork.shifts.settings import ShiftSettings
 
+# time constant of a speed behind its filter [s]: a drive shaft swings faster
+FILTER = 0.04
 # throttle per speed that is lacking to that of a dog clutch [s/rad], and per that times time [1/rad]
 BLIP, BLIP_INTEGRAL = 0.02, 0.1
 # what it lacks at most where that counts [rad/s]
 NEAR = 30.0
+
+
+@dataclass
+class Trend:
+    """A speed [rad/s] and its slope [rad/s2] behind a filter: equation (8)."""
+
+    value: float = 0.0
+    slope: float = 0.0
+
+    def follow(self, value: float, period: float) -> None:
+        """Take one measured value more, a period [s] after the last one."""
+        share = 1.0 - exp(-period / FILTER)
+        ahead = self.value + self.slope * period
+        self.value = ahead + share * (value - ahead)
+        self.slope += share * share / (2.0 - share) * (value - ahead) / period if period else 0.0
 
 
 @dataclass
@@ -26,12 +43,14 @@ class Profile:
     to_dog: bool  # whether a dog clutch closes
     slip: float = 0.0  # rad/s, what the input lacked to its new speed at the beginning
     _per: float = 0.0  # slip of the one that closes per speed that the input lacks
+    _output: Trend = field(default_factory=Trend)  # of the speed of the output
     _integral: float = 0.0  # rad/s2
     _lacking: float = 0.0  # rad, integral of what it lacks to a dog clutch
 
     def begin(self, now: Measured) -> None:
         """From here."""
         self.slip, self._integral, self._lacking = self.lacks(now), 0.0, 0.0
+        self._output = Trend(now.output_speed)
         self._per = abs(now.slips.get(self.one.on, 0.0) / self.slip) if self.slip else 0.0
 
     def lacks(self, now: Measured) -> float:
@@ -44,13 +63,19 @@ class Profile:
         time = max(with_.inertia_time, 1e-9)
         x = min(1.0, passed / time)
         rate = 6.0 * x * (1.0 - x) / time
+        self._output.follow(now.output_speed, period)
         if not with_.closed_loop:
             # what the plan lacks at its end is made up with its mean rate
             return now.input_torque - one.inertia * self.slip * (rate if x < 1.0 else 1.0 / time)
-        wanted = self.lacks(now) - self.slip * (1.0 - x * x * (3.0 - 2.0 * x)) + self._beyond() * x
-        error = max(wanted, self._launch(now) - now.input_speed)
-        self._integral += with_.integral * error * period
-        return now.input_torque - one.inertia * (self.slip * rate + with_.proportional * error + self._integral)
+        target = one.after * self._output.value
+        gain, integral = with_.proportional, with_.integral
+        if with_.launch_speed and not one.off:
+            gain, integral = with_.launch_gain, 0.25 * with_.launch_gain**2
+        wanted = target - self.slip * (1.0 - x * x * (3.0 - 2.0 * x)) + self._beyond() * x
+        error = max(wanted, self._launch(now)) - now.input_speed
+        self._integral += integral * error * period
+        rise = one.after * self._output.slope + self.slip * rate if wanted >= self._launch(now) else 0.0
+        return now.input_torque - one.inertia * (rise + gain * error + self._integral)
 
     def _beyond(self) -> float:
         """How far past its new speed [rad/s]: held back it has to come through it, and a dog clutch to find a gap."""

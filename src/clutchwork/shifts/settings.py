@@ -28,7 +28,9 @@ class ShiftSettings:
             clutch, or unload one that opens, 0 to 1
         longest: after which an exchange is closed whatever the slip [s]
         launch_speed: that the input keeps while an element drives off, where no converter does [rad/s]; 0: there is one
+        launch_gain: proportional gain of that [1/s], far below the slowest mode of the drive shafts
         launch_throttle: above which it drives off
+        let_go: share of the launch speed below which the input is let go before the engine stalls
     """
 
     fill_time: float = 0.1
@@ -48,4 +50,6 @@ class ShiftSettings:
     blip: float = 0.4
     longest: float = 2.5
     launch_speed: float = 0.0
+    launch_gain: float = 4.0
     launch_throttle: float = 0.02
+    let_go: float = 0.6
