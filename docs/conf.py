@@ -14,6 +14,7 @@ import gearboxes  # noqa: E402
 import kept  # noqa: E402
 import launches  # noqa: E402
 import schematics  # noqa: E402
+import shifts  # noqa: E402
 import shuffle  # noqa: E402
 import stories  # noqa: E402
 
@@ -32,6 +33,7 @@ kept.write(sweeps.write, HERE / "reference" / "sweeps")
 kept.write(drawings.write, HERE / "reference" / "pictures")
 kept.write(schematics.write, HERE / "reference" / "schematics")
 kept.write(gearboxes.write, HERE / "reference" / "diagrams")
+kept.write(shifts.write, HERE / "reference" / "shifts")
 kept.write(examples.write, HERE / "reference" / "examples")
 kept.write(stories.write, HERE / "reference" / "stories")
 kept.write(shuffle.write, HERE / "reference" / "linear")

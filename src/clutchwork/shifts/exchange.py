@@ -99,11 +99,11 @@ def _ways(
 
 def _detour(box: Gearbox, before: tuple[str, ...], way: tuple[tuple[str, str], ...]) -> float:
     """How far the ratios of a way go beyond its ends: equation (4)."""
-    closed, speeds_ = before, [1.0 / _ratio(box, before)]
+    closed, ratios = before, [_ratio(box, before)]
     for off, on in way:
         closed = _swapped(closed, off, on)
-        speeds_.append(1.0 / _ratio(box, closed))
-    return sum(abs(second - first) for first, second in pairwise(speeds_))
+        ratios.append(_ratio(box, closed))
+    return sum(abs(second - first) for first, second in pairwise(ratios))
 
 
 def _engage(box: Gearbox, after: tuple[str, ...], closes: tuple[str, ...], inertias: Mapping[str, float]) -> Exchange:

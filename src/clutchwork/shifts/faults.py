@@ -184,7 +184,8 @@ def _result(
     most = max(burnt, key=burnt.__getitem__)
     slipping = run[f"{prefix}.{most}.torque"] * run[f"{prefix}.{most}.slip"]
     last = gears_of(run, box, prefix, least=0.0)
-    ends_in = last[-1].gear if last and last[-1].end >= float(run.time[-1]) else ""
+    ended = last[-1].gear if last and last[-1].end >= float(run.time[-1]) else ""
+    ends_in = ended if ended in box.ratios else ""
     deceleration = _deceleration(run, vehicle, at)
     speeds = run[f"{vehicle}.speed"]
     stops = bool(abs(speeds[-1]) < STOPPED * abs(speeds[0]))
