@@ -14,7 +14,6 @@ import gearboxes  # noqa: E402
 import kept  # noqa: E402
 import launches  # noqa: E402
 import schematics  # noqa: E402
-import shifts  # noqa: E402
 import shuffle  # noqa: E402
 import stories  # noqa: E402
 
@@ -23,6 +22,7 @@ import examples  # noqa: E402
 import gen_docs  # noqa: E402
 import gen_lists  # noqa: E402
 import parity  # noqa: E402
+import shifts  # noqa: E402
 import sweeps  # noqa: E402
 
 gen_docs.write(HERE / "reference")

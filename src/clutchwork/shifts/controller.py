@@ -137,7 +137,7 @@ class ShiftController:
     def _known(self, gear: str) -> None:
         if gear != NEUTRAL and gear not in self.box.gears:
             remedy = f"choose from {listed([*self.box.gears, NEUTRAL])}"
-            raise UseError("ShiftController", [f"{shown(gear)} is no gear of {shown(self.box.name)}; {remedy}"])
+            raise UseError("ShiftController", [f"{shown(gear)} is not a gear of {shown(self.box.name)}; {remedy}"])
 
     # --------------------------------------------------------------------------------------------------- the shift
 

@@ -47,7 +47,7 @@ def exchanges(
     Parameters: before and after, closed elements; inertias, of members [kg m2]. The way goes through gears, from which
     the next exchange starts; of several ways the one whose ratios stay closest to those of both gears is taken. Where
     there is none, and between forward and reverse, all that opens does so at once, and one element engages the gear.
-    None where the new elements are no gear.
+    None where the new elements make no gear.
     """
     opens = tuple(name for name in before if name not in after)
     closes = tuple(name for name in after if name not in before)
@@ -77,7 +77,7 @@ def _state(box: Gearbox, closed: tuple[str, ...]) -> GearState:
 
 @lru_cache(maxsize=4096)
 def _ratio(box: Gearbox, closed: tuple[str, ...]) -> float:
-    """Of a combination, 0 where it is no gear."""
+    """Of a combination, 0 where it has none."""
     return float(box.combination(closed).ratio or 0.0)
 
 
