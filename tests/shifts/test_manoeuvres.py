@@ -229,7 +229,7 @@ def test_settings_by_pair_and_by_kind() -> None:
 def test_gears_that_are_not_there() -> None:
     box = BOXES["zf-8hp70"]
     plant = cw.shifts.plant_of(car(box, "1").assemble(), box)
-    with pytest.raises(UseError, match="'9' is no gear of 'zf-8hp70'; choose from"):
+    with pytest.raises(UseError, match="'9' is not a gear of 'zf-8hp70'; choose from"):
         cw.shifts.ShiftController(box, plant, gear="1").request("9")
-    with pytest.raises(UseError, match="'first' is no gear"):
+    with pytest.raises(UseError, match="'first' is not a gear"):
         cw.shifts.ShiftController(box, plant, gear="first")
