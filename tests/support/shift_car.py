@@ -14,7 +14,7 @@ RIGID = cw.shifts.Sensed(torque=("combustion.torque", "combustion.drag.torque"),
 SPEED = 200.0  # rad/s of the input in a drive
 
 
-def car(box: cw.Gearbox, gear: str, turbine: float = SPEED, **transmission: Any) -> cw.Driveline:
+def car(box: cw.Gearbox, gear: str, turbine: float = SPEED, throttle: float = 0.0, **transmission: Any) -> cw.Driveline:
     """The car in a gear, its input at a speed [rad/s]; in neutral it stands."""
     d = cw.Driveline(f"{box.name} in {gear}")
     ratio = box.ratios.get(gear)
@@ -27,7 +27,7 @@ def car(box: cw.Gearbox, gear: str, turbine: float = SPEED, **transmission: Any)
         cw.Engine(
             "combustion",
             shaft=engine,
-            throttle=0.0,
+            throttle=throttle,
             full_load=FULL_LOAD,
             motoring=MOTORING,
             lag=0.05,

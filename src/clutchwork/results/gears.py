@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
 NEUTRAL = "neutral"
+# position of a sleeve past the tips of the teeth: one that is blocked stands there but for round-off
+BEYOND = 1e-6
 # torque of elements that counts as drag, as a share of what they carry mostly
 DRAG = 0.01
 
@@ -152,7 +154,7 @@ def _holds(run: Recorded, name: str) -> NDArray[np.bool_]:
         return np.asarray(run[f"{name}.mode"] == LOCKED)
     element: Any = next((one for one in run.system.elements if one.name == name), None)
     if f"{name}.sleeve" in run:
-        return np.asarray(run[f"{name}.sleeve"] > element.reach)
+        return np.asarray(run[f"{name}.sleeve"] > element.reach + BEYOND)
     return np.zeros(len(run), dtype=bool)
 
 

@@ -7,7 +7,8 @@ from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.detect import Shift, shifts_of
 from clutchwork.shifts.drive import Sensed, drive
 from clutchwork.shifts.exchange import Exchange, exchanges
-from clutchwork.shifts.faults import Fault, FaultResult, FaultTable, fault_table, single_faults
+from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable
+from clutchwork.shifts.faults import fault_table, single_faults
 from clutchwork.shifts.gears import InGear, gears_of
 from clutchwork.shifts.metrics import ShiftQuality, qualities
 from clutchwork.shifts.plant import Plant, plant_of

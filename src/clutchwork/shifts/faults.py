@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from pathlib import Path
+from math import nan
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.paths import target
-from clutchwork.base.text import columns
 from clutchwork.gearbox.motion import GEAR, NEUTRAL, OUTPUT_HELD, TIE_UP
 from clutchwork.shifts.comfort import low_pass
+from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable
 from clutchwork.shifts.gears import gears_of
+from clutchwork.shifts.record import NEUTRAL as NEUTRAL_GEAR
 from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:
@@ -22,53 +21,11 @@ if TYPE_CHECKING:
     from clutchwork.results.trajectory import Trajectory
 
 STUCK, MISSING = "stuck closed", "missing"
+NOT_SIMULATED = "not simulated"
 STEP = 1e-3  # s
+HELD = 0.05  # s, for which a gear must be in at the end
 CUT_OFF = 10.0  # Hz, of decelerations
 STOPPED = 0.1  # share of the first speed below which a vehicle counts as stopped
-HEADS = (
-    *("gear", "element", "fault", "makes", "verdict", "deceleration m/s2", "power W", "energy J"),
-    *("burns", "speed at the end m/s", "ends in"),
-)
-
-
-@dataclass(frozen=True)
-class Fault:
-    """One element that is stuck closed or missing in a gear, and what kinematics make of it.
-
-    `makes` is what the closed elements are then: "gear" with its `ratio`, "neutral", "input held", "output held" or
-    "tie-up". Elements that are stuck give way by slipping, so a simulation shows what a car then does.
-    """
-
-    gear: str
-    element: str
-    fault: str
-    makes: str
-    ratio: float | None
-
-
-@dataclass(frozen=True)
-class FaultResult:
-    """What a vehicle did with a fault.
-
-    Parameters:
-        fault: which one
-        verdict: "none", "drive lost", "other gear", "slips", "decelerates" or "locks the output"
-        deceleration: largest of the vehicle after the fault, low-passed at 10 Hz [m/s2]
-        power: largest heat rate of one element [W], that of `burns`
-        energy: heat that this element made [J]
-        burns: the element that was heated most, empty where none slipped
-        speed: of the vehicle at the end [m/s]
-        ends_in: gear that was in at the end, empty where none was
-    """
-
-    fault: Fault
-    verdict: str
-    deceleration: float
-    power: float
-    energy: float
-    burns: str
-    speed: float
-    ends_in: str
 
 
 def single_faults(box: Gearbox, gears: Sequence[str] = ()) -> Iterator[Fault]:
@@ -82,44 +39,6 @@ def single_faults(box: Gearbox, gears: Sequence[str] = ()) -> Iterator[Fault]:
             made = box.combination(left)
             ratio = None if made.ratio is None else float(made.ratio)
             yield Fault(gear, name, MISSING if fails else STUCK, made.kind, ratio)
-
-
-@dataclass(frozen=True)
-class FaultTable:
-    """All single faults of a gearbox in a vehicle; print it to read it."""
-
-    results: tuple[FaultResult, ...]
-
-    def __iter__(self) -> Iterator[FaultResult]:
-        return iter(self.results)
-
-    def __len__(self) -> int:
-        return len(self.results)
-
-    def of(self, verdict: str) -> tuple[FaultResult, ...]:
-        """Those with a verdict."""
-        return tuple(one for one in self.results if one.verdict == verdict)
-
-    @property
-    def lines(self) -> list[list[str]]:
-        """Its cells, a head first."""
-        return [list(HEADS), *map(_line, self.results)]
-
-    def to_csv(self, path: str | Path) -> None:
-        """Write it for a spreadsheet."""
-        text = "\n".join(",".join(line) for line in self.lines)
-        target("table.to_csv", path, "faults.csv", (".csv",)).write_text(text + "\n", encoding="utf-8")
-
-    def __str__(self) -> str:
-        return columns(self.lines, right=(5, 6, 7, 9))
-
-
-def _line(one: FaultResult) -> list[str]:
-    fault = one.fault
-    makes = fault.makes if fault.ratio is None else f"{fault.makes} {fault.ratio:.3f}"
-    numbers = [f"{one.deceleration:.2f}", f"{one.power:.0f}", f"{one.energy:.0f}"]
-    end = [one.burns or "-", f"{one.speed:.2f}", one.ends_in or "-"]
-    return [fault.gear, fault.element, fault.fault, makes, one.verdict, *numbers, *end]
 
 
 def fault_table(
@@ -138,12 +57,13 @@ def fault_table(
     """Simulate every single fault in every gear.
 
     Use it for the safety analysis of a gearbox: each element is stuck closed, or loses its pressure, while the vehicle
-    drives in a gear.
+    drives in a gear. A dog clutch that is missing loses its command, a freewheel that is stuck is held by the clutch
+    beside it.
 
     Parameters: in_gear, makes the driveline that drives in a gear, with the signals `<prefix>.<element>.pressure`;
     vehicle, its mass, whose speed and acceleration are looked at; pressure of an element that is stuck [Pa]; at, the
-    time of the fault, and until, the end of each run [s]; limit, deceleration from which on it is dangerous [m/s2];
-    options of the runs.
+    time of the fault, and until, the end of each run [s]; limit, deceleration from which on it is dangerous [m/s2], at
+    least that of the same drive without a fault; options of the runs.
     """
     made: list[FaultResult] = []
     healthy: dict[str, float] = {}
@@ -151,10 +71,24 @@ def fault_table(
         if fault.gear not in healthy:
             run = _drive(in_gear(fault.gear), {}, at, until, options)
             healthy[fault.gear] = _deceleration(run, vehicle, at)
-        value = pressure if fault.fault == STUCK else 0.0
-        run = _drive(in_gear(fault.gear), {f"{prefix}.{fault.element}.pressure": value}, at, until, options)
+        change = _change(fault, box, prefix, pressure)
+        if not change:
+            made.append(FaultResult(fault, NOT_SIMULATED, nan, nan, nan, "", nan, ""))
+            continue
+        run = _drive(in_gear(fault.gear), change, at, until, options)
         made.append(_result(run, fault, box, prefix, vehicle, at, max(limit, healthy[fault.gear])))
     return FaultTable(tuple(made))
+
+
+def _change(fault: Fault, box: Gearbox, prefix: str, pressure: float) -> dict[str, float]:
+    """The signal that makes a fault; none where there is none."""
+    kind, name = box.element(fault.element).kind, f"{prefix}.{fault.element}"
+    if kind == "dog":
+        return {f"{name}.command": 0.0} if fault.fault == MISSING else {}
+    if kind == "freewheel" and fault.fault == MISSING:
+        return {}
+    # a freewheel is stuck by the clutch beside it
+    return {f"{name}.pressure": pressure if fault.fault == STUCK else 0.0}
 
 
 def _drive(
@@ -179,13 +113,14 @@ def _result(
     run: Trajectory, fault: Fault, box: Gearbox, prefix: str, vehicle: str, at: float, limit: float
 ) -> FaultResult:
     later = np.asarray(run.time) >= at
-    heat = {e.name: run[f"{prefix}.{e.name}.heat"][later] for e in box.elements}
+    names = [e.name for e in box.elements if f"{prefix}.{e.name}.heat" in run]
+    heat = {name: run[f"{prefix}.{name}.heat"][later] for name in names}
     burnt = {name: float(values[-1] - values[0]) for name, values in heat.items()}
     most = max(burnt, key=burnt.__getitem__)
     slipping = run[f"{prefix}.{most}.torque"] * run[f"{prefix}.{most}.slip"]
-    last = gears_of(run, box, prefix, least=0.0)
-    ended = last[-1].gear if last and last[-1].end >= float(run.time[-1]) else ""
-    ends_in = ended if ended in box.ratios else ""
+    last = [one for one in gears_of(run, box, prefix, least=0.0) if one.gear != NEUTRAL_GEAR][-1:]
+    held = any(one.end >= float(run.time[-1]) and one.end - one.begin >= HELD for one in last)
+    ends_in = last[0].gear if held else ""
     deceleration = _deceleration(run, vehicle, at)
     speeds = run[f"{vehicle}.speed"]
     stops = bool(abs(speeds[-1]) < STOPPED * abs(speeds[0]))

@@ -76,8 +76,10 @@ def qualities(
     # one repetition of the run for all of them
     whole = run.at(np.unique(np.concatenate(grids)))
     windows = [Window(whole, np.searchsorted(whole.time, grid)) for grid in grids]
-    signals = {"torque": torque, "acceleration": acceleration, "cut_off": cut_off}
-    return [_quality(part, shift, box, prefix, **signals) for part, shift in zip(windows, shifts, strict=True)]
+    return [
+        _quality(part, shift, box, prefix, torque, acceleration, cut_off)
+        for part, shift in zip(windows, shifts, strict=True)
+    ]
 
 
 def _grid(run: Any, shift: Shift, after: float) -> Array:
@@ -108,7 +110,7 @@ class Window:
 
 
 def _quality(
-    part: Window, shift: Shift, box: Gearbox, prefix: str, *, torque: str, acceleration: str, cut_off: float
+    part: Window, shift: Shift, box: Gearbox, prefix: str, torque: str, acceleration: str, cut_off: float
 ) -> ShiftQuality:
     time = part.time
     inside = (time >= shift.begin) & (time <= shift.end)

@@ -90,13 +90,16 @@ class Profile:
 
     def torque_factor(self, now: Measured) -> float:
         """Of the engine: less where the input slows down under power, more where it has to be faster without."""
+        if self.to_dog and self.slip < 0.0:
+            # nothing else brings the input down to a dog clutch; `blip` catches it there
+            return 0.0
         if now.input_torque > 0.0 and self.slip < 0.0:
             return 1.0 - self.with_.reduction
         return 1.0 + self.with_.increase if now.input_torque <= 0.0 and self.slip > 0.0 else 1.0
 
     def blip(self, period: float, now: Measured) -> float:
-        """Throttle on top of that of the driver: no clutch brings the input up to the speed of a dog clutch."""
-        if not self.to_dog or self.slip <= 0.0:
+        """Throttle on top of that of the driver: no clutch keeps the input at the speed of a dog clutch."""
+        if not self.to_dog:
             return 0.0
         lacks = self.lacks(now) + self._beyond()
         self._lacking = self._lacking + lacks * period if 0.0 < lacks < NEAR else 0.0
