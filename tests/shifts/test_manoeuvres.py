@@ -214,6 +214,20 @@ def test_open_loop() -> None:
     assert abs(times[False] - wanted) < 0.25
 
 
+def test_an_exchange_that_takes_too_long_is_closed_by_pressure() -> None:
+    """After `longest` the element locks with what slip is left, and the record waits for that."""
+    box = BOXES["zf-8hp70"]
+    settings = cw.shifts.ShiftSettings(inertia_time=1.5, longest=0.15, end_time=0.0)
+    run, control = driven(car(box, "2"), box, "2", [(0.6, "3")], 2.5, lambda _: 0.4, settings=settings)
+    (record,) = control.records
+    assert record.reached
+    assert record.end is not None
+    part = run.at(np.array([record.end - 0.03, record.end]))
+    slip = np.abs(part["gearbox.C.slip"])
+    assert slip[0] > settings.sync_slip
+    assert slip[1] <= settings.sync_slip
+
+
 def test_settings_by_pair_and_by_kind() -> None:
     """A pair of gears counts before the kind of shift, and that before what holds for all."""
     box = BOXES["zf-8hp70"]
