@@ -76,6 +76,8 @@ def test_a_dog_clutch_that_cannot_engage_is_said() -> None:
     assert record.problem == "F is out"
     assert not record.reached
     assert not is_in(run, box, "1")
+    # a sleeve that stands at the tips of the teeth is not in mesh
+    assert "1" not in run.gears().sequence
     # in mesh from the start it stays so in neutral
     shift = {name: {"engaged": True, "command": 1.0, "pointed": True} for name in ("A", "F")}
     asked = [(0.5, "1"), (1.5, "N"), (2.5, "1")]

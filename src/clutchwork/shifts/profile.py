@@ -21,7 +21,7 @@ NEAR = 30.0
 
 @dataclass
 class Trend:
-    """A speed [rad/s] and its slope [rad/s2] behind a filter: equation (8)."""
+    """A speed [rad/s] and its slope [rad/s2] behind a filter: equation (12)."""
 
     value: float = 0.0
     slope: float = 0.0
