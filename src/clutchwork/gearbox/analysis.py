@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from itertools import combinations, permutations
 from math import isnan
 from typing import TYPE_CHECKING
@@ -52,6 +53,11 @@ class Capacity:
 
 def states(box: Definition) -> dict[str, GearState]:
     """All gears of the shift table that are gears; rows such as N are left out."""
+    return dict(_states(box))
+
+
+@lru_cache(maxsize=256)
+def _states(box: Definition) -> Mapping[str, GearState]:
     found = {gear: state(box, box.closed_in(gear), gear) for gear in box.gears}
     return {gear: one for gear, one in found.items() if one is not None}
 

@@ -45,7 +45,8 @@ def gears_of(run: Recorded, box: Gearbox, prefix: str = "gearbox", *, least: flo
     if not parts:
         return []
     ends = {parts[0].begin, parts[-1].end}
-    named = list(_joined(InGear(part.gear if part.gear in box.ratios else "", part.begin, part.end) for part in parts))
+    known = box.ratios
+    named = list(_joined(InGear(part.gear if part.gear in known else "", part.begin, part.end) for part in parts))
     held = [one for one in named if one.gear and (one.end - one.begin >= least or {one.begin, one.end} & ends)]
     idle = list(_idle(run, box, prefix, list(_between(held, parts[0].begin, parts[-1].end)), least))
     used = [one for one in idle if not _flies(box, prefix, parts, held, one)]

@@ -75,7 +75,8 @@ def qualities(
         return []
     # one repetition of the run for all of them
     whole = run.at(np.unique(np.concatenate(grids)))
-    windows = [Window(whole, np.searchsorted(whole.time, grid)) for grid in grids]
+    columns: dict[str, Array] = {}
+    windows = [Window(whole, columns, np.searchsorted(whole.time, grid)) for grid in grids]
     return [
         _quality(part, shift, box, prefix, torque, acceleration, cut_off)
         for part, shift in zip(windows, shifts, strict=True)
@@ -92,21 +93,26 @@ def _grid(run: Any, shift: Shift, after: float) -> Array:
 class Window:
     """Signals of a run at equal steps around one shift, and at its ends."""
 
-    def __init__(self, run: Recorded, rows: NDArray[np.intp]) -> None:
-        """Rows of the run; the last two are the ends of the shift."""
-        self.run, self.rows = run, rows
+    def __init__(self, run: Recorded, columns: dict[str, Array], rows: NDArray[np.intp]) -> None:
+        """Rows of the run, of which the last two are the ends of the shift; columns that windows share."""
+        self.run, self.columns, self.rows = run, columns, rows
         self.time = np.asarray(run.time)[rows[:-2]]
 
     def __getitem__(self, name: str) -> Array:
-        return np.asarray(self.run[name][self.rows[:-2]])
+        return self._whole(name)[self.rows[:-2]]
 
     def __contains__(self, name: str) -> bool:
         return name in self.run
 
     def rise(self, name: str) -> float:
         """How much a signal grows from begin to end of the shift."""
-        first, last = self.run[name][self.rows[-2:]]
+        first, last = self._whole(name)[self.rows[-2:]]
         return float(last - first)
+
+    def _whole(self, name: str) -> Array:
+        if name not in self.columns:
+            self.columns[name] = np.asarray(self.run[name])
+        return self.columns[name]
 
 
 def _quality(
@@ -157,7 +163,8 @@ def _hole(torque: Array, time: Array, shift: Shift) -> tuple[float, float]:
 def _overshoot(part: Window, shift: Shift, box: Gearbox, prefix: str, inside: NDArray[np.bool_]) -> tuple[float, float]:
     """How far the input leaves the range between the speeds of both gears, up and down."""
     speed, output = part[f"{prefix}.{box.input}.speed"], part[f"{prefix}.{box.output}.speed"]
-    first, second = (box.ratios.get(gear) for gear in (shift.before, shift.after))
+    ratios = box.ratios
+    first, second = ratios.get(shift.before), ratios.get(shift.after)
     start = speed[inside][0] if np.any(inside) else speed[0]
     both = np.array([np.full_like(speed, start) if first is None else first * output, (second or 0.0) * output])
     above = speed - np.max(both, axis=0)
