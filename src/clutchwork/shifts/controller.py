@@ -29,13 +29,13 @@ class ShiftController:
     knows nothing of clutchwork's runs. It works out of the gearbox alone which elements are exchanged and what they
     carry; several exchanges follow one another through the gears between them.
 
-    mesh      dog clutches of the gear that stand still go in first
-    fill      the element that closes is filled; the one that opens is lowered to what it carries
-    torque    one takes over the torque from the other: first in upshifts under power and downshifts without
-    inertia   the input follows a profile to its new speed, by the one that closes where it must be pulled there, by
-              the one that opens where it must be held back
-    sync      in the other shifts the torque is taken over here, at equal speeds
-    end       the element that closed is raised to full pressure, until it does not slip
+    - mesh: dog clutches of the gear that stand still go in first
+    - fill: the element that closes is filled; the one that opens is lowered to what it carries
+    - torque: one takes over the torque from the other: first in upshifts under power and downshifts without
+    - inertia: the input follows a profile to its new speed, by the one that closes where it must be pulled there, by
+      the one that opens where it must be held back
+    - sync: in the other shifts the torque is taken over here, at equal speeds
+    - end: the element that closed is raised to full pressure, until it does not slip
 
     Freewheels overrun and catch by themselves and need no command. A dog clutch opens when its torque is gone
     and closes near equal speeds, to which the engine comes where no clutch can bring the input there. A request while a

@@ -23,7 +23,7 @@ class Sensed:
 
     Parameters:
         torque: signals whose sum is the torque at the input [N m], such as ("converter.turbine.torque",
-            "lock_up.torque"); one with a minus before it counts negative
+        "lock_up.torque"); one with a minus before it counts negative
         throttle: signal of the throttle of the engine, set to that of the driver times what the controller asks for
         input: speed of the input of the gearbox [rad/s], by default of its input member
         output: the same of its output

@@ -38,8 +38,8 @@ class FaultResult:
     Parameters:
         fault: which one
         verdict: "none", "drive lost", "other gear", "slips", "decelerates" or "locks the output"; "not simulated" where
-            no signal makes the fault, with NaN for numbers: a freewheel that does not hold, a dog clutch that does not
-            open
+        no signal makes the fault, with NaN for numbers: a freewheel that does not hold, a dog clutch that does not
+        open
         deceleration: largest of the vehicle after the fault, low-passed at 10 Hz [m/s2]
         power: largest heat rate of one element [W], that of `burns`
         energy: heat that this element made [J]

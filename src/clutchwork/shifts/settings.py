@@ -25,7 +25,7 @@ class ShiftSettings:
         sync_slip: below which an element is taken as synchronous [rad/s]
         dog_slip: slip below which a dog clutch is commanded to engage, below the one at which its teeth mesh [rad/s]
         blip: most throttle that the engine is asked for where nothing else can bring the input to the speed of a dog
-            clutch, or unload one that opens, 0 to 1
+        clutch, or unload one that opens, 0 to 1
         longest: after which an exchange is closed whatever the slip [s]
         launch_speed: that the input keeps while an element drives off, where no converter does [rad/s]; 0: there is one
         launch_gain: proportional gain of that [1/s], far below the slowest mode of the drive shafts
