@@ -68,7 +68,7 @@ def quality(run: cw.Trajectory, box: cw.Gearbox) -> list[cw.shifts.ShiftQuality]
 
 def check(run: cw.Trajectory, control: cw.shifts.ShiftController, found: list[cw.shifts.ShiftQuality]) -> None:
     """All gears up, all gears down, at rest in the end, nothing lost."""
-    gears = [str(n) for n in range(1, 9)]
+    gears = [gear for gear, ratio in control.box.ratios.items() if ratio > 0.0]
     wanted = [*pairwise(gears), *pairwise(gears[::-1])]
     assert [(one.shift.before, one.shift.after) for one in found] == wanted
     assert all(record.end is not None for record in control.records)

@@ -132,7 +132,7 @@ def _placed(problem: Problem, lines: Mapping[tuple[str, str], int]) -> Problem:
 
 
 MARKS = {"x", "1", "*", "o", "on", "yes", "true", "closed", "●", "•", "✓", "✔"}
-BLANKS = {"", "-", "0", "off", "no", "false", "open", "–", "—"}
+BLANKS = {"", ".", "-", "0", "off", "no", "false", "open", "–", "—"}
 
 
 def shift_table(text: str) -> tuple[dict[str, list[str]], dict[str, float], list[Problem]]:
