@@ -115,3 +115,12 @@ def test_tables_are_written(tmp_path: Path) -> None:
 def test_rules_of_the_verdict(makes: str, ends_in: str, deceleration: float, stops: bool, verdict: str) -> None:
     fault = cw.shifts.Fault("5", "A", "stuck closed", makes, None)
     assert faults._verdict(fault, ends_in, deceleration, 1.5, stops=stops) == verdict
+
+
+def test_a_gear_that_the_box_does_not_have() -> None:
+    with pytest.raises(cw.UseError, match="'11' is not a gear of zf-8hp70; choose from 1, 2"):
+        list(cw.shifts.single_faults(cw.Gearbox.load("zf-8hp70"), ("11",)))
+
+
+def test_one_signal_of_torque_needs_no_list() -> None:
+    assert cw.shifts.Sensed(torque="turbine.torque").torque == ("turbine.torque",)

@@ -34,6 +34,11 @@ class Sensed:
     input: str = ""
     output: str = ""
 
+    def __post_init__(self) -> None:
+        """One name stands for a list of one."""
+        if isinstance(self.torque, str):
+            object.__setattr__(self, "torque", (self.torque,))
+
     def read(self, sim: Simulator, control: ShiftController, throttle: float) -> Measured:
         """What the controller knows at the present time of a run; throttle, of the driver."""
         return _Reader(self, sim, control)(throttle)

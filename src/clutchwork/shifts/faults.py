@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clutchwork.base.errors import UseError
+from clutchwork.base.shown import listed, shown
 from clutchwork.gearbox.motion import GEAR, NEUTRAL, OUTPUT_HELD, TIE_UP
 from clutchwork.shifts.comfort import low_pass
 from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable
@@ -29,8 +31,17 @@ STOPPED = 0.1  # share of the first speed below which a vehicle counts as stoppe
 
 
 def single_faults(box: Gearbox, gears: Sequence[str] = ()) -> Iterator[Fault]:
-    """Every element of every gear: missing where it is closed, stuck closed where it is open."""
-    for gear in gears or tuple(box.ratios):
+    """Every element of every gear: missing where it is closed, stuck closed where it is open.
+
+    UseError for gears that the box does not have.
+    """
+    known = box.ratios
+    wrong = [
+        f"{shown(gear)} is not a gear of {box.name}; choose from {listed(known)}" for gear in gears if gear not in known
+    ]
+    if wrong:
+        raise UseError("cw.shifts.fault_table", wrong)
+    for gear in gears or tuple(known):
         closed = box.closed_in(gear)
         for element in box.elements:
             name = element.name
