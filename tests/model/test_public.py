@@ -41,6 +41,7 @@ PUBLIC = [
         "peak",
     ),
     *("sweep", "variants"),
+    *("Differentiable", "Gradient", "NoGradient", "differentiable", "squared_jerk"),
     *("Moment", "environment"),
     *("Linear", "linearise", "linearize"),
     *("load_run", "read_columns"),

@@ -14,7 +14,7 @@ from clutchwork.declare.schema import Role
 from clutchwork.model.changes import all_names, named, target
 from clutchwork.sweeps import batch
 from clutchwork.sweeps.axes import Plan
-from clutchwork.sweeps.outputs import PARTS
+from clutchwork.sweeps.parts import PARTS
 from clutchwork.sweeps.variants import given
 from support import random_drivelines, samples, six_speed
 from support.amount import amount

@@ -141,6 +141,14 @@ def unit_of(aim: Target) -> str:
     return driven if unit == "*" else unit
 
 
+def field_of(aim: Target) -> tuple[Any, Spec]:
+    """What a target holds, and what is declared of the field that holds it."""
+    thing = aim.owner
+    for name in aim.path[:-1]:
+        thing = getattr(thing, name)
+    return getattr(thing, aim.path[-1]), _spec(thing, aim.path[-1])
+
+
 def _spec(thing: Any, name: str) -> Spec:
     """What is declared of a field."""
     if isinstance(thing, Node):

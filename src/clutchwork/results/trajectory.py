@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base.above import above
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, OptionError
 from clutchwork.base.text import counted
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from clutchwork.results.energy import EnergyBalance
     from clutchwork.results.events import Event
     from clutchwork.results.gears import GearTable
+    from clutchwork.results.gradient import Gradient
     from clutchwork.results.hints.hint import Hints
     from clutchwork.results.losses import Losses
     from clutchwork.results.plot.canvas import Picture
@@ -202,6 +204,21 @@ class Trajectory(Exports):
         Sources are on the left, loads on the right; heat goes down, what is stored goes up.
         """
         return self.losses(start, end, power=power).sankey(path)
+
+    @explained("run.gradient", of="['load.speed', cw.lock('c1')]", by="['c1.gain', 'engine.inertia']")
+    def gradient(self, of: Any, by: Sequence[str] | str) -> Gradient:
+        """Derivatives of what the run gave by numbers of its driveline: how much later it locks for 1 % more inertia.
+
+        Parameters: of, values as `outputs` of `cw.sweep`: "load.speed", at the end, `cw.at`, `cw.lock`, `cw.maximum`,
+        `cw.integral`, `cw.squared_jerk` ..., one or several; by, names of numbers as in `System.changed`: "c1.gain",
+        "engine.speed", at the start, of a table "c1.pressure.values" or "c1.pressure.times[3]".
+
+        Events move with the numbers, and so do the derivatives jump at them, which is exact. `NoGradient`, a
+        ValueError, says where a derivative does not exist, and why. `cw.differentiable` is for many points.
+        docs/guide/gradients.md
+        """
+        found: Gradient = above("run.gradient", self, of, by)
+        return found
 
     @cached_property
     def dependent(self) -> tuple[DependentPhase, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,7 +19,8 @@ from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import LOCKED
 from clutchwork.sweeps.axes import Axis, Plan, systems_of
 from clutchwork.sweeps.columns import all_needed, fixed, moved
-from clutchwork.sweeps.outputs import PARTS, AtEnd, AtTimes, Computed, Extreme, Integral, Output, When
+from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
+from clutchwork.sweeps.parts import PARTS, squared_jerk_of
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -33,6 +35,8 @@ MOST_KEPT = 8_000_000
 MOST_VARIANTS = 2048
 # rows that a variant is expected to have in steps
 ROWS_EXPECTED = 2000
+# outputs that are looked for within the steps
+IN_STEPS = (Extreme, SquaredJerk)
 
 
 @dataclass(frozen=True)
@@ -90,7 +94,7 @@ class Wanted:
     def signals(self, *kinds: type) -> list[str]:
         """Signals that outputs of some kinds are made of."""
         found = list[Any](one for one in self.outputs.values() if isinstance(one, kinds))
-        return [one.signal if isinstance(one, Extreme) else self.kept_as(one) for one in found]
+        return [one.signal if isinstance(one, IN_STEPS) else self.kept_as(one) for one in found]
 
     @cached_property
     def grid(self) -> Array:
@@ -103,12 +107,12 @@ class Wanted:
     @cached_property
     def all_signals(self) -> tuple[str, ...]:
         """Signals that any output is made of."""
-        return tuple(dict.fromkeys(self.signals(AtEnd, AtTimes, Integral, Extreme)))
+        return tuple(dict.fromkeys(self.signals(AtEnd, AtTimes, Integral, *IN_STEPS)))
 
     @property
     def in_steps(self) -> bool:
         """Whether rows within the steps of the solver are needed."""
-        return bool(self.signals(Extreme))
+        return bool(self.signals(*IN_STEPS))
 
     @property
     def needs_grid(self) -> bool:
@@ -350,7 +354,7 @@ def _set_grid(
 def _from_steps(block: Block, call: Call, forms: Forms, found: Native) -> None:
     """Extremes over the steps, and the same as from a grid where the last row is enough."""
     wanted = forms.wanted
-    for variants, counts, _, rows, _ in found.parts:
+    for variants, counts, times, rows, _ in found.parts:
         some = counts > 0
         who, starts = call.who[variants[some]], (np.cumsum(counts) - counts)[some]
         variant = np.repeat(call.who[variants], counts)
@@ -359,11 +363,20 @@ def _from_steps(block: Block, call: Call, forms: Forms, found: Native) -> None:
             if isinstance(one, Extreme):
                 values = forms.values(one.signal, rows, variant)
                 _place(block, name, values)[who] = one.reduced(values, starts) if len(starts) else ()
+            elif isinstance(one, SquaredJerk):
+                jerks = _squared(times, forms.values(one.signal, rows, variant), starts)
+                _place(block, name, jerks)[who[ended]] = jerks[ended]
             elif isinstance(one, AtEnd | Integral) and not wanted.needs_grid:
                 last = forms.values(wanted.kept_as(one), rows[ends], variant[ends])
                 if isinstance(one, Integral):
                     last = last - forms.values(wanted.kept_as(one), rows[starts], variant[starts])
                 _place(block, name, last)[who[ended]] = last[ended]
+
+
+def _squared(times: Array, values: Array, starts: Array) -> Array:
+    """Squared jerk of each stretch of rows that begins at one of the starts."""
+    bounds = pairwise([*starts.tolist(), len(times)])
+    return np.array([squared_jerk_of(times[a:b], values[a:b]) for a, b in bounds], dtype=float)
 
 
 def _from_events(block: Block, call: Call, wanted: Wanted, found: Native) -> None:

@@ -34,13 +34,12 @@ CALLS = {
     "minimum": "",
     "peak": "",
     "integral": "",
+    "squared_jerk": "SHAFT",
     "lock": "NUMBER",
     "break_away": "NUMBER",
 }
-FORMS = [
-    *(f"{call}(SIGNAL{f', {more}' if more else ''})" for call, more in CALLS.items() if more != "NUMBER"),
-    *(f"{call}(CONTACT[, {more}])" for call, more in CALLS.items() if more == "NUMBER"),
-]
+OF = {"SHAFT": "SHAFT", "NUMBER": "CONTACT[, NUMBER]", "": "SIGNAL"}
+FORMS = [f"{call}({OF.get(more, f'SIGNAL, {more}')})" for call, more in CALLS.items()]
 KNOWN = f"known: {', '.join(FORMS)}"
 EXAMPLES = (
     ("clutchwork sweep model.toml --vary c1.gain=4e-4:8e-4:5", "five gains: speeds at the end, and when it locks"),

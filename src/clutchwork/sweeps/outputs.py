@@ -16,6 +16,7 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import instants
+from clutchwork.sweeps.parts import in_parts, squared_jerk_of
 
 if TYPE_CHECKING:
     from clutchwork.results.events import Event
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[Any]
 
-# rows in every step of the solver that extremes are looked for in
-PARTS = 4
 # what an integral over time is kept as
 INTEGRALS = {"power": "work", "speed": "angle", "acceleration": "speed"}
 ON_MASSES = {"speed": "position"}
@@ -114,6 +113,30 @@ class Integral:
 
 
 @dataclass(frozen=True)
+class SquaredJerk:
+    """The integral of the square of the jerk of a shaft or a mass over the steps of the solver."""
+
+    shaft: str
+
+    @property
+    def name(self) -> str:
+        """What a table calls it."""
+        return f"squared_jerk({self.shaft})"
+
+    @property
+    def signal(self) -> str:
+        """The signal whose rate is squared."""
+        return f"{self.shaft}.acceleration"
+
+    def of(self, run: Trajectory) -> float:
+        """Its value in a run; NaN where that did not reach its end."""
+        if not run.finished:
+            return float("nan")
+        there = run.at(in_parts(run.repeat(None).time))
+        return squared_jerk_of(there.time, there[self.signal])
+
+
+@dataclass(frozen=True)
 class When:
     """Time at which a contact locks or breaks away, counted from the start, or with -1 from the end."""
 
@@ -157,7 +180,7 @@ class Computed:
         return value.item() if getattr(value, "shape", None) == () else value
 
 
-Output: TypeAlias = AtEnd | AtTimes | Extreme | Integral | When | Computed
+Output: TypeAlias = AtEnd | AtTimes | Extreme | Integral | SquaredJerk | When | Computed
 Asked: TypeAlias = "str | Output | Callable[[Trajectory], Any]"
 
 
@@ -200,6 +223,17 @@ def peak(signal: str) -> Extreme:
 def integral(signal: str) -> Integral:
     """The integral over time of a power, a speed or an acceleration, for `sweep`."""
     return Integral(_named("integral", signal))
+
+
+@explained("cw.squared_jerk", shaft="'load'")
+def squared_jerk(shaft: str) -> SquaredJerk:
+    """The integral over time of the square of the jerk of a shaft [rad2/s5] or a mass [m2/s5], for `sweep`.
+
+    Parameters: shaft, its name. The jerk is the rate of its acceleration within each step of the solver; where the
+    acceleration jumps, as it does when a clutch locks, the jerk has no square, and the jump itself does not count: ask
+    for it by `cw.peak`, or soften what makes it. docs/theory/gradients.md (5)
+    """
+    return SquaredJerk(_named("squared_jerk", shaft))
 
 
 @explained("cw.lock")
@@ -250,7 +284,7 @@ def asked(outputs: Any) -> dict[str, Output]:
 
 
 def _output(one: Any) -> Output:
-    if isinstance(one, AtEnd | AtTimes | Extreme | Integral | When | Computed):
+    if isinstance(one, AtEnd | AtTimes | Extreme | Integral | SquaredJerk | When | Computed):
         return one
     if isinstance(one, str):
         return AtEnd(one)

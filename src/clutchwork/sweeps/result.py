@@ -22,7 +22,7 @@ from clutchwork.declare.status import DONE, INTERRUPTED, NAMES
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.selection import chosen
 from clutchwork.run.simulation import told
-from clutchwork.sweeps.outputs import AtTimes, Computed, Integral, Output, When
+from clutchwork.sweeps.outputs import AtTimes, Computed, Integral, Output, SquaredJerk, When
 from clutchwork.sweeps.single import single
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ class Sweep:
         """Unit of every output, and of every value that varies; empty for those of functions, signals and laws."""
         known = channels(self.swept.system, True, True)
         varied = {self._given(one.name): one.unit for one in self.swept.variants.varied if _is_number(one)}
-        return varied | {name: _unit(one, known) for name, one in self.swept.outputs.items()}
+        return varied | {name: unit_of(one, known) for name, one in self.swept.outputs.items()}
 
     @property
     def status(self) -> Array:
@@ -354,11 +354,15 @@ def _is_number(one: Varied) -> bool:
     return bool(one.unit) and one.column.dtype.kind in "fiu"
 
 
-def _unit(one: Output, channels: Channels) -> str:
+def unit_of(one: Output, channels: Channels) -> str:
+    """The unit of an output, empty where there is none."""
     if isinstance(one, When):
         return "s"
     if isinstance(one, Computed):
         return ""
+    if isinstance(one, SquaredJerk):
+        # the square of m/s3 over s
+        return channels[one.signal].unit.replace("rad/s2", "rad2/s5").replace("m/s2", "m2/s5")
     return channels[one.kept_as(channels) if isinstance(one, Integral) else one.signal].unit
 
 

@@ -80,7 +80,7 @@ def sweep(
     end, settled = merged(system.settings, chosen, options)
     plain = settled.changed({"dt": None, "times": None})
     refuse_endless(system.inputs, plain.t_start, end, plain.max_steps)
-    count = _threads(threads)
+    count = threads_of(threads)
     _refuse_clashes(wanted)
     swept = Swept(system, variants, wanted, end, plain)
     with (
@@ -110,7 +110,8 @@ def _system(model: Assembles | System) -> System:
     return model.assemble()
 
 
-def _threads(threads: object) -> int:
+def threads_of(threads: object) -> int:
+    """How many runs go at once."""
     if threads is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     if not isinstance(threads, int) or isinstance(threads, bool) or threads < 1:

@@ -1,0 +1,1 @@
+"""Derivatives of what a run gives by its numbers: `cw.differentiable`, and what `run.gradient` calls."""

@@ -1,0 +1,239 @@
+"""What a driveline gives as a function of some of its numbers, with its derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import field
+from typing import TYPE_CHECKING, Any, Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UseError, near
+from clutchwork.base.shown import shown
+from clutchwork.base.text import counted
+from clutchwork.declare.calls import explained, explained_methods
+from clutchwork.declare.options import Options
+from clutchwork.gradients.differences import Differences
+from clutchwork.gradients.engine import Engine, Found, Task
+from clutchwork.gradients.parameters import parameters
+from clutchwork.results.channels import channels
+from clutchwork.results.gradient import Gradient
+from clutchwork.run.control import controllers
+from clutchwork.run.effort import refuse_endless
+from clutchwork.run.settings import merged
+from clutchwork.run.simulation import Assembles, model_of
+from clutchwork.sweeps.batch import Wanted
+from clutchwork.sweeps.outputs import Asked, AtTimes, Computed, Output, asked
+from clutchwork.sweeps.result import unit_of
+from clutchwork.sweeps.sweep import threads_of
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.declare.node import Number
+    from clutchwork.declare.option_fields import OptionFields
+
+Array = NDArray[np.float64]
+
+
+@explained_methods("f")
+@dataclass(frozen=True, eq=False, repr=False)
+class Differentiable:
+    """What a driveline gives, as a function of some of its numbers: `cw.differentiable` makes it.
+
+    `f(x)` are its values for numbers x in SI, `f.value_and_jacobian(x)` values and derivatives. `f.of` names the
+    values, `f.by` the numbers, `f.x0` holds those of the driveline. It never changes, and threads may share it.
+    """
+
+    task: Task = field(repr=False)
+    engine: Engine = field(repr=False)
+    of: tuple[str, ...]
+    by: tuple[str, ...]
+    of_units: tuple[str, ...]  # SI
+    by_units: tuple[str, ...]  # SI
+    _last: list[tuple[bytes, Found]] = field(repr=False, default_factory=list)  # optimisers ask for one point twice
+
+    @property
+    def x0(self) -> Array:
+        """The numbers of the driveline."""
+        return np.array([one.start for one in self.task.parameters])
+
+    @property
+    def system(self) -> System:
+        """The driveline with its own numbers."""
+        return self.task.system
+
+    def __call__(self, x: Any) -> Array:
+        """Values for numbers in the order of `by`; NaN for an event that does not happen, or a run that stops early."""
+        point = self._point(x)
+        known = self._known(point)
+        return known.values.copy() if known else self.task_values(point[None])[0]
+
+    def task_values(self, points: Array) -> Array:
+        """Values of lines of numbers that were looked at."""
+        return self.engine.values(points)
+
+    def value_and_jacobian(self, x: Any) -> tuple[Array, Array]:
+        """Values, and their derivatives: a line for each value, a column for each number.
+
+        NoGradient, a ValueError, where one does not exist, with time, element and remedy.
+        """
+        found = self._found(self._point(x))
+        return found.values.copy(), found.matrix.copy()
+
+    def jacobian(self, x: Any) -> Array:
+        """The derivatives alone."""
+        return self.value_and_jacobian(x)[1]
+
+    def vjp(self, x: Any, weights: Any) -> tuple[Array, Array]:
+        """Values, and the derivatives of their weighted sum, whose cost does not grow with the number of numbers.
+
+        Parameters: weights, one for each value.
+        """
+        given = _line(weights, len(self.of), "weights", "value")
+        return self.engine.product(self._point(x), given)
+
+    def objective(self, of: str | Sequence[float] | None = None) -> Callable[[Any], tuple[float, Array]]:
+        """A value and its gradient as a function of x, as `scipy.optimize.minimize(..., jac=True)` takes it.
+
+        Parameters: of, the name of a value, or weights of all; it may be left out where there is one value.
+        """
+        weights = self._weights(of)
+
+        def value_and_gradient(x: Any) -> tuple[float, Array]:
+            values, gradient = self.vjp(x, weights)
+            return float(values[weights != 0.0] @ weights[weights != 0.0]), gradient
+
+        return value_and_gradient
+
+    def batch(self, x: Any) -> Array:
+        """Values for many lines of numbers, on threads; NaN for what is not there."""
+        return self.task_values(self._points(x))
+
+    def batch_jacobian(self, x: Any) -> tuple[Array, Array]:
+        """Values and derivatives for many lines of numbers, on threads; NaN for what does not exist."""
+        return self.engine.gradients(self._points(x))
+
+    def gradient(self, x: Any = None) -> Gradient:
+        """Values and derivatives with their names and units, by default at the numbers of the driveline."""
+        point = self.x0 if x is None else self._point(x)
+        found = self._found(point)
+        return Gradient(self.of, self.by, found.values, point, found.matrix, self.of_units, self.by_units, found.notes)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Differentiable {shown(self.system.name)}: {counted(len(self.of), 'values')} by {len(self.by)} numbers>"
+        )
+
+    # ----------------------------------------------------------------------------------------------------------- points
+
+    def _point(self, x: Any) -> Array:
+        return _line(x, len(self.by), "x", "number")
+
+    def _points(self, x: Any) -> Array:
+        try:
+            points = np.asarray(x, dtype=float)
+        except (TypeError, ValueError):
+            points = np.zeros(0)
+        if points.ndim != 2 or points.shape[1] != len(self.by) or not np.all(np.isfinite(points)):
+            raise UseError("batch", [f"x is {shown(x)}: give lines of {counted(len(self.by), 'numbers')} each"])
+        return np.ascontiguousarray(points)
+
+    def _known(self, point: Array) -> Found | None:
+        return next((found for key, found in self._last if key == point.tobytes()), None)
+
+    def _found(self, point: Array) -> Found:
+        found = self._known(point)
+        if found is None:
+            found = self.engine.gradient(point)
+            self._last[:] = [(point.tobytes(), found)]
+        return found
+
+    def _weights(self, of: str | Sequence[float] | None) -> Array:
+        if of is None and len(self.of) == 1:
+            return np.ones(1)
+        if isinstance(of, str) and of in self.of:
+            return np.array([float(name == of) for name in self.of])
+        if of is None or isinstance(of, str):
+            raise UseError("f.objective", [f"of is {shown(of)}: name a value{near(of, self.of, ', '.join(self.of))}"])
+        return _line(of, len(self.of), "of", "value")
+
+
+def _line(given: Any, count: int, name: str, what: str) -> Array:
+    """One finite number for each of some things."""
+    try:
+        line = np.array(given, dtype=float)
+    except (TypeError, ValueError):
+        line = np.zeros(0)
+    if line.shape != (count,) or not np.all(np.isfinite(line)):
+        raise UseError("f", [f"{name} is {shown(given)}: give a finite number for each {what}, {count} in all"])
+    return line
+
+
+@explained("cw.differentiable", of="['load.speed', cw.lock('c1')]", by="['c1.gain', 'engine.inertia']")
+def differentiable(
+    model: Assembles | System,
+    t_end: Number | None = None,
+    *,
+    of: Mapping[str, Asked] | Sequence[Asked] | Asked,
+    by: Sequence[str] | str,
+    threads: int | None = None,
+    options: Options | None = None,
+    **changes: Unpack[OptionFields],
+) -> Differentiable:
+    """What a Driveline or a System gives as a function of some of its numbers, with exact derivatives.
+
+    Parameters: t_end [s], or with a unit, options and their fields by name are those of `simulate`; of, values as
+    `outputs` of `sweep`: a signal at the end, `cw.at`, `cw.lock`, `cw.maximum`, `cw.integral`, `cw.squared_jerk` ...;
+    by, names of numbers as in `System.changed`: "c1.gain", "engine.inertia", of a table "c1.pressure.values", all
+    ordinates, "c1.pressure.values[3]", the third one, and "c1.pressure.times[3]", the time of the third knot;
+    threads, how many runs of a batch go at once.
+
+    Derivatives follow the events: locking, breaking away and every kink move with the numbers, which differentiating
+    the steps of a solver misses. UseError names all that cannot be differentiated; where a derivative does not exist
+    at a point, `NoGradient` says why. docs/guide/gradients.md
+    """
+    system = model_of("differentiable", model, options)
+    given = {**changes} if t_end is None else {**changes, "t_end": t_end}
+    end, chosen = merged(system.settings, given, options)
+    plain = chosen.changed({"dt": None, "times": None})
+    refuse_endless(system.inputs, plain.t_start, end, plain.max_steps)
+    return made(system, asked(of), by, end, plain, threads)
+
+
+def made(
+    system: System, outputs: Mapping[str, Output], by: Any, t_end: float, options: Options, threads: int | None
+) -> Differentiable:
+    """The function for outputs by name."""
+    _refuse(system, outputs)
+    chosen = parameters(system, by)
+    Wanted.of(system, options, outputs, t_end)
+    task = Task(system, outputs, chosen, t_end, options, threads_of(threads))
+    known = channels(system, options.angles, options.work)
+    labels = [(label, unit_of(one, known)) for name, one in outputs.items() for label in _labels(name, one)]
+    of, units = zip(*labels, strict=True)
+    by_units = tuple(one.unit for one in chosen)
+    return Differentiable(task, Differences(task), of, tuple(one.name for one in chosen), units, by_units)
+
+
+def _labels(name: str, one: Output) -> list[str]:
+    """What the numbers of an output are called: of a signal at instants one for each."""
+    if not isinstance(one, AtTimes) or (len(one.times) == 1 and name != one.name):
+        return [name]
+    return [f"{name} {time:.12g} s" for time in one.times]
+
+
+def _refuse(system: System, outputs: Mapping[str, Output]) -> None:
+    """What has no derivative, whatever the numbers."""
+    problems = [
+        f"{name} is a Python function, which has no derivative; take signals, and differentiate what you make of them"
+        for name, one in outputs.items()
+        if isinstance(one, Computed)
+    ]
+    problems += [
+        f"{one.name} is set by a Python function, which has no derivative; take a table of what it gives"
+        for one in controllers(system.inputs)
+    ]
+    if problems:
+        raise UseError("gradient", problems)

@@ -1,0 +1,168 @@
+"""Numbers of a driveline by which is differentiated: their names, where they stand, and the changes that set them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from math import inf
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.changes import UNKNOWN_SOURCE
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import ModelError, UseError, advised
+from clutchwork.base.shown import shown
+from clutchwork.declare.node import Law, Signal
+from clutchwork.model.changes import Owners, Target, changeable, field_of, named, target, targets_of, unit_of
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.model.model import Model
+
+Array = NDArray[np.float64]
+
+# "c1.pressure.values[3]": table, what of it, place from 1 on
+ENTRY = re.compile(r"(.+)\.(values|times|arguments)((?:\[\d+\])*)")
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number."""
+
+    name: str
+    field: str  # what `System.changed` calls it, or the table that it stands in
+    place: tuple[int, ...]  # in the table, from 0 on; nothing where it is a number of its own
+    unit: str
+    start: float
+    scale: float  # what a change of it is compared with
+    reach: float = inf  # how far it is from its neighbours in a table
+
+
+class Unfit(Exception):  # noqa: N818, it is caught where it is raised
+    """Why a name means no number to differentiate by."""
+
+
+def parameters(system: System, by: Any) -> tuple[Parameter, ...]:
+    """The numbers that names mean, in order; UseError names all that cannot be differentiated by.
+
+    Parameters: by, a name or several, as in `System.changed`; of a table its ordinates by "c1.pressure.values" or one
+    of them, the third by "c1.pressure.values[3]", and times of its knots by "c1.pressure.times[3]".
+    """
+    if system.source is None:
+        raise ModelError([UNKNOWN_SOURCE])
+    listed = [by] if isinstance(by, str) else list(by) if isinstance(by, Iterable) else []
+    if not listed:
+        raise UseError("gradient", [f"by is {shown(by)}: name numbers, such as by=['c1.gain', 'engine.inertia']"])
+    owners, found, problems = named(system.source), dict[str, Parameter](), list[str]()
+    for name in listed:
+        try:
+            found |= {one.name: one for one in _meant(system.source, owners, name)}
+        except Unfit as why:
+            problems.append(str(why))
+    if problems:
+        raise UseError("gradient", problems)
+    return tuple(found.values())
+
+
+def _meant(model: Model, owners: Owners, name: Any) -> list[Parameter]:
+    """The numbers of a name."""
+    aim = target(owners, name)
+    if aim is not None:
+        return [_number(aim, name)]
+    parts = ENTRY.fullmatch(name) if isinstance(name, str) else None
+    table = target(owners, parts[1]) if parts else None
+    if parts is None or table is None:
+        _, (problem,) = targets_of(model, [name])
+        raise Unfit(problem)
+    found, wanted = list(_entries(table, parts[1], parts[2])), f"{parts[1]}.{parts[2]}{parts[3]}"
+    chosen = [one for one in found if not parts[3] or one.name == wanted]
+    if not chosen:
+        raise Unfit(f"{name} is not there; entries are counted from 1: {found[0].name} to {found[-1].name}")
+    return chosen
+
+
+def _number(aim: Target, name: str) -> Parameter:
+    value, spec = field_of(aim)
+    if spec.flag or spec.choices or spec.whole or spec.fixed:
+        kind = "whole number" if spec.whole or spec.fixed else "choice"
+        raise Unfit(f"{name} is a {kind}, which has no derivative; sweep over it")
+    if isinstance(value, Signal) and list(changeable(value)) == ["value"]:
+        value = vars(value)["value"]
+    if not isinstance(value, Real):
+        raise Unfit(f"{name} {_inside(value, name)}")
+    return Parameter(name, name, (), unit_of(aim), float(value), abs(float(value)) or 1.0)
+
+
+def _inside(value: Any, name: str) -> str:
+    """Why something is not a number, and which numbers are inside of it."""
+    if value is None:
+        return advised("has no value", "give it one in the driveline")
+    if isinstance(value, Signal) and "points" in changeable(value):
+        return advised("is a table", f"take {name}.values, {name}.values[1] or {name}.times[1]")
+    if isinstance(value, Signal | Law) and changeable(value):
+        kind, inside = type(value).__name__, ", ".join(f"{name}.{word}" for word in changeable(value))
+        return advised(f"is a {kind}", f"take {inside}")
+    if hasattr(value, "__len__") and not isinstance(value, str):
+        return advised("is a table", f"take {name}.values or {name}.values[1]")
+    return advised(f"is {shown(value)}, which is not a number", "give it a number in the driveline")
+
+
+def _entries(table: Target, name: str, which: str) -> Iterator[Parameter]:
+    """Ordinates or abscissae of a table, or the numbers of a list."""
+    field, (value, spec) = name, field_of(table)
+    if isinstance(value, Signal) and "points" in changeable(value):
+        table, field = Target(table.owner, (*table.path, "points")), f"{name}.points"
+        value, spec = field_of(table)
+    if spec.what not in ("curve", "numbers") or not hasattr(value, "__len__"):
+        raise Unfit(f"{name} is {shown(value)}, which is not a table; take {name} itself")
+    abscissae = "" if spec.what == "numbers" else "times" if spec.unit_x == "s" else "arguments"
+    if which not in ("values", abscissae):
+        raise Unfit(f"{name} has no {which}; take {name}.values{abscissae and f' or {name}.{abscissae}'}")
+    if spec.what == "numbers":
+        found = [(_words(place), place, one) for place, one in _numbers(value)]
+        unit = unit_of(table)
+    else:
+        column = 1 if which == "values" else 0
+        found = [(_words((i,)), (i, column), float(point[column])) for i, point in enumerate(value)]
+        unit = unit_of(table) if column else spec.unit_x
+    gaps = np.diff([one for _, _, one in found]) if which == abscissae else np.zeros(0)
+    reach = float(np.min(gaps[gaps > 0.0], initial=inf))
+    scale = max(abs(one) for _, _, one in found) or 1.0
+    for words, place, one in found:
+        yield Parameter(f"{name}.{which}{words}", field, place, unit, one, scale, reach)
+
+
+def _numbers(value: Any) -> Iterator[tuple[tuple[int, ...], float]]:
+    """Numbers of a list, or of rows of equally many, with their places."""
+    for i, row in enumerate(value):
+        if hasattr(row, "__len__"):
+            yield from (((i, j), float(one)) for j, one in enumerate(row))
+        else:
+            yield (i,), float(row)
+
+
+def _words(place: tuple[int, ...]) -> str:
+    return "".join(f"[{number + 1}]" for number in place)
+
+
+def changes(system: System, chosen: Sequence[Parameter], x: Array) -> dict[str, Any]:
+    """What `System.changed` is given for the values of parameters."""
+    owners = named(system.source) if system.source else Owners()
+    made = dict[str, Any]()
+    for one, value in zip(chosen, x.tolist(), strict=True):
+        aim = target(owners, one.field) if one.place and one.field not in made else None
+        if aim is not None:
+            made[one.field] = _lists(field_of(aim)[0])
+        row: Any = made
+        for step in (one.field, *one.place)[:-1]:
+            row = row[step]
+        row[(one.field, *one.place)[-1]] = value
+    return made
+
+
+def _lists(value: Any) -> Any:
+    """A table as lists that may be written to."""
+    return [_lists(row) for row in value] if hasattr(value, "__len__") else float(value)
