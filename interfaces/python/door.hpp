@@ -20,3 +20,4 @@ bool heard(nanobind::object& raised, Call&& call) {
 }  // namespace clutchwork::door
 
 void bind_sweep(nanobind::module_& m);
+void bind_gradient(nanobind::module_& m);

@@ -23,6 +23,7 @@ from registry.options import options
 
 FILE = "layout.gen.hpp"
 TYPES = {"f8": "double", "i4": "std::int32_t"}
+NUMBERS = {"f8": "G", "i4": "std::int32_t"}
 
 
 def lines() -> Iterator[str]:
@@ -77,12 +78,26 @@ def system() -> Iterator[str]:
     yield "/// Up to so many speeds nothing is left out of a matrix."
     yield f"inline constexpr int few_speeds = {FEW_SPEEDS};"
     yield "/// Frozen model: sizes and arrays inside bytes that the caller keeps."
-    yield "struct System {"
+    yield "/// Its numbers are doubles, or carry tangents."
+    yield "struct SystemCounts {"
     for name, doc in COUNTS:
         yield f"  std::int64_t {member(name)};  ///< {doc}"
-    for name, kind, shape, doc in FIELDS:
-        yield f"  const {TYPES[kind]}* {name};  ///< {shape} {doc}".replace("'", "")
     yield "};"
+    yield "template <class G> struct SystemOf : SystemCounts {"
+    for name, kind, shape, doc in FIELDS:
+        yield f"  const {TYPES[kind] if name == 'points' else NUMBERS[kind]}* {name};  ///< {shape} {doc}".replace("'", "")
+    yield "};"
+    yield "using System = SystemOf<double>;"
+    yield "/// Calls f(field of one System, field of the other, number of its entries) for all fields, in order."
+    yield "template <class A, class B, class F> void visit_fields(A& a, const B& b, F&& f) {"
+    for name, _, shape, _ in FIELDS:
+        yield f"  f(a.{name}, b.{name}, {entries('b', shape)});"
+    yield "}"
+
+
+def entries(of: str, shape: tuple[str | int, ...]) -> str:
+    """The number of entries of a field."""
+    return "*".join(str(n) if isinstance(n, int) else f"{of}.{member(n)}" for n in shape)
 
 
 def binding() -> Iterator[str]:
@@ -98,7 +113,7 @@ def binding() -> Iterator[str]:
         yield f"  if (s.{member(name)} < 0 || s.{member(name)} > (1 << 28)) return -1;"
     yield f"  std::int64_t at = {head};"
     for name, kind, shape, _ in FIELDS:
-        size = "*".join(str(n) if isinstance(n, int) else f"s.{member(n)}" for n in shape)
+        size = entries("s", shape)
         yield f"  s.{name} = reinterpret_cast<const {TYPES[kind]}*>(bytes + at);"
         yield f"  at += ({size}) * {8 if kind == 'f8' else 4}; at = (at + 7) / 8 * 8;"
         yield "  if (at > size) return -1;"
@@ -111,7 +126,7 @@ def rows() -> Iterator[str]:
     yield "/// Offsets of the blocks of one output row."
     yield "struct RowLayout {"
     yield "  " + " ".join(f"std::int64_t {name};" for name, _ in ROW) + " std::int64_t size;"
-    yield "  explicit RowLayout(const System& s) {"
+    yield "  explicit RowLayout(const SystemCounts& s) {"
     yield "    std::int64_t at = 0;"
     for name, count in ROW:
         yield f"    {name} = at; at += s.{member(count)};"

@@ -135,6 +135,47 @@ int cw_restore(cw_run* run, const void* bytes, int64_t n);
 int cw_law(int number, const double* params, const double* inputs, const double* points, int64_t n_points, double slip,
            double* kinetic, double* hold);
 
+/* Runs with derivatives by numbers of the system: the motion, its events and their instants. docs/theory/gradients.md */
+typedef struct cw_tangents cw_tangents;
+
+/* Directions of one such run. */
+#define CW_DIRECTIONS 8
+
+/* Numbers of a guard that was hit: time [s], kind of guard (-1: a knot of the signal whose number stands for the
+   component), component (elements, then contacts; -1: none), size of its time derivative over its scale [1/s], and by
+   how much the derivatives of two events at this instant differ [s]. */
+#define CW_GRAZE 5
+
+/* Bytes of memory that it needs; -1 when the bytes do not fit this core. */
+int64_t cw_tangents_size(const void* system, int64_t bytes);
+
+/* Start a run with derivatives in `memory`; NULL when system or memory do not fit. Nothing needs to be freed. */
+cw_tangents* cw_tangents_load(const void* system, int64_t bytes, void* memory, int64_t memory_bytes);
+
+/* As cw_set_option. The method is rodas5p whatever is set. */
+int cw_tangents_set_option(cw_tangents* run, const char* name, double value);
+
+/* Word `word` of eight bytes of the system changes by `slope` per unit of a direction; before the start. Repeated calls
+   add up. 1: done; 0: no such direction, or the word is not a number of the motion. */
+int cw_tangents_seed(cw_tangents* run, int64_t word, int direction, double slope);
+
+/* As cw_advance with a grid: rows as there, and after each other CW_DIRECTIONS derivatives of each of their numbers, at
+   a fixed time, into `tangents`. Call it again, with what is left of the grid, after events_full. */
+int cw_tangents_advance(cw_tangents* run, double t_end, const double* times, double* rows, double* tangents, int64_t n,
+                        int64_t* filled);
+
+/* Take the oldest events out, at most `most`, and the derivatives of their times; returns how many. */
+int64_t cw_tangents_events(cw_tangents* run, double* events, double* tangents, int64_t most);
+
+/* Take the guards that were hit out, at most `most`; returns how many. */
+int64_t cw_tangents_grazes(cw_tangents* run, double* grazes, int64_t most);
+
+/* Component that a status other than done is about, -1: none, and the value it is about. */
+int cw_tangents_fault(const cw_tangents* run, double* value);
+
+/* Accepted steps. */
+int64_t cw_tangents_steps(const cw_tangents* run);
+
 #ifdef __cplusplus
 }
 #endif

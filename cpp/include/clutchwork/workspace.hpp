@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/workspace/contacts.hpp>
 #include <clutchwork/workspace/loads.hpp>
+#include <clutchwork/workspace/moved.hpp>
 #include <clutchwork/workspace/motion.hpp>
 #include <clutchwork/workspace/ratios.hpp>
 #include <clutchwork/workspace/run.hpp>
@@ -8,9 +9,10 @@
 /// Everything that changes during a run, carved once from memory of the caller.
 namespace clutchwork {
 
+
 template <class T>
 struct Workspace {
-  System sys{};
+  SystemOf<Given<T>> sys{};
   RowLayout row{System{}};
   Options options;
   Statistics statistics;
@@ -54,6 +56,7 @@ struct Workspace {
   Seen<T> seen;
   Output<T> out;
   EventBuffer events;
+  [[no_unique_address]] Moved<T> moved;
   Detail detail;
   Poll poll;
 };
@@ -71,7 +74,7 @@ void lay_out(W& ws, A& a) {
   auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
   each(ws.in, ws.contact, ws.happened, ws.held, ws.loads, ws.coupled, ws.set, ws.problem, ws.decision, ws.geometry,
        ws.reduced, ws.rows, ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.here, ws.there, ws.guard, ws.seen,
-       ws.out, ws.events);
+       ws.out, ws.events, ws.moved);
 }
 
 /// Lay the arrays of a workspace into memory; returns the size needed.

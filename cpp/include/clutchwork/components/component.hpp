@@ -79,7 +79,7 @@ struct At {
   const S* state;         ///< own states
   OwnInputs<S> input;     ///< own inputs
   int piece;              ///< number of the smooth piece of the rate
-  const Real<S>* points;  ///< pool of curves: x, y, slope to the next point
+  const Point<S>* points;  ///< pool of curves: x, y, slope to the next point
   OwnRates<S> rates{};    ///< of an element of several ways
 };
 
@@ -98,8 +98,8 @@ CLUTCHWORK_INLINE double curve_edge(const Curve<T>& c, const double* points, int
 
 /// Value of a curve on one of its pieces, continued linearly beyond it.
 template <class T, class S>
-CLUTCHWORK_INLINE S curve_value(const Curve<T>& c, const Real<S>* points, S x, int piece) {
-  const Real<S>* p = points + 3 * (int(common(c.first)) + piece);
+CLUTCHWORK_INLINE S curve_value(const Curve<T>& c, const Point<S>* points, S x, int piece) {
+  const Point<S>* p = points + 3 * (int(common(c.first)) + piece);
   return (x - S(p[0])) * S(p[2]) + S(p[1]);
 }
 

@@ -6,9 +6,10 @@
 namespace clutchwork {
 
 /// One row of a matrix without its zeros.
+template <class G>
 struct MatrixRow {
   const std::int32_t* column;
-  const double* value;
+  const G* value;
   int n;
 
   /// Product with x.
@@ -21,25 +22,27 @@ struct MatrixRow {
 };
 
 /// Row i of a matrix whose rows end there.
-inline MatrixRow matrix_row(const std::int32_t* end, const std::int32_t* column, const double* value, std::int64_t i) {
+template <class G>
+MatrixRow<G> matrix_row(const std::int32_t* end, const std::int32_t* column, const G* value, std::int64_t i) {
   const std::int32_t first = i > 0 ? end[i - 1] : 0;
   return {column + first, value + first, int(end[i] - first)};
 }
-inline MatrixRow basis_row(const System& s, int node) {
+template <class G>
+MatrixRow<G> basis_row(const SystemOf<G>& s, int node) {
   return matrix_row(s.basis_end, s.basis_column, s.basis_value, node);
 }
 
 /// Speed or acceleration of a node from those of the independent and the prescribed speeds.
-template <class T>
-T node_value(const System& s, int node, const T* speeds, const T* prescribed) {
+template <class T, class G>
+T node_value(const SystemOf<G>& s, int node, const T* speeds, const T* prescribed) {
   T sum = basis_row(s, node).times(speeds);
   for (int p = 0; p < s.prescribed; ++p) sum += T(s.basis_prescribed[node * s.prescribed + p]) * prescribed[p];
   return sum;
 }
 
 /// Torque of a metered line on its node, of accelerations and torques; or its impulse, of jumps of speed and impulses.
-template <class T, class Acceleration, class Torque>
-T meter_sum(const System& s, int m, Acceleration&& acceleration, Torque&& torque) {
+template <class T, class G, class Acceleration, class Torque>
+T meter_sum(const SystemOf<G>& s, int m, Acceleration&& acceleration, Torque&& torque) {
   T sum = T(0);
   for (int e = m > 0 ? s.meter_end[m - 1] : 0; e < s.meter_end[m]; ++e) {
     const int k = s.meter_column[e];
@@ -47,10 +50,12 @@ T meter_sum(const System& s, int m, Acceleration&& acceleration, Torque&& torque
   }
   return sum;
 }
-inline MatrixRow mass_row(const System& s, int i) { return matrix_row(s.mass_end, s.mass_column, s.mass_value, i); }
+template <class G>
+MatrixRow<G> mass_row(const SystemOf<G>& s, int i) { return matrix_row(s.mass_end, s.mass_column, s.mass_value, i); }
 
 /// Shares of the speeds in the rate of a direction.
-inline MatrixRow rate_row(const System& s, int d) {
+template <class G>
+MatrixRow<G> rate_row(const SystemOf<G>& s, int d) {
   if (d < s.elements) return matrix_row(s.element_rate_end, s.element_rate_column, s.element_rate_value, d);
   return matrix_row(s.contact_rate_end, s.contact_rate_column, s.contact_rate_value, d - s.elements);
 }
@@ -58,7 +63,7 @@ inline MatrixRow rate_row(const System& s, int d) {
 /// Share of prescribed speed p in the rate of a direction.
 template <class T>
 T prescribed_share(const Workspace<T>& ws, int d, int p) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   if (d < sys.elements) return T(sys.element_rate_prescribed[d * sys.prescribed + p]);
   return T(sys.contact_rate_prescribed[(d - sys.elements) * sys.prescribed + p]);
 }
@@ -66,7 +71,7 @@ T prescribed_share(const Workspace<T>& ws, int d, int p) {
 /// Rate of a direction at the present speeds.
 template <class T>
 T rate_of(const Workspace<T>& ws, int d) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   T r = rate_row(sys, d).times(ws.v);
   for (int p = 0; p < sys.prescribed; ++p) r += prescribed_share(ws, d, p) * ws.in.prescribed[p];
   return r;
@@ -84,7 +89,7 @@ struct PresentRates {
 /// The branch of an element, or of a contact that slips with the given sign.
 template <class T>
 Branch<T> make_branch(const Workspace<T>& ws, int d, int sign) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Branch<T> b{};
   b.direction = d;
   b.sign = sign;

@@ -8,24 +8,28 @@ namespace clutchwork {
 /// only beside a first one: what has passed a filter is a wave and what is left of the start.
 inline constexpr int segment_size = 12;
 
-/// A wave of a segment, its numbers at w.
-CLUTCHWORK_INLINE double wave_value(const double* w, double s) {
-  return w[0] * (w[3] != 0 ? exp(-w[3] * s) : 1.0) * (w[1] != 0 ? sin(w[1] * s + w[2]) : sin(w[2]));
+/// A wave of a segment, its numbers at w. G: a number of the model.
+template <class G>
+CLUTCHWORK_INLINE G wave_value(const G* w, G s) {
+  return w[0] * (is_zero(w[3]) ? G(1) : exp(-w[3] * s)) * (is_zero(w[1]) ? sin(w[2]) : sin(w[1] * s + w[2]));
 }
-CLUTCHWORK_INLINE double wave_slope(const double* w, double s) {
-  const double phase = w[1] * s + w[2];
-  if (w[3] == 0) return w[0] * w[1] * cos(phase);
+template <class G>
+CLUTCHWORK_INLINE G wave_slope(const G* w, G s) {
+  const G phase = w[1] * s + w[2];
+  if (is_zero(w[3])) return w[0] * w[1] * cos(phase);
   return w[0] * exp(-w[3] * s) * (w[1] * cos(phase) - w[3] * sin(phase));
 }
-inline double wave_integral(const double* w, double s) {
-  const double norm = w[1] * w[1] + w[3] * w[3];
-  if (norm == 0) return w[0] * sin(w[2]) * s;
-  auto part = [&](double at) {
-    return -exp(-w[3] * at) * (w[3] * sin(w[1] * at + w[2]) + w[1] * cos(w[1] * at + w[2]));
-  };
-  return w[0] * (part(s) - part(0)) / norm;
+template <class G>
+G wave_integral(const G* w, G s) {
+  const G norm = w[1] * w[1] + w[3] * w[3];
+  if (value(norm) == 0) return w[0] * sin(w[2]) * s;
+  auto part = [&](G at) { return -exp(-w[3] * at) * (w[3] * sin(w[1] * at + w[2]) + w[1] * cos(w[1] * at + w[2])); };
+  return w[0] * (part(s) - part(G(0))) / norm;
 }
-inline bool wave_varies(const double* w) { return w[0] != 0 && (w[1] != 0 || w[3] != 0); }
+template <class G>
+bool wave_varies(const G* w) {
+  return !is_zero(w[0]) && !(is_zero(w[1]) && is_zero(w[3]));
+}
 
 /// The cubic of a segment s seconds after its start, and its time derivative.
 template <class R>
@@ -38,73 +42,84 @@ CLUTCHWORK_INLINE R cubic_slope(const R* c, R s) {
 }
 
 /// Value of a segment s seconds after its start.
-CLUTCHWORK_INLINE double segment_value(const double* c, double s) {
-  double x = cubic_value(c, s);
-  if (c[4] != 0) {
+template <class G>
+CLUTCHWORK_INLINE G segment_value(const G* c, G s) {
+  G x = cubic_value(c, s);
+  if (!is_zero(c[4])) {
     x += wave_value(c + 4, s);
-    if (c[8] != 0) x += wave_value(c + 8, s);
+    if (!is_zero(c[8])) x += wave_value(c + 8, s);
   }
   return x;
 }
 
 /// Time derivative of a segment s seconds after its start.
-CLUTCHWORK_INLINE double segment_slope(const double* c, double s) {
-  double x = cubic_slope(c, s);
-  if (c[4] != 0) {
+template <class G>
+CLUTCHWORK_INLINE G segment_slope(const G* c, G s) {
+  G x = cubic_slope(c, s);
+  if (!is_zero(c[4])) {
     x += wave_slope(c + 4, s);
-    if (c[8] != 0) x += wave_slope(c + 8, s);
+    if (!is_zero(c[8])) x += wave_slope(c + 8, s);
   }
   return x;
 }
 
 /// Second time derivative of a segment s seconds after its start.
-inline double segment_curvature(const double* c, double s) {
-  auto wave = [&](const double* w) {
-    if (w[0] == 0) return 0.0;
-    const double phase = w[1] * s + w[2], fast = w[1] * w[1], slow = w[3] * w[3];
-    return w[0] * exp(-w[3] * s) * ((slow - fast) * sin(phase) - 2 * w[1] * w[3] * cos(phase));
+template <class G>
+G segment_curvature(const G* c, G s) {
+  auto wave = [&](const G* w) {
+    if (is_zero(w[0])) return G(0);
+    const G phase = w[1] * s + w[2], fast = w[1] * w[1], slow = w[3] * w[3];
+    return w[0] * exp(-w[3] * s) * ((slow - fast) * sin(phase) - G(2) * w[1] * w[3] * cos(phase));
   };
-  return 2 * c[2] + 6 * c[3] * s + (c[4] != 0 ? wave(c + 4) + wave(c + 8) : 0.0);
+  return G(2) * c[2] + G(6) * c[3] * s + (is_zero(c[4]) ? G(0) : wave(c + 4) + wave(c + 8));
 }
 
 /// Integral of a segment from its start to s seconds later.
-inline double segment_integral(const double* c, double s) {
-  double x = s * (c[0] + s * (c[1] / 2 + s * (c[2] / 3 + s * c[3] / 4)));
-  if (c[4] != 0) {
+template <class G>
+G segment_integral(const G* c, G s) {
+  G x = s * (c[0] + s * (c[1] / G(2) + s * (c[2] / G(3) + s * c[3] / G(4))));
+  if (!is_zero(c[4])) {
     x += wave_integral(c + 4, s);
-    if (c[8] != 0) x += wave_integral(c + 8, s);
+    if (!is_zero(c[8])) x += wave_integral(c + 8, s);
   }
   return x;
 }
 
 /// Fastest rate [1/s] of the waves of a segment s seconds after its start; a decay of 25 time constants has died.
-inline double segment_rate(const double* c, double s) {
-  auto rate = [&](const double* w) { return w[0] == 0 || w[3] * s > 25 ? 0.0 : larger(abs(w[1]), abs(w[3])); };
-  return c[4] == 0 ? 0.0 : larger(rate(c + 4), rate(c + 8));
+template <class G>
+double segment_rate(const G* c, double s) {
+  auto rate = [&](const G* w) {
+    return value(w[0]) == 0 || value(w[3]) * s > 25 ? 0.0 : larger(abs(value(w[1])), abs(value(w[3])));
+  };
+  return value(c[4]) == 0 ? 0.0 : larger(rate(c + 4), rate(c + 8));
 }
 
 /// Largest size of the second time derivative of a segment over h seconds from s on.
-inline double segment_bend(const double* c, double s, double h) {
-  auto wave = [&](const double* w) {
-    if (w[0] == 0) return 0.0;
-    const double start = w[3] == 0 ? 1.0 : exp(-w[3] * (w[3] > 0 ? s : s + h));
-    return abs(w[0]) * (w[1] * w[1] + w[3] * w[3]) * start;
+template <class G>
+double segment_bend(const G* c, double s, double h) {
+  auto wave = [&](const G* w) {
+    const double decay = value(w[3]), rate = value(w[1]);
+    if (value(w[0]) == 0) return 0.0;
+    const double start = decay == 0 ? 1.0 : exp(-decay * (decay > 0 ? s : s + h));
+    return abs(value(w[0])) * (rate * rate + decay * decay) * start;
   };
-  const double waves = c[4] == 0 ? 0.0 : wave(c + 4) + wave(c + 8);
-  return 2 * abs(c[2]) + 6 * abs(c[3]) * larger(abs(s), abs(s + h)) + waves;
+  const double waves = value(c[4]) == 0 ? 0.0 : wave(c + 4) + wave(c + 8);
+  return 2 * abs(value(c[2])) + 6 * abs(value(c[3])) * larger(abs(s), abs(s + h)) + waves;
 }
 
 /// Start of segment k of signal i, the repeated ones included (k counts on through the cycles).
-inline double segment_start(const System& sys, int i, std::int64_t k) {
+template <class G>
+G segment_start(const SystemOf<G>& sys, int i, std::int64_t k) {
   const int n = sys.input_count[i];
-  const double* times = sys.segment_time + sys.input_first[i];
-  if (sys.input_period[i] <= 0) return times[k];
-  return times[k % n] + double(k / n) * sys.input_period[i];
+  const G* times = sys.segment_time + sys.input_first[i];
+  if (value(sys.input_period[i]) <= 0) return times[k];
+  return times[k % n] + G(double(k / n)) * sys.input_period[i];
 }
 
 /// Whether signal i has a segment number k.
-inline bool segment_exists(const System& sys, int i, std::int64_t k) {
-  return k >= 0 && (sys.input_period[i] > 0 || k < sys.input_count[i]);
+template <class G>
+bool segment_exists(const SystemOf<G>& sys, int i, std::int64_t k) {
+  return k >= 0 && (value(sys.input_period[i]) > 0 || k < sys.input_count[i]);
 }
 
 /// Whether signal i holds a value that comes from outside.
@@ -116,71 +131,84 @@ bool is_held(const Workspace<T>& ws, int i) {
 /// Put the cursor of signal i on the segment that holds at time t (right limit).
 template <class T>
 void seek(Workspace<T>& ws, int i, double t) {
-  const System& sys = ws.sys;
-  Signal& signal = ws.in.signal[i];
+  const auto& sys = ws.sys;
+  using G = Given<T>;
+  SignalOf<G>& signal = ws.in.signal[i];
   if (is_held(ws, i)) {
-    signal.knot = infinity, signal.coef = nullptr;
+    signal.knot = G(infinity), signal.coef = nullptr;
     signal.varying = signal.idle = false, signal.linear = true;
     return;
   }
-  while (segment_exists(sys, i, signal.segment + 1) && segment_start(sys, i, signal.segment + 1) <= t) ++signal.segment;
-  const bool started = segment_start(sys, i, signal.segment) <= t;
+  while (segment_exists(sys, i, signal.segment + 1) && value(segment_start(sys, i, signal.segment + 1)) <= t) ++signal.segment;
+  const bool started = value(segment_start(sys, i, signal.segment)) <= t;
   const int k = int(signal.segment % sys.input_count[i]);
   signal.start = segment_start(sys, i, signal.segment);
   signal.coef = sys.segment_coef + segment_size * (sys.input_first[i] + k);
-  signal.knot = segment_exists(sys, i, signal.segment + 1) ? segment_start(sys, i, signal.segment + 1) : infinity;
+  signal.knot = segment_exists(sys, i, signal.segment + 1) ? segment_start(sys, i, signal.segment + 1) : G(infinity);
   signal.idle = false;
   // before its start a periodic signal rests at the value of its last segment
-  if (!started && sys.input_period[i] > 0) {
+  if (!started && value(sys.input_period[i]) > 0) {
     signal.coef = sys.segment_coef + segment_size * (sys.input_first[i] + sys.input_count[i] - 1);
     signal.knot = signal.start;
     signal.idle = true;
   }
-  const double* c = signal.coef;
+  const G* c = signal.coef;
   const bool waves = wave_varies(c + 4) || wave_varies(c + 8);
-  signal.varying = !signal.idle && (c[1] != 0 || c[2] != 0 || c[3] != 0 || waves);
-  signal.linear = c[2] == 0 && c[3] == 0 && !waves;
+  signal.varying = !signal.idle && (!is_zero(c[1]) || !is_zero(c[2]) || !is_zero(c[3]) || waves);
+  signal.linear = is_zero(c[2]) && is_zero(c[3]) && !waves;
+}
+
+/// Time since the start of the present segment of a signal.
+template <class T>
+CLUTCHWORK_INLINE Given<T> since_start(const Workspace<T>& ws, const SignalOf<Given<T>>& signal, double t) {
+  // at an event the present instant moves with what it depends on
+  if constexpr (has_tangents<T>) return (T(t) - signal.start) + ws.moved.shift;
+  else return t - signal.start;
 }
 
 /// Value of signal i at time t on its present segment.
 template <class T>
-CLUTCHWORK_INLINE double signal_value(const Workspace<T>& ws, int i, double t) {
-  const Signal& signal = ws.in.signal[i];
+CLUTCHWORK_INLINE Given<T> signal_value(const Workspace<T>& ws, int i, double t) {
+  using G = Given<T>;
+  const auto& signal = ws.in.signal[i];
   if (signal.coef == nullptr) return signal.held;
-  const double s = signal.idle ? 0.0 : t - signal.start;
-  if (signal.linear && signal.coef[4] == 0) return signal.coef[0] + signal.coef[1] * s;
+  const G s = signal.idle ? G(0) : since_start(ws, signal, t);
+  if (signal.linear && is_zero(signal.coef[4])) return signal.coef[0] + signal.coef[1] * s;
   return segment_value(signal.coef, s);
 }
 
 /// Time derivative of signal i at time t on its present segment.
 template <class T>
-CLUTCHWORK_INLINE double signal_slope(const Workspace<T>& ws, int i, double t) {
-  const Signal& signal = ws.in.signal[i];
-  return signal.varying ? segment_slope(signal.coef, t - signal.start) : 0.0;
+CLUTCHWORK_INLINE Given<T> signal_slope(const Workspace<T>& ws, int i, double t) {
+  using G = Given<T>;
+  const auto& signal = ws.in.signal[i];
+  return signal.varying ? segment_slope(signal.coef, since_start(ws, signal, t)) : G(0);
 }
 
 /// Second time derivative of signal i at time t on its present segment.
 template <class T>
-double signal_curvature(const Workspace<T>& ws, int i, double t) {
-  const Signal& signal = ws.in.signal[i];
-  return signal.varying && !signal.linear ? segment_curvature(signal.coef, t - signal.start) : 0.0;
+Given<T> signal_curvature(const Workspace<T>& ws, int i, double t) {
+  using G = Given<T>;
+  const auto& signal = ws.in.signal[i];
+  return signal.varying && !signal.linear ? segment_curvature(signal.coef, since_start(ws, signal, t)) : G(0);
 }
 
 /// Bounds of signal i from time t to its next knot; infinite where they are not plain.
 template <class T>
 void signal_range(const Workspace<T>& ws, int i, double t, double& low, double& high) {
-  const Signal& signal = ws.in.signal[i];
+  const auto& signal = ws.in.signal[i];
   // a shared state may go anywhere
   low = -infinity, high = infinity;
   if (i >= ws.sys.inputs) return;
-  low = high = signal_value(ws, i, t);
+  low = high = value(signal_value(ws, i, t));
   if (!signal.varying) return;
-  const double* c = signal.coef;
+  auto c = [&](int k) { return value(signal.coef[k]); };
+  const double knot = value(signal.knot);
   if (signal.linear) {
-    const double end = signal.knot < infinity ? signal_value(ws, i, signal.knot) : c[1] > 0 ? infinity : -infinity;
+    const double end = knot < infinity ? value(signal_value(ws, i, knot)) : c(1) > 0 ? infinity : -infinity;
     low = smaller(low, end), high = larger(high, end);
-  } else if (c[1] == 0 && c[2] == 0 && c[3] == 0 && c[7] >= 0 && c[11] >= 0) {
-    low = c[0] - abs(c[4]) - abs(c[8]), high = c[0] + abs(c[4]) + abs(c[8]);
+  } else if (c(1) == 0 && c(2) == 0 && c(3) == 0 && c(7) >= 0 && c(11) >= 0) {
+    low = c(0) - abs(c(4)) - abs(c(8)), high = c(0) + abs(c(4)) + abs(c(8));
   } else {
     low = -infinity, high = infinity;
   }
@@ -192,12 +220,12 @@ template <class T>
 bool reference_range(const Workspace<T>& ws, int ref, double h, double& low, double& high) {
   const int i = ws.in.ref_signal[ref];
   if (i >= ws.sys.inputs) return false;
-  const Signal& signal = ws.in.signal[i];
+  const auto& signal = ws.in.signal[i];
   low = high = value(ws.in.u[ref]);
   if (!signal.varying) return true;
   // back along the tangent, and what bends away from it
   const double start = low - h * value(ws.in.du[ref]);
-  const double bend = signal.linear ? 0 : 0.5 * h * h * segment_bend(signal.coef, ws.in.time - h - signal.start, h);
+  const double bend = signal.linear ? 0 : 0.5 * h * h * segment_bend(signal.coef, ws.in.time - h - value(signal.start), h);
   low = smaller(low, start) - bend, high = larger(high, start) + bend;
   return true;
 }
@@ -246,7 +274,7 @@ void load_inputs(Workspace<T>& ws, double t) {
   ws.in.next_knot = infinity;
   for (int i = 0; i < ws.sys.inputs; ++i) {
     seek(ws, i, t);
-    if (ws.in.signal[i].knot < ws.in.next_knot) ws.in.next_knot = ws.in.signal[i].knot;
+    ws.in.next_knot = smaller(ws.in.next_knot, value(ws.in.signal[i].knot));
   }
   ws.in.n_shared_refs = ws.in.n_direction_refs = ws.in.n_rate_refs = 0;
   for (int ref = 0; ref < ws.in.n_refs; ++ref) {

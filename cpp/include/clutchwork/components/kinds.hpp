@@ -57,7 +57,7 @@ inline bool is_compliant_law(int law) {
 
 /// Load of a contact at the given inputs, negative where the clamp is relieved.
 template <class T, class S>
-CLUTCHWORK_INLINE S contact_load(int kind, const T* params, const S* input, const Real<T>* points) {
+CLUTCHWORK_INLINE S contact_load(int kind, const T* params, const S* input, const Point<T>* points) {
   return visit_contact(kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
     if constexpr (computes_with<E, T>) {
@@ -81,7 +81,7 @@ CLUTCHWORK_INLINE S contact_gain(int kind, const T* params, const S& mu, int dir
 
 /// What holds against slip of a size in a direction, over its load, of a contact that follows one.
 template <class T, class S>
-Bound<S> contact_bound(int kind, const T* params, const S& slip, const S* input, int piece, const Real<T>* points,
+Bound<S> contact_bound(int kind, const T* params, const S& slip, const S* input, int piece, const Point<T>* points,
                        int direction) {
   return visit_contact(kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
@@ -100,7 +100,7 @@ inline bool is_loaded(int kind) {
 
 /// Static coefficient of a law.
 template <class T>
-CLUTCHWORK_INLINE T law_hold(int law, const T* params, const T* input, const Real<T>* points) {
+CLUTCHWORK_INLINE T law_hold(int law, const T* params, const T* input, const Point<T>* points) {
   return visit_law(law, [&](auto tag) {
     using L = typename decltype(tag)::type;
     if constexpr (computes_with<L, T>) {

@@ -141,6 +141,9 @@ struct NumberOf<Lanes<R>> {
   using Real = Lanes<R>;
   using Truth = Mask<R>;
   static constexpr bool lanes = true;
+  static constexpr bool tangents = false;
+  using Given = double;
+  using Point = Lanes<R>;
 };
 
 template <int R>

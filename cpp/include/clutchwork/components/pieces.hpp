@@ -110,7 +110,7 @@ bool is_switching(const Branch<T>& b) {
 /// Room that the law of a contact has inside its tables at a slip; below zero it has left one, and `seen` is what did.
 template <class T>
 T table_room(const Workspace<T>& ws, int c, T slip, T& seen) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   return visit_law(sys.contact_law[c], [&](auto tag) {
     using L = typename decltype(tag)::type;
     if constexpr (BoundedLaw<L>) {
@@ -133,7 +133,7 @@ inline bool is_chattering_law(int law) {
 /// Number of kinks of the function behind a direction, over its rate or its slip.
 template <class T>
 int edge_count(const Workspace<T>& ws, int direction) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   auto count = [&](auto tag, const T* params) {
     using E = typename decltype(tag)::type;
     if constexpr (Kinked<E>) {
@@ -156,7 +156,7 @@ int edge_count(const Workspace<T>& ws, int direction) {
 /// Kink number i of the function behind a direction.
 template <class T>
 double edge_at(const Workspace<T>& ws, int direction, int i) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   auto at = [&](auto tag, const T* params) {
     using E = typename decltype(tag)::type;
     if constexpr (Kinked<E>) {

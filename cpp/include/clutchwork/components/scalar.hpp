@@ -24,6 +24,9 @@ struct NumberOf {
   using Real = double;
   using Truth = bool;
   static constexpr bool lanes = false;
+  static constexpr bool tangents = false;  ///< it carries derivatives of the whole run
+  using Given = double;                    ///< a number of the model
+  using Point = double;                    ///< a number of its curves
 };
 template <class T>
 using Real = typename NumberOf<T>::Real;
@@ -31,6 +34,12 @@ template <class T>
 using Truth = typename NumberOf<T>::Truth;
 template <class T>
 inline constexpr bool has_lanes = NumberOf<T>::lanes;
+template <class T>
+inline constexpr bool has_tangents = NumberOf<T>::tangents;
+template <class T>
+using Given = typename NumberOf<T>::Given;
+template <class T>
+using Point = typename NumberOf<T>::Point;
 
 /// A number that is the same in all lanes, such as a place or a choice.
 template <class T>
@@ -42,6 +51,17 @@ CLUTCHWORK_INLINE double common(const T& x) {
 CLUTCHWORK_INLINE bool any(bool x) { return x; }
 CLUTCHWORK_INLINE bool all(bool x) { return x; }
 CLUTCHWORK_INLINE bool none(bool x) { return !x; }
+
+/// Whether a number is zero, and its derivatives too.
+CLUTCHWORK_INLINE bool is_zero(double x) { return x == 0; }
+CLUTCHWORK_INLINE bool is_zero(float x) { return x == 0; }
+
+/// While it lives, what is computed leaves no trace in derivatives that are kept apart from their numbers.
+template <class T>
+struct Untracked {
+  Untracked() {}
+  ~Untracked() {}
+};
 
 /// n where it is true, else zero.
 CLUTCHWORK_INLINE int count_where(bool which, int n) { return which ? n : 0; }

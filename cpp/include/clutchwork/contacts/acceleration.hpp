@@ -13,7 +13,7 @@ namespace clutchwork {
 /// ws.decision.effort: sum of the sizes of all contributions, what round-off of q is measured against.
 template <class T>
 void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nv = int(sys.speeds);
   for (int i = 0; i < nv; ++i) q[i] = T(0);
   ws.decision.effort = 0;

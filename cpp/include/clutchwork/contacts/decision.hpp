@@ -190,7 +190,7 @@ int turned_back(Workspace<T>& ws, const BoundedProblem<T>& p) {
 /// As pose_problem where contacts follow loads: those that slip take part too, behind the candidates.
 template <class T>
 CoupledProblem<T> pose_coupled(Workspace<T>& ws, BoundedProblem<T>& p) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   CoupledMemory<T>& m = ws.coupled;
   int *list = ws.decision.list, n = 0;
   auto follows = [&](int c) { return ws.loads.of[c] >= 0; };
@@ -314,7 +314,7 @@ int steepest(const Workspace<T>& ws) {
 /// docs/theory/load-dependent.md, rule 3
 template <class T>
 bool hold_together(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   int *candidate = ws.decision.candidate, *before = ws.coupled.next;
   for (int l = 0; l < sys.loads; ++l) {
     if (!candidate[sys.load_contact[l]]) return false;

@@ -41,13 +41,13 @@ int pivot_in(const WorkRow<T>& row, double full) {
 template <class T>
 double reduce_row(const Workspace<T>& ws, int c, int steps, WorkRow<T>& row) {
   const Compressed<T>& solved = ws.rows.solved;
-  const MatrixRow given = rate_row(ws.sys, int(ws.sys.elements) + c);
+  const auto given = rate_row(ws.sys, int(ws.sys.elements) + c);
   double full = 0;
   int waiting = 0, first = steps;
   for (int e = 0; e < given.n; ++e) {
     const int j = given.column[e], step = ws.rows.step[j];
     row.add(j, T(given.value[e]));
-    full = larger(full, abs(given.value[e]));
+    full = larger(full, abs(value(given.value[e])));
     if (step >= 0) ++waiting, first = smaller(first, step);
   }
   // what replaces a speed is eliminated later, if at all

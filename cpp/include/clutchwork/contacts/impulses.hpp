@@ -14,7 +14,7 @@ namespace clutchwork {
 /// Heat of an impulse goes where the heat of its direction goes.
 template <class T>
 void take_heat(Workspace<T>& ws, int direction, T heat) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   T* shared = ws.state + sys.states - sys.shared;
   for (int h = 0; h < sys.heats; ++h) {
     if (sys.heat_direction[h] == direction) shared[sys.heat_to[h]] += T(sys.heat_share[h]) * heat;
@@ -24,7 +24,7 @@ void take_heat(Workspace<T>& ws, int direction, T heat) {
 /// Energy of an impulse through metered lines, for jumps x of the independent speeds, before they are made.
 template <class T, class Jump, class Torque>
 void meter_impulse(Workspace<T>& ws, const T* x, Jump&& prescribed_jump, Torque&& impulse) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   auto jump = [&](int n) {
     T sum = basis_row(sys, n).times(x);
     for (int p = 0; p < sys.prescribed; ++p)
@@ -193,7 +193,7 @@ void jump_beside(Workspace<T>& ws, T* x) {
 /// A jump of prescribed speeds: friction transmits no impulse, rigid parts follow.
 template <class T>
 void prescribed_jump(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nv = int(sys.speeds), np = int(sys.prescribed);
   bool any = false;
   T* x = ws.decision.speed;

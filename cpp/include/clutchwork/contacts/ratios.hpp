@@ -35,7 +35,7 @@ void visit_transmission(const Workspace<T>& ws, int a, F&& f) {
 /// Time derivative of an input: of a signal, or of the state of a process, from its equations.
 template <class T>
 T slope_of_input(Workspace<T>& ws, int ref) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int code = sys.input_refs[ref], j = code - int(sys.inputs);
   if (j < 0) return ws.in.du[ref];
   T slope = T(0);
@@ -99,7 +99,7 @@ T pull_of(Workspace<T>& ws, int a) {
 /// x += factor times a direction over the speeds.
 template <class T>
 void add_direction(const Workspace<T>& ws, int d, T factor, T* x) {
-  const MatrixRow row = rate_row(ws.sys, d);
+  const auto row = rate_row(ws.sys, d);
   for (int e = 0; e < row.n; ++e) x[row.column[e]] += factor * T(row.value[e]);
 }
 
@@ -221,7 +221,7 @@ void follow_rows(const Workspace<T>& ws, const T* wanted, T* x) {
 /// their span and of the speeds that follow. docs/theory/load-dependent.md (12)
 template <class T>
 void leave_loads(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Ratios<T>& r = ws.ratios;
   const int nv = int(sys.speeds), ne = int(sys.elements), np = int(sys.prescribed), nd = ws.n_directions;
   T *x = ws.decision.speed, *tied = r.pull;

@@ -17,7 +17,7 @@ T load_of(const Workspace<T>& ws, int c) {
 /// What holds a contact that follows a load against slip in a direction, at a size of slip.
 template <class T>
 Bound<T> bound_of(const Workspace<T>& ws, int c, int direction, T slip, int piece) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   return contact_bound<T, T>(sys.contact_kind[c], ws.params + sys.contact_param[c], slip,
                              ws.in.u + sys.contact_input[c], piece, sys.points, direction);
 }
@@ -51,15 +51,19 @@ T capacity_at(const Workspace<T>& ws, int c, T torque) {
 
 /// Above zero when a contact fails; below for one that cannot.
 template <class T>
-double fault_trigger(const Workspace<T>& ws, int c) {
+T fault_margin(const Workspace<T>& ws, int c) {
   return visit_contact(ws.sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     if constexpr (FaultyContact<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + ws.sys.contact_param[c]);
-      return value(E::fault(p, At<T>{T(0), nullptr, ws.in.u + ws.sys.contact_input[c], 0, ws.sys.points}));
+      return E::fault(p, At<T>{T(0), nullptr, ws.in.u + ws.sys.contact_input[c], 0, ws.sys.points});
     }
-    return -1.0;
+    return T(-1);
   });
+}
+template <class T>
+double fault_trigger(const Workspace<T>& ws, int c) {
+  return value(fault_margin(ws, c));
 }
 
 /// What a failure does to a contact, and how it is reported.
@@ -100,7 +104,7 @@ T load_slope(const Workspace<T>& ws, int c) {
 /// Whether the load of a contact bends over time, so that it may dip between two instants.
 template <class T>
 bool load_bends(const Workspace<T>& ws, int c) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int first = sys.contact_input[c];
   for (int i = first; i < first + contact_inputs(sys.contact_kind[c]); ++i) {
     const std::int64_t ref = sys.input_refs[i];
@@ -127,7 +131,7 @@ bool is_closed(const Workspace<T>& ws, int c) {
 /// docs/theory/events.md, rule 9
 template <class T>
 T usable_capacity(const Workspace<T>& ws, int c, int direction) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   if (ws.contact.compliant[c] || ws.contact.fault[c] == cannot_unlock || value(load_of(ws, c)) > 0)
     return capacity_of(ws, c, direction);
   const T rising = larger(load_slope(ws, c), T(0)) * T(1e-9);

@@ -16,8 +16,8 @@ struct CamProfile : declared::CamProfile {
 
   template <class T, class S>
   static S ratio(const Params<T>& p, const At<S>& at) {
-    const Real<S>* x = at.points + 3 * (int(common(p.lift.first)) + at.piece);
-    const Real<S>* bend = at.points + 3 * (int(common(p.curvature.first)) + at.piece);
+    const Point<S>* x = at.points + 3 * (int(common(p.lift.first)) + at.piece);
+    const Point<S>* bend = at.points + 3 * (int(common(p.curvature.first)) + at.piece);
     const Real<S> width = x[3] - x[0], start = x[2] - width * (2 * bend[0] + bend[3]) / 6;
     const S u = at.state[angle] - S(x[0]);
     return S(start) + u * (S(bend[0]) + u * S((bend[3] - bend[0]) / (2 * width)));
@@ -30,7 +30,7 @@ struct CamProfile : declared::CamProfile {
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
     LeastGuard<S> guards;
-    const Real<S>* x = at.points + 3 * (int(common(p.lift.first)) + at.piece);
+    const Point<S>* x = at.points + 3 * (int(common(p.lift.first)) + at.piece);
     const S scale = S(curve_width(p.lift, at.points));
     guards.watch((S(x[3]) - at.state[angle]) / scale, next), guards.watch((at.state[angle] - S(x[0])) / scale, last);
     who = guards.who;

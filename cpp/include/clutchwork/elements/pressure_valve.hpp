@@ -14,7 +14,7 @@ struct PressureValve : declared::PressureValve {
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     const int n = int(common(p.pressure.count)), piece = at.piece < n ? at.piece : n;
-    const Real<S>* points = at.points + 3 * int(common(p.pressure.first));
+    const Point<S>* points = at.points + 3 * int(common(p.pressure.first));
     S wanted = S(points[piece == 0 ? 1 : 3 * n - 2]);
     if (piece > 0 && piece < n) wanted = curve_value(p.pressure, at.points, S(at.input[Input::current]), piece - 1);
     rates[pressure] = (wanted - at.state[pressure]) / p.lag;
@@ -24,7 +24,7 @@ struct PressureValve : declared::PressureValve {
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
     const int n = int(common(p.pressure.count)), piece = at.piece < n ? at.piece : n;
-    const Real<S>* points = at.points + 3 * int(common(p.pressure.first));
+    const Point<S>* points = at.points + 3 * int(common(p.pressure.first));
     const S current = at.input[Input::current];
     const S down = piece > 0 ? current - S(points[3 * (piece - 1)]) : S(1e300);
     const S up = piece < n ? S(points[3 * piece]) - current : S(1e300);

@@ -21,7 +21,7 @@ struct Road : declared::Road {
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
     const int n = int(common(p.elevation.count)), piece = at.piece < n ? at.piece : n;
-    const Real<S>* x = at.points + 3 * int(common(p.elevation.first));
+    const Point<S>* x = at.points + 3 * int(common(p.elevation.first));
     const S back = piece > 0 ? at.state[position] - S(x[3 * (piece - 1)]) : S(1e300);
     const S on = piece < n ? S(x[3 * piece]) - at.state[position] : S(1e300);
     who = value(on) < value(back) ? forward : backward;
@@ -30,7 +30,7 @@ struct Road : declared::Road {
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
     const int n = int(common(p.elevation.count));
-    const Real<T>* points = at.points + 3 * int(common(p.elevation.first));
+    const Point<T>* points = at.points + 3 * int(common(p.elevation.first));
     auto x = [&](int i) { return points[3 * i]; };
     int piece = at.piece < n ? at.piece : n;
     // the point itself, so that round-off does not lead back over it

@@ -20,7 +20,7 @@ void pack(Workspace<T>& ws, int d, int sign, int& block) {
 /// Behind them, without torque, the open contacts: only their rates are followed.
 template <class T>
 void pack_branches(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int ne = int(sys.elements), nc = int(sys.contacts);
   ws.n_rates = 0;
   int block = 0;

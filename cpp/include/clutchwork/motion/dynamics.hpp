@@ -105,7 +105,7 @@ CLUTCHWORK_INLINE void inputs_of(Form& form, Real<T> t, const T* y) {
 /// mobility.
 template <class T>
 void sparse_multipliers(const Workspace<T>& ws, const T* torque, int np, T* out) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int m = ws.held.n_fixed, nv = int(sys.speeds), ne = int(sys.elements);
   T *q = ws.held.motion, *b = ws.held.rhs;
   for (int i = 0; i < nv; ++i) q[i] = T(0);
@@ -126,7 +126,7 @@ void sparse_multipliers(const Workspace<T>& ws, const T* torque, int np, T* out)
 /// Torques of the locked contacts for given branch torques; `moving`: with the prescribed accelerations.
 template <class T>
 CLUTCHWORK_INLINE void multipliers(const Workspace<T>& ws, const T* torque, bool moving, T* out) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int m = ws.held.n, nb = ws.n_branches, np = moving ? int(sys.prescribed) : 0;
   if (ws.held.mapped) {
     for (int a = 0; a < m; ++a) {

@@ -74,7 +74,7 @@ struct FullForm : SparseForm<T> {
 template <class T, class S>
 void whole_inputs(const FullForm<T>& form, const Whole<S>& e) {
   const Workspace<T>& ws = form.ws;
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const S* shared = e.y + form.n() - sys.shared;
   for (int k = 0; k < ws.in.n_shared_refs; ++k) {
     const int ref = ws.in.shared_ref[k], j = sys.input_refs[ref] - int(sys.inputs);
@@ -213,7 +213,7 @@ void whole_heats(const FullForm<T>& form, const Whole<S>& e) {
 /// A flow and a process at their inputs.
 template <class T, class S>
 S whole_flow(const FullForm<T>& form, const Whole<S>& e, int f) {
-  const System& sys = form.ws.sys;
+  const auto& sys = form.ws.sys;
   return visit_flow(sys.flow_kind[f], [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(form.ws.params + sys.flow_param[f]);
@@ -222,7 +222,7 @@ S whole_flow(const FullForm<T>& form, const Whole<S>& e, int f) {
 }
 template <class T, class S>
 void whole_process(const FullForm<T>& form, const Whole<S>& e, int i) {
-  const System& sys = form.ws.sys;
+  const auto& sys = form.ws.sys;
   const S* state = e.y + form.nz() + sys.process_state[i];
   visit_process(sys.process_kind[i], [&](auto tag) {
     using E = typename decltype(tag)::type;
@@ -236,7 +236,7 @@ void whole_process(const FullForm<T>& form, const Whole<S>& e, int i) {
 template <class T, class S>
 void whole_shared(const FullForm<T>& form, const Whole<S>& e) {
   const Workspace<T>& ws = form.ws;
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   whole_heats(form, e);
   for (int i = 0; i < ws.in.n_direction_refs; ++i) {
     const int ref = ws.in.direction_ref[i];

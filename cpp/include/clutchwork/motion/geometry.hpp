@@ -10,19 +10,19 @@ namespace clutchwork {
 /// Factor of the mass matrix; massless speeds count as one. False when it is not positive definite.
 template <class T>
 bool factor_mass(Workspace<T>& ws, const Sizes& room) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nv = int(sys.speeds);
   Envelope& e = ws.geometry.inertia;
   T* factor = ws.geometry.factor;
   for (int i = 0; i < nv; ++i) {
-    const MatrixRow row = mass_row(sys, i);
+    const auto row = mass_row(sys, i);
     e.low[i] = row.n > 0 ? smaller(row.column[0], i) : i;
   }
   const std::int64_t size = room.few ? e.lay_whole(nv) : e.lay(nv);
   if (size > room.factor) return false;
   for (std::int64_t k = 0; k < size; ++k) factor[k] = T(0);
   for (int i = 0; i < nv; ++i) {
-    const MatrixRow row = mass_row(sys, i);
+    const auto row = mass_row(sys, i);
     for (int k = 0; k < row.n && row.column[k] <= i; ++k) factor[e.sky[i] + row.column[k]] = T(row.value[k]);
     factor[e.sky[i] + i] += T(sys.massless[i] ? 1.0 : 0.0);
   }
@@ -32,7 +32,7 @@ bool factor_mass(Workspace<T>& ws, const Sizes& room) {
 /// The mass-weighted directions L^-1 D' without their zeros, and the mobility of each. False: there is no room.
 template <class T>
 bool weigh_directions(Workspace<T>& ws, const Sizes& room) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nv = int(sys.speeds);
   const Envelope& e = ws.geometry.inertia;
   const T* factor = ws.geometry.factor;
@@ -45,7 +45,7 @@ bool weigh_directions(Workspace<T>& ws, const Sizes& room) {
   for (int d = 0; d < ws.n_directions; ++d) {
     white.first[d] = at;
     T square = T(0);
-    const MatrixRow row = rate_row(sys, d);
+    const auto row = rate_row(sys, d);
     for (int k = 0; k < row.n; ++k) x[row.column[k]] = T(row.value[k]);
     const int first = row.n > 0 ? row.column[0] : nv, end = row.n > 0 ? row.column[row.n - 1] : -1;
     for (int i = first, last = -1; i < nv && (i <= end || rest[i] <= last); ++i) {
@@ -133,7 +133,7 @@ bool weigh_contacts(Workspace<T>& ws, const Sizes& room) {
 /// definite, or there is no room.
 template <class T>
 bool prepare_geometry(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const Sizes room(sys);
   const int nv = int(sys.speeds), np = int(sys.prescribed), nc = int(sys.contacts);
   if (!factor_mass(ws, room) || !weigh_directions(ws, room) || !weigh_contacts(ws, room)) return false;

@@ -13,7 +13,7 @@ namespace clutchwork {
 /// docs/theory/load-dependent.md (6)
 template <class T>
 void prepare_loads(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nv = int(sys.speeds), np = int(sys.prescribed), ne = int(sys.elements), nc = int(sys.contacts);
   for (int c = 0; c < nc; ++c) ws.loads.of[c] = -1;
   T* momentum = ws.geometry.column;
@@ -22,17 +22,17 @@ void prepare_loads(Workspace<T>& ws) {
     for (int i = 0; i < nv; ++i) momentum[i] = T(0);
     for (int p = 0; p < np; ++p) ws.loads.by_slope[l * np + p] = T(0);
     for (int n = 0; n < sys.nodes; ++n) {
-      const double share = sys.load_motion[l * sys.nodes + n] * sys.inertia[n];
-      if (share == 0) continue;
-      const MatrixRow row = basis_row(sys, n);
+      const Given<T> share = sys.load_motion[l * sys.nodes + n] * sys.inertia[n];
+      if (is_zero(share)) continue;
+      const auto row = basis_row(sys, n);
       for (int e = 0; e < row.n; ++e) momentum[row.column[e]] += T(share * row.value[e]);
       for (int p = 0; p < np; ++p) ws.loads.by_slope[l * np + p] += T(share * sys.basis_prescribed[n * np + p]);
     }
     forward_solve(nv, ws.geometry.inertia, ws.geometry.factor, momentum);
     for (int i = 0; i < nv; ++i) ws.loads.momentum[l * nv + i] = momentum[i];
     for (int d = 0; d < ws.n_directions; ++d) {
-      const double rate = d < ne ? sys.load_element_rate[l * ne + d] : sys.load_contact_rate[l * nc + d - ne];
-      ws.loads.by_torque[l * ws.n_directions + d] = ws.geometry.white.times(d, momentum) - T(rate);
+      const T rate = T(d < ne ? sys.load_element_rate[l * ne + d] : sys.load_contact_rate[l * nc + d - ne]);
+      ws.loads.by_torque[l * ws.n_directions + d] = ws.geometry.white.times(d, momentum) - rate;
     }
     for (int p = 0; p < np; ++p)
       ws.loads.by_slope[l * np + p] -= dot(nv, momentum, ws.geometry.prescribed_momentum + p * nv);
@@ -43,7 +43,7 @@ void prepare_loads(Workspace<T>& ws) {
 /// docs/theory/load-dependent.md (7)
 template <class T>
 void map_loads(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nd = ws.n_directions, np = int(sys.prescribed), ne = int(sys.elements), nv = int(sys.speeds),
             m = ws.held.n_fixed;
   const Compressed<T>& white = ws.geometry.white;

@@ -75,7 +75,7 @@ void over_time(T x, T slope, int time, Dual<T, N>& out) {
 /// Time derivative of a reference, over the scalar of a point.
 template <class T, class S>
 S slope_of_reference(const Workspace<T>& ws, const Whole<S>& e, int n, int ref) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int j = ws.in.ref_signal[ref] - int(sys.inputs);
   S out;
   if (j < 0) {

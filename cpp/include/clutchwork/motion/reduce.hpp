@@ -72,7 +72,7 @@ void far_free_part(Workspace<T>& ws, const T* momentum, T* x) {
 /// Y: what prescribed speeds do to v inside the mode, momentum along Z untouched.
 template <class T>
 void map_prescribed(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nv = int(sys.speeds), np = int(sys.prescribed), ne = int(sys.elements), m = ws.held.n_fixed;
   for (int p = 0; p < np; ++p) {
     T* x = ws.reduced.column;
@@ -90,11 +90,11 @@ void map_prescribed(Workspace<T>& ws) {
 /// Rates of the branches in reduced coordinates: rate = row_z z + offset u.
 template <class T>
 void reduce_rates(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int np = int(sys.prescribed), nz = ws.reduced.nz;
   for (int k = 0; k < row_count(ws); ++k) {
     const int d = ws.branch[k].direction;
-    const MatrixRow row = rate_row(sys, d);
+    const auto row = rate_row(sys, d);
     for (int p = 0; p < np; ++p) {
       T s = prescribed_share(ws, d, p);
       for (int e = 0; e < row.n; ++e) s += T(row.value[e]) * ws.reduced.y_basis[row.column[e] * np + p];
@@ -132,7 +132,7 @@ void reduce_dense(Workspace<T>& ws) {
 /// other.
 template <class T>
 bool reduce_to_few(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nv = int(sys.speeds), nz = ws.reduced.nz, np = int(sys.prescribed);
   const Compressed<T>& expansion = ws.rows.expansion;
   T mass[small_speeds * small_speeds] = {}, *momentum = ws.reduced.momentum;

@@ -24,7 +24,7 @@ CLUTCHWORK_INLINE T offset_slope(const Workspace<T>& ws, int k) {
 /// Values of the references to shared states; `state` are all states.
 template <class T>
 CLUTCHWORK_INLINE void shared_inputs(Workspace<T>& ws, const T* state) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   for (int k = 0; k < ws.in.n_shared_refs; ++k) {
     const int ref = ws.in.shared_ref[k], j = sys.input_refs[ref] - int(sys.inputs);
     ws.in.u[ref] = T(sys.shared_offset[j]) + T(sys.shared_scale[j]) * state[sys.states - sys.shared + j];
@@ -43,7 +43,7 @@ CLUTCHWORK_INLINE void inputs_with(Workspace<T>& ws, Real<T> t, const T* state) 
 /// Where a reference to a rate or a heat points: its branch, -1 while that is locked; `heat` tells which.
 template <class T>
 int branch_behind(const Workspace<T>& ws, int ref, bool& heat) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   int d = sys.input_refs[ref] - int(sys.inputs + sys.shared);
   heat = d >= ws.n_directions;
   if (heat) d -= ws.n_directions;
@@ -85,7 +85,7 @@ CLUTCHWORK_INLINE At<S> process_at(const Workspace<T>& ws, int i, const S* own, 
 
 template <class T>
 T flow_value(const Workspace<T>& ws, int f) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   return visit_flow(sys.flow_kind[f], [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.flow_param[f]);
@@ -96,7 +96,7 @@ T flow_value(const Workspace<T>& ws, int f) {
 /// Rates of the shared states at given rates and torques of the branches; `state` and `d` are all states.
 template <class T>
 [[gnu::noinline]] void shared_rates(Workspace<T>& ws, const T* rate, const T* torque, const T* state, T* d) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   T* x = d + sys.states - sys.shared;
   for (int j = 0; j < sys.shared; ++j) x[j] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
@@ -130,7 +130,7 @@ template <class T>
 /// Torques of the branches by the shared states, through their inputs and those of their laws.
 template <class T>
 void torques_by_shared(Workspace<T>& ws, const T* rate, const T* state) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nx = int(sys.shared);
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
@@ -180,7 +180,7 @@ struct SharedRow {
   }
   /// factor times the input that stands at a reference.
   void add_input(int i, T factor, int ref) {
-    const System& sys = ws.sys;
+    const auto& sys = ws.sys;
     const int code = sys.input_refs[ref];
     if (value(factor) == 0) return;
     if (code < sys.inputs) {
@@ -222,7 +222,7 @@ void linearize_heats(Workspace<T>& ws, const T* rate, const T* state) {
 /// Derivatives of the flows between shared states.
 template <class T>
 void linearize_flow(Workspace<T>& ws, SharedRow<T>& row, int f) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   visit_flow(sys.flow_kind[f], [&](auto tag) {
     using E = typename decltype(tag)::type;
     using S = Dual<T, most_inputs>;
@@ -240,7 +240,7 @@ void linearize_flow(Workspace<T>& ws, SharedRow<T>& row, int f) {
 /// Derivatives of a process by its own states and its inputs; `state` are all states.
 template <class T>
 void linearize_process(Workspace<T>& ws, SharedRow<T>& row, int c, const T* state) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nx = int(sys.shared);
   visit_process(sys.process_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
@@ -261,7 +261,7 @@ void linearize_process(Workspace<T>& ws, SharedRow<T>& row, int c, const T* stat
 /// Rates of the shared states and all their derivatives, after the branches have been linearized.
 template <class T>
 [[gnu::noinline]] void linearize_shared(Workspace<T>& ws, const T* rate, const T* state, T* d, T* dt) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nx = int(sys.shared), ns = int(sys.states), nd = ws.n_directions;
   torques_by_shared(ws, rate, state);
   T* torque = ws.seen.torque;

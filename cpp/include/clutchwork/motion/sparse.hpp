@@ -15,7 +15,7 @@ int row_count(const Workspace<T>& ws) {
 /// Rates of the branches: rows.rate. False: there is no room.
 template <class T>
 bool compress_rates(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const std::int64_t room = is_few(sys) ? ws.n_directions * sys.speeds : sys.rate_room;
   const Compressed<T>& expansion = ws.rows.expansion;
   Compressed<T>& rate = ws.rows.rate;
@@ -23,7 +23,7 @@ bool compress_rates(Workspace<T>& ws) {
   bool fits = true;
   for (int k = 0; k < row_count(ws); ++k) {
     rate.first[k] = at;
-    const MatrixRow given = rate_row(sys, ws.branch[k].direction);
+    const auto given = rate_row(sys, ws.branch[k].direction);
     WorkRow<T> row(ws.reduced.row, ws.reduced.nz);
     for (int g = 0; g < given.n; ++g) {
       const int i = given.column[g];
@@ -42,10 +42,10 @@ bool compress_rates(Workspace<T>& ws) {
 /// Calls f(row, column, number) for the products whose sums are the lower half of the reduced mass N' M N.
 template <class T, class F>
 void each_mass(const Workspace<T>& ws, F&& f) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const Compressed<T>& n = ws.rows.expansion;
   for (int i = 0; i < sys.speeds; ++i) {
-    const MatrixRow row = mass_row(sys, i);
+    const auto row = mass_row(sys, i);
     for (int m = 0; m < row.n; ++m) {
       const int j = row.column[m];
       for (int a = n.first[i]; a < n.first[i + 1]; ++a) {
@@ -77,7 +77,7 @@ std::int64_t lay_envelope(Workspace<T>& ws) {
 /// Reduced mass, lower half: rows.mass. The envelope serves to add it up. False: there is no room.
 template <class T>
 bool compress_mass(Workspace<T>& ws, std::int64_t size) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nz = ws.reduced.nz;
   const std::int64_t room = is_few(sys) ? sys.speeds * (sys.speeds + 1) / 2 : sys.mass_room;
   const int *low = ws.rows.low, *sky = ws.rows.sky;
@@ -101,7 +101,7 @@ bool compress_mass(Workspace<T>& ws, std::int64_t size) {
 /// Right-hand side of M z = N' M (v - Y u), in reduced.y; the form solves it.
 template <class T>
 void reduce_momentum(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nv = int(sys.speeds), np = int(sys.prescribed);
   const Compressed<T>& expansion = ws.rows.expansion;
   T *speed = ws.reduced.momentum, *z = ws.reduced.y;
@@ -119,7 +119,7 @@ void reduce_momentum(Workspace<T>& ws) {
 /// Rates, mass and envelope of the present mode, whose speeds are expanded. False: there is no room.
 template <class T>
 bool reduce_sparse(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   if (!compress_rates(ws)) return false;
   const std::int64_t size = lay_envelope(ws),
                      room = is_few(sys) ? sys.speeds * (sys.speeds + 1) / 2 : sys.envelope_room;

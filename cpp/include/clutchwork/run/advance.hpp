@@ -28,7 +28,9 @@ Status run_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink)
   Status status = Status::no_mode;
   visit_method(ws.reduced.method, [&](auto tag) {
     using Integrator = typename decltype(tag)::type;
-    if constexpr (Form::own_states <= Integrator::most_small_states)
+    // derivatives are carried by one method, which is made for any motion
+    constexpr bool compiled = Form::own_states <= Integrator::most_small_states;
+    if constexpr (has_tangents<typename Form::Scalar> ? Integrator::stiff : compiled)
       status = Phase<Form, Integrator>(ws, t_end, sink).run();
   });
   return status;
@@ -39,7 +41,7 @@ template <class T, int NZ = 1, int NS = 0>
 Status dispatch(Workspace<T>& ws, double t_end, Sink& sink) {
   if (ws.sys.full[0] != 0) return run_phase<FullForm<T>>(ws, t_end, sink);
   if (ws.reduced.is_sparse) return run_phase<SparseForm<T>>(ws, t_end, sink);
-  if constexpr (NZ > small_speeds) {
+  if constexpr (NZ > small_speeds || has_tangents<T>) {
     return Status::no_mode;
   } else if constexpr (NS > small_states) {
     return dispatch<T, NZ + 1, 0>(ws, t_end, sink);
@@ -52,7 +54,7 @@ Status dispatch(Workspace<T>& ws, double t_end, Sink& sink) {
 /// Speeds, states, angles and work as they start.
 template <class T>
 void take_initial(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   for (int i = 0; i < sys.speeds; ++i) ws.v[i] = T(sys.initial_speed[i]);
   for (int i = 0; i < sys.states; ++i) ws.state[i] = T(sys.initial_state[i]);
   for (int i = 0; i < sys.nodes; ++i) ws.angle[i] = T(sys.initial_angle[i]);

@@ -58,6 +58,7 @@ bool is_soft(Workspace<T>& ws) {
 /// The method of the present phase: the one that is wanted, else the first of those that are made for such a motion.
 template <class T>
 Method choose_method(Workspace<T>& ws) {
+  if constexpr (has_tangents<T>) return first_method(true);
   const Method wanted = ws.options.method;
   // speeds without inertia are algebraic: only a method for stiff motion carries them
   if (has_massless(ws)) return is_for_stiff(wanted) ? wanted : first_method(true);
@@ -69,7 +70,7 @@ Method choose_method(Workspace<T>& ws) {
 /// Contacts without load forget: the bristles of their laws are straight when they close again.
 template <class T>
 void relax_open(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   for (int c = 0; c < sys.contacts; ++c) {
     if (!ws.contact.compliant[c] || ws.contact.pressed[c]) continue;
     const int n = states_of(sys.contact_kind[c], sys.contact_law[c], ws.params + sys.contact_law_param[c]);
@@ -128,7 +129,7 @@ void list_locked_now(Workspace<T>& ws) {
 /// them apart.
 template <class T>
 bool enter_mode(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   relax_open(ws);
   list_locked_now(ws);
   pack_branches(ws);
@@ -138,7 +139,7 @@ bool enter_mode(Workspace<T>& ws) {
   turn_jumped(ws);
   if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);
-  ws.reduced.is_sparse = sys.full[0] != 0 || sys.states > most_small_states(ws.reduced.method) || sys.shared > 0 ||
+  ws.reduced.is_sparse = has_tangents<T> || sys.full[0] != 0 || sys.states > most_small_states(ws.reduced.method) || sys.shared > 0 ||
                          !is_small_size(ws.reduced.nz, sys.states) || has_massless(ws);
   if (!factor_mobility(ws) || !reduce_motion(ws)) return false;
   list_lines(ws);

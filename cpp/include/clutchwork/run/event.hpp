@@ -19,6 +19,7 @@ void record(Workspace<T>& ws, const Event& e) {
       e.acceleration, e.torque_before,   e.torque_after, e.energy_before, e.energy_after};
   double* to = ws.events.at + event_size * ws.events.n++;
   for (int i = 0; i < event_size; ++i) to[i] = values[i];
+  if constexpr (has_tangents<T>) ws.moved.event[ws.events.n - 1] = ws.moved.shift;
   ++ws.statistics.events;
 }
 

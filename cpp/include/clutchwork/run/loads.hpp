@@ -14,7 +14,7 @@ namespace clutchwork {
 /// are at the corners. False: a range is missing or infinite.
 template <class T, class Range, class F>
 bool visit_corners(const Workspace<T>& ws, int c, Range&& range, F&& f) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   return visit_contact(sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     double low[E::inputs > 0 ? E::inputs : 1], high[E::inputs > 0 ? E::inputs : 1];
@@ -74,7 +74,7 @@ void fail(Workspace<T>& ws, int c) {
 /// Flags that follow from the signals: which contacts are closed, which loads vary, which fail.
 template <class T>
 bool refresh_loads(Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   bool changed = false;
   ws.guard.n_loads = ws.guard.n_faulty = 0;
   for (int c = 0; c < sys.contacts; ++c) {

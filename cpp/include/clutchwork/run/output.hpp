@@ -16,6 +16,7 @@ namespace clutchwork {
 struct Sink {
   double* times = nullptr;
   double* rows = nullptr;
+  double* tangents = nullptr;    ///< derivatives of each number of the rows, of a run that has them
   std::int64_t count = 0;        ///< rows that fit
   std::int64_t at = 0;           ///< rows filled
   std::int64_t steps = 0;        ///< rows in every step, the last at its end; 0: a grid
@@ -32,20 +33,27 @@ struct Sink {
   }
 };
 
+/// A number as a row shows it: plain, or with its derivatives.
+template <class R, class T>
+CLUTCHWORK_INLINE R shown(const T& x) {
+  if constexpr (std::is_same_v<R, T>) return x;
+  else return value(x);
+}
+
 /// Integral of prescribed speed p from t over h.
 template <class T>
 T prescribed_angle(const Workspace<T>& ws, int p, double t, double h) {
-  const Signal& signal = ws.in.signal[ws.sys.prescribed_input[p]];
+  const auto& signal = ws.in.signal[ws.sys.prescribed_input[p]];
   if (!signal.varying) return T(signal_value(ws, ws.sys.prescribed_input[p], t) * h);
-  const double s = t - signal.start;
-  return T(segment_integral(signal.coef, s + h) - segment_integral(signal.coef, s));
+  const Given<T> s = since_start(ws, signal, t);
+  return T(segment_integral(signal.coef, s + Given<T>(h)) - segment_integral(signal.coef, s));
 }
 
 /// Angles of all nodes at s, from those at the start of the step.
 template <class Form, class T = typename Form::Scalar>
 void angles_at(Form& form, Step<Form>& step, double s, T* angle) {
   Workspace<T>& ws = form.ws;
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nv = int(sys.speeds), np = int(sys.prescribed), nz = form.nz();
   T *z = step.point(), *v = ws.out.turned;
   for (int i = 0; i < nz; ++i) z[i] = interpolant_integral<Form>(step, i, s);
@@ -57,7 +65,7 @@ void angles_at(Form& form, Step<Form>& step, double s, T* angle) {
   }
   for (int n = 0; n < sys.nodes; ++n) {
     T a = ws.angle[n];
-    const MatrixRow row = basis_row(sys, n);
+    const auto row = basis_row(sys, n);
     for (int e = 0; e < row.n; ++e) a += T(row.value[e]) * v[row.column[e]];
     for (int p = 0; p < np; ++p) a += T(sys.basis_prescribed[n * np + p]) * given[p];
     angle[n] = a;
@@ -77,7 +85,7 @@ int mode_shown(const Workspace<T>& ws, const Snapshot<T>& shot, int c) {
 template <class T>
 bool is_finite(Workspace<T>& ws, const double* row) {
   const double* speed = row + ws.row.speed;
-  auto energy_of = [&](std::int64_t n) { return ws.sys.inertia[n] * speed[n] * speed[n]; };
+  auto energy_of = [&](std::int64_t n) { return value(ws.sys.inertia[n]) * speed[n] * speed[n]; };
   double sum = 0, energy = 0;
   for (std::int64_t i = 0; i < ws.row.size; ++i) sum += row[i] * 0;
   for (std::int64_t n = 0; n < ws.sys.nodes; ++n) energy += energy_of(n);
@@ -96,89 +104,104 @@ bool is_finite(Workspace<T>& ws, const double* row) {
 }
 
 /// Angles, speeds and accelerations of the nodes. docs/theory/energy.md
-template <class T>
-void fill_nodes(const Workspace<T>& ws, const Snapshot<T>& shot, double* row) {
-  const System& sys = ws.sys;
+template <class T, class R>
+void fill_nodes(const Workspace<T>& ws, const Snapshot<T>& shot, R* row) {
+  const auto& sys = ws.sys;
   const int np = int(sys.prescribed);
   for (int n = 0; n < sys.nodes; ++n) {
-    const MatrixRow share = basis_row(sys, n);
-    double w = value(share.times(shot.v)), a = value(share.times(shot.dv));
+    const auto share = basis_row(sys, n);
+    R w = shown<R>(share.times(shot.v)), a = shown<R>(share.times(shot.dv));
     for (int p = 0; p < np; ++p) {
-      w += sys.basis_prescribed[n * np + p] * value(ws.in.prescribed[p]);
-      a += sys.basis_prescribed[n * np + p] * value(ws.in.prescribed_slope[p]);
+      w += shown<R>(T(sys.basis_prescribed[n * np + p]) * ws.in.prescribed[p]);
+      a += shown<R>(T(sys.basis_prescribed[n * np + p]) * ws.in.prescribed_slope[p]);
     }
-    row[ws.row.angle + n] = value(ws.out.angle[n]);
+    row[ws.row.angle + n] = shown<R>(ws.out.angle[n]);
     row[ws.row.speed + n] = w;
     row[ws.row.acceleration + n] = a;
   }
 }
 
 /// Modes and static torques of the contacts.
-template <class T>
-void fill_contacts(const Workspace<T>& ws, const Snapshot<T>& shot, double* row) {
+template <class T, class R>
+void fill_contacts(const Workspace<T>& ws, const Snapshot<T>& shot, R* row) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int resisted = value(ws.out.torque[ws.sys.elements + c]) > 0 ? backward : forward;
     row[ws.row.contact_mode + c] = mode_shown(ws, shot, c);
-    row[ws.row.contact_capacity + c] = value(static_torque(ws, c, resisted));
+    row[ws.row.contact_capacity + c] = shown<R>(static_torque(ws, c, resisted));
   }
 }
 
 /// Torques of all directions, and work up to the share x of the fitted part of the step, of length h; x < 0: nothing is
 /// fitted.
-template <class T>
-void fill_work(const Workspace<T>& ws, double x, double h, double* row) {
+template <class T, class R>
+void fill_work(const Workspace<T>& ws, double x, double h, R* row) {
   const int ne = int(ws.sys.elements), nd = ws.n_directions;
   auto since = [&](int i) { return x < 0 ? T(0) : fitted_work(ws, i, x, h); };
   for (int d = 0; d < nd; ++d) {
     const std::int64_t k = d < ne ? ws.row.element_torque + d : ws.row.contact_torque + d - ne;
     const std::int64_t w = d < ne ? ws.row.element_work + d : ws.row.contact_work + d - ne;
-    row[k] = value(ws.out.torque[d]);
-    row[w] = value(ws.work[d] + since(d));
+    row[k] = shown<R>(ws.out.torque[d]);
+    row[w] = shown<R>(ws.work[d] + since(d));
   }
   for (int p = 0; p < ws.sys.prescribed; ++p) {
-    row[ws.row.prescribed_work + p] = value(ws.prescribed_work[p] + since(nd + p));
+    row[ws.row.prescribed_work + p] = shown<R>(ws.prescribed_work[p] + since(nd + p));
   }
   for (int i = 0; i < ws.sys.supplies; ++i) {
-    row[ws.row.supply_energy + i] = value(ws.supplied[i] + since(nd + int(ws.sys.prescribed) + i));
+    row[ws.row.supply_energy + i] = shown<R>(ws.supplied[i] + since(nd + int(ws.sys.prescribed) + i));
   }
   const int first = nd + int(ws.sys.prescribed + ws.sys.supplies);
-  for (int m = 0; m < ws.sys.meters; ++m) row[ws.row.meter_energy + m] = value(ws.metered[m] + since(first + m));
+  for (int m = 0; m < ws.sys.meters; ++m) row[ws.row.meter_energy + m] = shown<R>(ws.metered[m] + since(first + m));
 }
 
-/// One row of output at s; work is fitted over the part of the step up to s_end. False: a number is not finite.
-template <class Form, class T = typename Form::Scalar>
-bool fill_row(Form& form, Step<Form>& step, double s, double s_end, double* row) {
+/// The numbers of one row of output at s.
+template <class Form, class R, class T = typename Form::Scalar>
+void fill_numbers(Form& form, Step<Form>& step, double s, double s_end, R* row) {
   Workspace<T>& ws = form.ws;
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   for (int n = 0; n < sys.nodes; ++n) ws.out.angle[n] = ws.angle[n];
   if (ws.options.angles && s > 0) angles_at(form, step, s, ws.out.angle);
   const Snapshot<T> shot = take_snapshot(form, step, s);
   fill_nodes(ws, shot, row);
-  for (int i = 0; i < sys.states; ++i) row[ws.row.state + i] = value(shot.y[form.nz() + i]);
+  for (int i = 0; i < sys.states; ++i) row[ws.row.state + i] = shown<R>(shot.y[form.nz() + i]);
   const bool fitted = ws.options.work && s > 0;
   fill_work(ws, fitted ? s / s_end : -1.0, s_end * step.h, row);
   for (int i = 0; i < sys.supplies; ++i) {
-    row[ws.row.supply_power + i] = value(supply_power(ws, i, shot.y + form.nz()));
+    row[ws.row.supply_power + i] = shown<R>(supply_power(ws, i, shot.y + form.nz()));
   }
   fill_contacts(ws, shot, row);
   if (sys.flows > 0) {
     shared_rates(ws, shot.rate, ws.seen.torque, shot.y + form.nz(), shot.d + form.nz());
-    for (int f = 0; f < sys.flows; ++f) row[ws.row.flow + f] = value(flow_value(ws, f));
+    for (int f = 0; f < sys.flows; ++f) row[ws.row.flow + f] = shown<R>(flow_value(ws, f));
   }
-  for (int i = 0; i < sys.inputs; ++i) row[ws.row.input + i] = signal_value(ws, i, step.t + s * step.h);
-  return is_finite(ws, row);
+  for (int i = 0; i < sys.inputs; ++i) row[ws.row.input + i] = shown<R>(T(signal_value(ws, i, step.t + s * step.h)));
+}
+
+/// One row of output at s; work is fitted over the part of the step up to s_end. False: a number is not finite.
+template <class Form, class T = typename Form::Scalar>
+bool fill_row(Form& form, Step<Form>& step, double s, double s_end, Sink& sink) {
+  const std::int64_t size = form.ws.row.size;
+  double* row = sink.rows + size * sink.at;
+  if constexpr (has_tangents<T>) {
+    T* full = form.ws.moved.row;
+    fill_numbers(form, step, s, s_end, full);
+    double* kept = sink.tangents + size * sink.at * T::kept;
+    for (std::int64_t i = 0; i < size; ++i) row[i] = value(full[i]), keep(full[i], kept + i * T::kept);
+  } else {
+    fill_numbers(form, step, s, s_end, row);
+  }
+  return is_finite(form.ws, row);
 }
 
 /// Rows that divide the step up to s_end into equal parts, the last one at its end. `running`: all is well.
 template <class Form>
 Status emit_parts(Form& form, Step<Form>& step, double s_end, double end, Sink& sink) {
-  const std::int64_t size = form.ws.row.size, parts = s_end > 0 ? sink.steps : 1;
+  const std::int64_t parts = s_end > 0 ? sink.steps : 1;
   for (std::int64_t k = 1; k <= parts; ++k) {
     const double t = k == parts ? end : step.t + s_end * double(k) / double(parts) * step.h;
     // as a grid with this instant has it, but for the bare steps
     const double s = parts == 1 ? s_end : smaller(s_end, (t - step.t) / step.h);
     sink.times[sink.at] = t;
-    if (!fill_row(form, step, s, s_end, sink.rows + size * sink.at)) return Status::not_finite;
+    if (!fill_row(form, step, s, s_end, sink)) return Status::not_finite;
     ++sink.at;
   }
   return Status::running;
@@ -189,11 +212,10 @@ Status emit_parts(Form& form, Step<Form>& step, double s_end, double end, Sink& 
 template <class Form>
 Status emit(Form& form, Step<Form>& step, double s_end, double end, Sink& sink) {
   if (sink.steps > 0) return emit_parts(form, step, s_end, end, sink);
-  const std::int64_t size = form.ws.row.size;
   while (sink.at < sink.count && sink.times[sink.at] <= end) {
     const double t = sink.times[sink.at];
     const double s = step.h > 0 ? smaller(s_end, larger(0.0, (t - step.t) / step.h)) : 0;
-    if (!fill_row(form, step, s, s_end, sink.rows + size * sink.at)) return Status::not_finite;
+    if (!fill_row(form, step, s, s_end, sink)) return Status::not_finite;
     ++sink.at;
     if (t == end) break;
     if (form.ws.poll.stops()) return Status::interrupted;
@@ -220,9 +242,8 @@ Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
   rest_step(form, step);
   if (sink.steps == 0) {
     // a grid row here is the right limit of an event; further equal times wait for the end of the step
-    const std::int64_t size = form.ws.row.size;
     while (sink.at < sink.count && sink.times[sink.at] <= form.ws.time) {
-      if (!fill_row(form, step, 0.0, 0.0, sink.rows + size * sink.at)) return Status::not_finite;
+      if (!fill_row(form, step, 0.0, 0.0, sink)) return Status::not_finite;
       ++sink.at;
     }
     return Status::running;

@@ -10,6 +10,7 @@
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/moving.hpp>
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/pace.hpp>
 #include <clutchwork/run/pass.hpp>
@@ -94,6 +95,9 @@ class Phase : public Pace<typename Form::Scalar> {
       if (fresh) keep_ties(form_, step_, ws_.time, step_.y0());
     }
     if constexpr (!Form::small) balance_massless(form_, step_);
+    if constexpr (has_tangents<T>) {
+      if (event && leave_event(form_, step_)) balance_massless(form_, step_);
+    }
     ws_.fresh_phase = ws_.stiffened = false;
     // at a knot the row is the right limit, which comes after it
     const Status shown = ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, event) : Status::running;
@@ -106,6 +110,12 @@ class Phase : public Pace<typename Form::Scalar> {
 
  private:
   CLUTCHWORK_INLINE void look_here() { look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here); }
+
+  /// The same where the phase goes on behind an event.
+  CLUTCHWORK_INLINE void look_on() {
+    if constexpr (has_tangents<T>) leave_event(form_, step_);
+    look_here();
+  }
 
   /// The modes must be decided anew.
   void hand_over(Cause cause, int contact = -1) {
@@ -130,11 +140,15 @@ class Phase : public Pace<typename Form::Scalar> {
   }
 
   void meet_knot() {
+    if constexpr (has_tangents<T>) move_with(form_, step_, knot_shift(ws_));
     rest_step(form_, step_);
     export_state(form_, step_.y0());
     note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
-    if (pass_knot(form_, step_)) hand_over(Cause::input);
+    if (pass_knot(form_, step_)) return hand_over(Cause::input);
+    if constexpr (has_tangents<T>) {
+      if (leave_event(form_, step_)) look_here();
+    }
   }
 
   // ------------------------------------------------------------------------------------------------------------- step
@@ -251,7 +265,9 @@ class Phase : public Pace<typename Form::Scalar> {
     ws_.time = smaller(ws_.time + hit.s * reach_, stop_);
     forget_forced(ws_);
     if (hit.what == Hit::set) force_set(hit);
+    if constexpr (has_tangents<T>) interpolate_slope(form_, step_, hit.s, step_.k(2));
     for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = step_.u()[i];
+    if constexpr (has_tangents<T>) move_to_hit(form_, step_, hit);
     if (hit.what == Hit::gap) land_on_end(form_, step_, hit);
     ws_.in.time = -infinity;
     if constexpr (Form::full) keep_ties(form_, step_, ws_.time, step_.y0());
@@ -280,7 +296,7 @@ class Phase : public Pace<typename Form::Scalar> {
       return false;
     }
     if (!law) pass_line(form_, *guard);
-    look_here();
+    look_on();
     if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(form_, hit.index));
     h_ = ws_.last_step;
     return true;
@@ -294,7 +310,7 @@ class Phase : public Pace<typename Form::Scalar> {
       return false;
     }
     if (moved) return false;
-    look_here();
+    look_on();
     h_ = ws_.last_step;
     return true;
   }
@@ -313,7 +329,7 @@ class Phase : public Pace<typename Form::Scalar> {
       hand_over(Cause::jam, c);
       return true;
     }
-    look_here();
+    look_on();
     // no restart follows that would shorten it
     h_ = ws_.last_step = smaller(ws_.last_step, larger(h_, reach_));
     return true;

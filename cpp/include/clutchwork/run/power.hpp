@@ -44,7 +44,7 @@ T supply_power(const Workspace<T>& ws, int i, const T* state) {
 /// Power through a metered line: what it puts on its node, times the speed of that.
 template <class T>
 T metered_power(const Workspace<T>& ws, const Snapshot<T>& shot, int m) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const T torque = meter_sum<T>(
       sys, m, [&](int n) { return node_value(sys, n, shot.dv, ws.in.prescribed_slope); },
       [&](int d) { return ws.out.torque[d]; });

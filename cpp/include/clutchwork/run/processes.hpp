@@ -11,7 +11,7 @@ namespace clutchwork {
 template <class T, class Rate>
 void place_process_inputs(const Workspace<T>& ws, int c, double t, const T* state, const T* rates, Rate&& rate, int n,
                           Dual<T, 1>* out) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   for (int i = 0; i < n; ++i) {
     const int ref = int(sys.process_input[c]) + i, code = sys.input_refs[ref], j = code - int(sys.inputs);
     T x = T(0), slope = T(0);
@@ -34,7 +34,7 @@ void place_process_inputs(const Workspace<T>& ws, int c, double t, const T* stat
 template <class T, class Rate>
 Dual<T, 1> process_margin(const Workspace<T>& ws, int c, double t, const T* state, const T* rates, Rate&& rate,
                           int& who) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   return visit_process(sys.process_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     using S = Dual<T, 1>;
@@ -53,7 +53,7 @@ Dual<T, 1> process_margin(const Workspace<T>& ws, int c, double t, const T* stat
 /// Take process c to its next piece at the present inputs; true when it moves its states.
 template <class T>
 bool process_cross(Workspace<T>& ws, int c, int who, T* state) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   return visit_process(sys.process_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     bool moved = false;

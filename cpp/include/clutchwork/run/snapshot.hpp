@@ -13,13 +13,13 @@ namespace clutchwork {
 /// Kinetic energy [J].
 template <class T>
 double kinetic_energy(const Workspace<T>& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   double e = 0;
   for (int n = 0; n < sys.nodes; ++n) {
     double w = value(basis_row(sys, n).times(ws.v));
     for (int p = 0; p < sys.prescribed; ++p)
-      w += sys.basis_prescribed[n * sys.prescribed + p] * value(ws.in.prescribed[p]);
-    e += 0.5 * sys.inertia[n] * w * w;
+      w += value(sys.basis_prescribed[n * sys.prescribed + p]) * value(ws.in.prescribed[p]);
+    e += 0.5 * value(sys.inertia[n]) * w * w;
   }
   return e;
 }
@@ -34,7 +34,7 @@ struct Snapshot {
 template <class Form, class T = typename Form::Scalar>
 Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
   Workspace<T>& ws = form.ws;
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
   const double t = step.t + s * step.h;
   Snapshot<T> shot{step.point(), step.slope(), ws.seen.rate, ws.out.v, ws.out.dv};
@@ -70,7 +70,7 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
 /// Torque of the source behind prescribed speed p.
 template <class T>
 T source_torque(const Workspace<T>& ws, const Snapshot<T>& shot, int p) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const int np = int(sys.prescribed), nv = int(sys.speeds);
   T torque = T(0);
   for (int i = 0; i < nv; ++i) torque += T(sys.mass_prescribed[i * np + p]) * shot.dv[i];

@@ -124,8 +124,8 @@ template <class T>
 double signal_step(const Workspace<T>& ws) {
   double fastest = 0;
   for (int k = 0; k < ws.in.n_varying; ++k) {
-    const Signal& signal = ws.in.signal[ws.in.ref_signal[ws.in.varying[k]]];
-    if (!signal.linear) fastest = larger(fastest, segment_rate(signal.coef, ws.time - signal.start));
+    const auto& signal = ws.in.signal[ws.in.ref_signal[ws.in.varying[k]]];
+    if (!signal.linear) fastest = larger(fastest, segment_rate(signal.coef, ws.time - value(signal.start)));
   }
   if constexpr (!has_lanes<T>) {
     for (int i = 0; i < ws.guard.n_switching; ++i) {

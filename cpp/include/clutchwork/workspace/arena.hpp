@@ -9,7 +9,7 @@
 namespace clutchwork {
 
 /// Whether the matrices of a system are whole: it has few speeds, or directions that vary.
-inline bool is_few(const System& s) { return s.speeds <= few_speeds || s.transmissions > 0; }
+inline bool is_few(const SystemCounts& s) { return s.speeds <= few_speeds || s.transmissions > 0; }
 
 /// Numbers of things in a system, by which arrays are sized; for few speeds the matrices are whole.
 struct Sizes {
@@ -26,8 +26,10 @@ struct Sizes {
   std::int64_t rate, mass;  ///< over reduced speeds
   std::int64_t envelope;    ///< of the reduced motion
   std::int64_t blocks;      ///< of the own states
+  std::int64_t row;         ///< of output
 
-  explicit Sizes(const System& s)
+  template <class G>
+  explicit Sizes(const SystemOf<G>& s)
       : speeds(s.speeds),
         prescribed(s.prescribed),
         supplies(s.supplies),
@@ -53,6 +55,7 @@ struct Sizes {
     mobility = few ? nc * (nc + 1) / 2 : s.mobility_room;
     expansion = few ? nv * nv : s.expansion_room, rate = few ? directions * nv : s.rate_room;
     envelope = few ? nv * (nv + 1) / 2 : s.envelope_room, mass = few ? envelope : s.mass_room;
+    row = RowLayout(s).size;
     blocks = states <= 8 ? states * states : states * most_own_states;
   }
 };

@@ -5,22 +5,25 @@
 /// Signals and the components that read them.
 namespace clutchwork {
 
-/// Cursor of one signal.
-struct Signal {
+/// Cursor of one signal, over a number of the model.
+template <class G>
+struct SignalOf {
   std::int64_t segment = 0;
-  double start = 0;  ///< [s] start of the present segment
-  double knot = 0;   ///< [s] start of the next one
-  const double* coef = nullptr;
-  double held = 0;  ///< value of a signal that is set from outside
+  G start = G(0);  ///< [s] start of the present segment
+  G knot = G(0);   ///< [s] start of the next one
+  const G* coef = nullptr;
+  G held = G(0);  ///< value of a signal that is set from outside
   bool varying = false, linear = true, idle = false;
   bool given = false;  ///< it was set from outside, and follows its segments no more
 };
+
+using Signal = SignalOf<double>;
 
 /// What components read, through references to signals, shared states, rates and heats; the prescribed speeds come
 /// last.
 template <class T>
 struct Signals {
-  Signal* signal = nullptr;
+  SignalOf<Given<T>>* signal = nullptr;
   int n_refs = 0, n_varying = 0;
   int *ref_signal = nullptr, *varying = nullptr;
   T *u = nullptr, *du = nullptr;  ///< value of each reference; its time derivative where it is a signal or a rate

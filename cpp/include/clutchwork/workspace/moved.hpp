@@ -1,0 +1,47 @@
+#pragma once
+#include <clutchwork/workspace/arena.hpp>
+#include <clutchwork/workspace/run.hpp>
+#include <clutchwork/workspace/settings.hpp>
+
+/// How the instants of events move with the numbers of the model: docs/theory/gradients.md
+namespace clutchwork {
+
+/// A guard that was hit: how fast it passed zero, over its own size. docs/theory/gradients.md (6)
+struct Graze {
+  double time;      ///< [s]
+  double what;      ///< Hit::What, -1: knots of signals
+  double component; ///< elements, then contacts; -1: none
+  double index;     ///< [1/s] size of its time derivative over its scale
+  double together;  ///< [s] largest difference of the derivatives of two events at this instant, 0: there are none
+};
+
+inline constexpr int graze_size = 5;
+
+/// Of a run with derivatives.
+template <class T>
+struct Moved {
+  static constexpr int room = 512;  ///< for grazes
+  T shift = T(0);                   ///< [s] derivatives of the present instant while an event is settled
+  T last = T(0);                    ///< those of the event before
+  double last_time = -infinity;     ///< [s] of the event before
+  T* event = nullptr;               ///< of each event in the buffer
+  Graze* graze = nullptr;
+  T* row = nullptr;  ///< one row of output
+  int n = 0;
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& s) {
+    a.scratch(p.row, s.row);
+    a.scratch(p.event, EventBuffer::room + 2 * s.contacts), a.scratch(p.graze, room);
+  }
+};
+
+/// Plain numbers have none.
+template <class T>
+  requires(!has_tangents<T>)
+struct Moved<T> {
+  template <class P, class A>
+  static void lay_out(P&, A&, const Sizes&) {}
+};
+
+}  // namespace clutchwork
