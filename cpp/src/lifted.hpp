@@ -1,6 +1,6 @@
 #pragma once
-#include <cstring>
 #include <clutchwork/run/advance.hpp>
+#include <cstring>
 
 /// A run over numbers with derivatives: the numbers of its model in such a form. docs/theory/gradients.md
 namespace clutchwork {

@@ -42,7 +42,8 @@ extern "C" {
 
 std::int64_t cw_tangents_size(const void* system, std::int64_t bytes) {
   cw_tangents run{};
-  if (system == nullptr || bind(run.plain, static_cast<const unsigned char*>(system), bytes) < 0 || !in_range(run.plain))
+  if (system == nullptr || bind(run.plain, static_cast<const unsigned char*>(system), bytes) < 0 ||
+      !in_range(run.plain))
     return -1;
   return head + lay_out_run(run, nullptr) + 64;
 }
@@ -95,7 +96,8 @@ std::int64_t cw_tangents_events(cw_tangents* run, double* events, double* tangen
   const std::int64_t n = smaller<std::int64_t>(ws.events.n, most);
   for (std::int64_t i = 0; i < n * event_size; ++i) events[i] = ws.events.at[i];
   for (std::int64_t i = 0; i < n; ++i) keep(ws.moved.event[i], tangents + i * directions);
-  for (std::int64_t i = n * event_size; i < ws.events.n * event_size; ++i) ws.events.at[i - n * event_size] = ws.events.at[i];
+  for (std::int64_t i = n * event_size; i < ws.events.n * event_size; ++i)
+    ws.events.at[i - n * event_size] = ws.events.at[i];
   for (std::int64_t i = n; i < ws.events.n; ++i) ws.moved.event[i - n] = ws.moved.event[i];
   ws.events.n -= int(n);
   return n;

@@ -1,11 +1,11 @@
 #include <clutchwork/c_api.h>
-#include <clutchwork/layout.gen.hpp>
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+#include <clutchwork/layout.gen.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -117,11 +117,10 @@ nb::tuple tangents(const nb::bytes& system, const Words& words, const Seeds& see
   }
   if (!good) throw nb::value_error("the bytes are not a system of this core, or a word is not a number of its motion");
   const std::size_t e = found.events.size() / std::size_t(event_columns), g = found.grazes.size() / CW_GRAZE;
-  return nb::make_tuple(found.status, found.filled, array(std::move(found.rows), {k, r}),
-                        array(std::move(slopes), {k, r, n}),
-                        array(std::move(found.events), {e, std::size_t(event_columns)}),
-                        array(std::move(moved), {e, n}), array(std::move(found.grazes), {g, std::size_t(CW_GRAZE)}),
-                        nb::make_tuple(found.component, found.value));
+  return nb::make_tuple(
+      found.status, found.filled, array(std::move(found.rows), {k, r}), array(std::move(slopes), {k, r, n}),
+      array(std::move(found.events), {e, std::size_t(event_columns)}), array(std::move(moved), {e, n}),
+      array(std::move(found.grazes), {g, std::size_t(CW_GRAZE)}), nb::make_tuple(found.component, found.value));
 }
 
 }  // namespace

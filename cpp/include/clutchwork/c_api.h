@@ -135,7 +135,8 @@ int cw_restore(cw_run* run, const void* bytes, int64_t n);
 int cw_law(int number, const double* params, const double* inputs, const double* points, int64_t n_points, double slip,
            double* kinetic, double* hold);
 
-/* Runs with derivatives by numbers of the system: the motion, its events and their instants. docs/theory/gradients.md */
+/* Runs with derivatives by numbers of the system: the motion, its events and their instants. docs/theory/gradients.md
+ */
 typedef struct cw_tangents cw_tangents;
 
 /* Directions of one such run. */

@@ -1,14 +1,13 @@
 #pragma once
 #include <clutchwork/workspace/contacts.hpp>
 #include <clutchwork/workspace/loads.hpp>
-#include <clutchwork/workspace/moved.hpp>
 #include <clutchwork/workspace/motion.hpp>
+#include <clutchwork/workspace/moved.hpp>
 #include <clutchwork/workspace/ratios.hpp>
 #include <clutchwork/workspace/run.hpp>
 
 /// Everything that changes during a run, carved once from memory of the caller.
 namespace clutchwork {
-
 
 template <class T>
 struct Workspace {

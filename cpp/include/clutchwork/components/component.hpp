@@ -75,12 +75,12 @@ struct OwnTorques {
 /// Where a component is evaluated.
 template <class S>
 struct At {
-  S rate;                 ///< [rad/s] rate of an element; slip of a contact in the direction in which it slips
-  const S* state;         ///< own states
-  OwnInputs<S> input;     ///< own inputs
-  int piece;              ///< number of the smooth piece of the rate
+  S rate;                  ///< [rad/s] rate of an element; slip of a contact in the direction in which it slips
+  const S* state;          ///< own states
+  OwnInputs<S> input;      ///< own inputs
+  int piece;               ///< number of the smooth piece of the rate
   const Point<S>* points;  ///< pool of curves: x, y, slope to the next point
-  OwnRates<S> rates{};    ///< of an element of several ways
+  OwnRates<S> rates{};     ///< of an element of several ways
 };
 
 /// Number of kinks inside a curve, where one linear piece follows another.

@@ -51,7 +51,9 @@ T meter_sum(const SystemOf<G>& s, int m, Acceleration&& acceleration, Torque&& t
   return sum;
 }
 template <class G>
-MatrixRow<G> mass_row(const SystemOf<G>& s, int i) { return matrix_row(s.mass_end, s.mass_column, s.mass_value, i); }
+MatrixRow<G> mass_row(const SystemOf<G>& s, int i) {
+  return matrix_row(s.mass_end, s.mass_column, s.mass_value, i);
+}
 
 /// Shares of the speeds in the rate of a direction.
 template <class G>

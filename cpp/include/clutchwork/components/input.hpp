@@ -139,7 +139,8 @@ void seek(Workspace<T>& ws, int i, double t) {
     signal.varying = signal.idle = false, signal.linear = true;
     return;
   }
-  while (segment_exists(sys, i, signal.segment + 1) && value(segment_start(sys, i, signal.segment + 1)) <= t) ++signal.segment;
+  while (segment_exists(sys, i, signal.segment + 1) && value(segment_start(sys, i, signal.segment + 1)) <= t)
+    ++signal.segment;
   const bool started = value(segment_start(sys, i, signal.segment)) <= t;
   const int k = int(signal.segment % sys.input_count[i]);
   signal.start = segment_start(sys, i, signal.segment);
@@ -162,8 +163,10 @@ void seek(Workspace<T>& ws, int i, double t) {
 template <class T>
 CLUTCHWORK_INLINE Given<T> since_start(const Workspace<T>& ws, const SignalOf<Given<T>>& signal, double t) {
   // at an event the present instant moves with what it depends on
-  if constexpr (has_tangents<T>) return (T(t) - signal.start) + ws.moved.shift;
-  else return t - signal.start;
+  if constexpr (has_tangents<T>)
+    return (T(t) - signal.start) + ws.moved.shift;
+  else
+    return t - signal.start;
 }
 
 /// Value of signal i at time t on its present segment.
@@ -225,7 +228,8 @@ bool reference_range(const Workspace<T>& ws, int ref, double h, double& low, dou
   if (!signal.varying) return true;
   // back along the tangent, and what bends away from it
   const double start = low - h * value(ws.in.du[ref]);
-  const double bend = signal.linear ? 0 : 0.5 * h * h * segment_bend(signal.coef, ws.in.time - h - value(signal.start), h);
+  const double bend =
+      signal.linear ? 0 : 0.5 * h * h * segment_bend(signal.coef, ws.in.time - h - value(signal.start), h);
   low = smaller(low, start) - bend, high = larger(high, start) + bend;
   return true;
 }

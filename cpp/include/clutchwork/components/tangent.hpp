@@ -80,11 +80,11 @@ struct NumberOf<Tangent<N>> : NumberOf<double> {
   using Point = double;
 };
 
-#define CLUTCHWORK_CHAIN(NAME, F, SLOPE)               \
-  template <int N>                                     \
+#define CLUTCHWORK_CHAIN(NAME, F, SLOPE)                   \
+  template <int N>                                         \
   CLUTCHWORK_INLINE Tangent<N> NAME(const Tangent<N>& x) { \
-    const double f = F;                                \
-    return Tangent<N>::chain(x, f, SLOPE);             \
+    const double f = F;                                    \
+    return Tangent<N>::chain(x, f, SLOPE);                 \
   }
 CLUTCHWORK_CHAIN(exp, exp(x.v), f)
 CLUTCHWORK_CHAIN(log, log(x.v), 1 / x.v)

@@ -81,8 +81,8 @@ double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
   auto f = [&](double s) {
     double slip = 0;
     for (int p = 0; p < ws.sys.prescribed; ++p) {
-      slip += value(prescribed_share(ws, d, p)) *
-              value(signal_value(ws, ws.sys.prescribed_input[p], step.t + s * step.h));
+      slip +=
+          value(prescribed_share(ws, d, p)) * value(signal_value(ws, ws.sys.prescribed_input[p], step.t + s * step.h));
     }
     return zero - abs(slip);
   };
@@ -204,9 +204,8 @@ void find_parting(Form& form, Step<Form>& step, Hit& hit) {
     auto f = [&](double s) {
       double slip = 0;
       for (int p = 0; p < ws.sys.prescribed; ++p) {
-        slip +=
-            driven_share(ws, ws.held.driven[i], p) *
-            value(signal_value(ws, ws.sys.prescribed_input[p], step.t + s * step.h));
+        slip += driven_share(ws, ws.held.driven[i], p) *
+                value(signal_value(ws, ws.sys.prescribed_input[p], step.t + s * step.h));
       }
       return zero - abs(slip);
     };

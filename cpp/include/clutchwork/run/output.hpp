@@ -36,8 +36,10 @@ struct Sink {
 /// A number as a row shows it: plain, or with its derivatives.
 template <class R, class T>
 CLUTCHWORK_INLINE R shown(const T& x) {
-  if constexpr (std::is_same_v<R, T>) return x;
-  else return value(x);
+  if constexpr (std::is_same_v<R, T>)
+    return x;
+  else
+    return value(x);
 }
 
 /// Integral of prescribed speed p from t over h.

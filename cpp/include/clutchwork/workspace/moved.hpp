@@ -8,11 +8,11 @@ namespace clutchwork {
 
 /// A guard that was hit: how fast it passed zero, over its own size. docs/theory/gradients.md (6)
 struct Graze {
-  double time;      ///< [s]
-  double what;      ///< Hit::What, -1: knots of signals
-  double component; ///< elements, then contacts; -1: none
-  double index;     ///< [1/s] size of its time derivative over its scale
-  double together;  ///< [s] largest difference of the derivatives of two events at this instant, 0: there are none
+  double time;       ///< [s]
+  double what;       ///< Hit::What, -1: knots of signals
+  double component;  ///< elements, then contacts; -1: none
+  double index;      ///< [1/s] size of its time derivative over its scale
+  double together;   ///< [s] largest difference of the derivatives of two events at this instant, 0: there are none
 };
 
 inline constexpr int graze_size = 5;
