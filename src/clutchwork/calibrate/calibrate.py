@@ -1,0 +1,143 @@
+"""The call: what it means, and the search."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Unpack
+
+from clutchwork.base.errors import UseError, near
+from clutchwork.base.paths import path_fault, path_of
+from clutchwork.base.progress import followed
+from clutchwork.base.shown import shown
+from clutchwork.calibrate.limits import Limit
+from clutchwork.calibrate.memory import Memory
+from clutchwork.calibrate.method import SOLVERS
+from clutchwork.calibrate.problem import Mistakes, Problem, problem
+from clutchwork.calibrate.result import Asked, Calibration, CalibrationInterrupted, found_by
+from clutchwork.calibrate.scatter import Scatter
+from clutchwork.calibrate.search import Search, Way
+from clutchwork.calibrate.terms import Span
+from clutchwork.declare.calls import explained
+from clutchwork.declare.options import Options
+from clutchwork.gradients.differentiable import differentiable
+from clutchwork.run.settings import merged
+from clutchwork.run.simulation import Assembles, model_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from clutchwork.assembly.system import System
+    from clutchwork.declare.node import Number
+    from clutchwork.declare.option_fields import OptionFields
+
+# what an optimiser makes use of must be in the runs, not in their errors
+TIGHT = {"rtol": 1e-8, "atol": 1e-10}
+ROBUST = ("mean", "worst")
+
+
+@explained("calibrate", free="{'c1.pressure.values[2:]': (0.0, 8e5)}", minimise="'c1.heat'")
+def calibrate(
+    model: Assembles | System,
+    t_end: Number | None = None,
+    *,
+    free: Mapping[str, Any],
+    minimise: Any,
+    subject_to: Sequence[Limit] | Limit = (),
+    method: str = "slsqp",
+    starts: int = 1,
+    scatter: Mapping[str, Any] | None = None,
+    samples: int = 64,
+    robust: str = "mean",
+    threads: int = 1,
+    seed: int = 0,
+    tolerance: float = 1e-10,
+    iterations: int = 200,
+    file: str | Path | None = None,
+    progress: bool | Callable[[int, int], None] = False,
+    options: Options | None = None,
+    **changes: Unpack[OptionFields],
+) -> Calibration:
+    """Find the numbers of a driveline at which a goal is least and limits hold, by exact gradients of its runs.
+
+    Parameters: t_end [s], or with a unit, options and their fields by name are those of `simulate`, with rtol 1e-8
+    unless it is given; free, bounds (low, high) by name, in SI or with units: names of `cw.differentiable`, a range of
+    a table by "c1.pressure.values[2:]", or any name with `cw.together`; minimise, an output as `cw.sweep` takes it,
+    `cw.jerk`, `cw.rms_jerk`, `cw.squared_slope`, or a sum {output: weight, ...}; one of several values is made least
+    where it is largest. subject_to, limits, each a `cw.limit`; method, "slsqp", "trust-constr" or "ipopt"; starts, from
+    how many points to search: the values of the model first, then others between the bounds; threads, how many of
+    these go at once.
+
+    scatter, what differs in production, given as free is: limits then hold in all of so many samples, and the goal is
+    the mean of the first ones, or with robust="worst" that of the worst one. seed, of starts and samples; tolerance
+    and iterations, of the solver; file, a path in which what was found is kept: the same call goes on from there.
+    progress, True for a bar of tqdm, or a function of (points looked at, the most there can be).
+
+    Ctrl-C raises `CalibrationInterrupted`, a KeyboardInterrupt, whose `calibration` holds the best so far. All
+    mistakes of the call are named at once, by UseError. docs/guide/calibrate.md
+    """
+    system = model_of("calibrate", model, options)
+    given = {**changes} if t_end is None else {**changes, "t_end": t_end}
+    tight = {name: value for name, value in TIGHT.items() if name not in changes and options is None}
+    end, chosen = merged(system.settings, {**given, **tight}, options)
+    plain = chosen.changed({"dt": None, "times": None})
+    mistakes = Mistakes()
+    counts = {"starts": starts, "samples": samples, "threads": threads, "iterations": iterations}
+    mistakes.found += _faults(counts, seed, tolerance, method, robust, file)
+    wanted = mistakes.caught(
+        lambda: problem(system, Span(plain.t_start, end), free, minimise, subject_to, scatter), None
+    )
+    if mistakes.found or wanted is None:
+        raise UseError("calibrate", mistakes.found)
+    asked = Asked(plain, method, starts, samples, robust, threads, seed, tolerance, iterations)
+    return searched(wanted, asked, None if file is None else path_of("calibrate", file, "shift.json"), progress)
+
+
+def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) -> Calibration:
+    """What a search finds."""
+    outputs = {str(number): one for number, one in enumerate(wanted.outputs)}
+    function: Any = None
+    if outputs:
+        function = differentiable(
+            wanted.system, wanted.span.end, of=outputs, by=list(wanted.numbers), threads=asked.threads,
+            options=asked.options,
+        )  # fmt: skip
+    spread = None
+    if wanted.scatter:
+        spread = Scatter.of(wanted, asked.samples, asked.seed, asked.robust == "worst")
+    way = Way(
+        SOLVERS[asked.method], asked.tolerance, asked.iterations, asked.starts, asked.threads, asked.seed, spread
+    )  # fmt: skip
+    memory = Memory(file, wanted, asked.identity)
+    most = asked.starts * asked.iterations
+    with followed(progress, most, "calibrate", "(points, most)", unit=" points") as told:
+        search = Search(wanted, function, way, memory, told)
+        try:
+            search.run()
+        except KeyboardInterrupt:
+            memory.keep(search.found.values(), now=True)
+            message = f"interrupted after {search.asked} points; the best so far is in .calibration"
+            raise CalibrationInterrupted(message, found_by(search, asked)) from None
+    return found_by(search, asked)
+
+
+def _faults(
+    counts: Mapping[str, Any], seed: Any, tolerance: Any, method: Any, robust: Any, file: Any
+) -> list[str]:  # fmt: skip
+    """What is wrong with settings."""
+    found = [
+        f"{name} is {shown(value)}: give a whole number from 1 on"
+        for name, value in counts.items()
+        if not isinstance(value, int) or isinstance(value, bool) or value < 1
+    ]
+    if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
+        found.append(f"seed is {shown(seed)}: give a whole number from 0 on")
+    if not isinstance(tolerance, float) or not 0.0 < tolerance < 1.0:
+        found.append(f"tolerance is {shown(tolerance)}: give a number between 0 and 1, such as 1e-10")
+    for name, value, known in (("method", method, (*SOLVERS,)), ("robust", robust, ROBUST)):
+        if value not in known:
+            choices = " or ".join(map(repr, known))
+            found.append(f"{name} is {shown(value)}{near(value, known, f'give {choices}')}")
+    if file is not None and (fault := path_fault(os.fspath(file) if isinstance(file, os.PathLike) else file, "shift.json")):
+        found.append(f"file: {fault}")
+    return found

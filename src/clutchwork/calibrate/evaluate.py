@@ -1,0 +1,148 @@
+"""Goal, limits and their gradients at values of the unknowns, for one sample of production or several."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.calibrate.moves import Moves
+from clutchwork.calibrate.terms import Given
+from clutchwork.results.gradient import NoGradient
+
+if TYPE_CHECKING:
+    from clutchwork.calibrate.limits import Sum
+    from clutchwork.calibrate.problem import Problem
+
+Array = NDArray[np.float64]
+# solvers ask for values and gradients of a few points in turn
+REMEMBERED = 8
+
+
+@dataclass(frozen=True)
+class Point:
+    """Goal and limits at values of the unknowns, one after another, and their derivatives by the unknowns."""
+
+    x: Array
+    values: Array  # shape (samples, rows)
+    slopes: Array  # shape (samples, rows, unknowns)
+    fault: str = ""  # why there is no gradient here, empty where there is one
+
+    @property
+    def is_fine(self) -> bool:
+        """Whether there is a value and a gradient of everything."""
+        return not self.fault
+
+
+class Evaluator:
+    """Runs the model, and remembers the last few points.
+
+    Rows are those of the goal first, then those of each limit; `parts` says which.
+    """
+
+    def __init__(self, problem: Problem, function: Any) -> None:
+        self.problem, self.function = problem, function
+        self.moves = Moves(problem.unknowns, problem.numbers)
+        self.spread = Moves(problem.scatter, problem.numbers)
+        self.nominal = self.spread.start(problem.base)
+        self.sums = (problem.goal, *(limit.what for limit in problem.limits))
+        place = {output: at for at, output in enumerate(problem.outputs)}
+        self.wanted = [np.array([place[one] for one in each.needs(problem.span)], dtype=np.intp) for each in self.sums]
+        self.places = {name: at for at, name in enumerate(problem.numbers)}
+        self.points = OrderedDict[bytes, Point]()
+        self.runs = 0
+        self.seen: Callable[[Point], None] = _nobody
+
+    def at(self, x: Array, samples: Sequence[Array] = ()) -> Point:
+        """Goal and limits with their gradients.
+
+        Parameters: samples, what production scatters, each as the values of `Problem.scatter`; nominal by default.
+        """
+        chosen = list(samples) or [self.nominal]
+        key = x.tobytes() + b"".join(one.tobytes() for one in chosen)
+        if key not in self.points:
+            self.points[key] = self._made(x, chosen)
+            if len(self.points) > REMEMBERED:
+                self.points.popitem(last=False)
+            self.seen(self.points[key])
+        return self.points[key]
+
+    def values(self, x: Array, samples: Sequence[Array]) -> Array:
+        """Goal and limits of many samples, without gradients, shape (samples, rows)."""
+        numbers = self._numbers(x, samples)
+        self.runs += len(samples)
+        found = np.asarray(self.function.batch(numbers)) if self.problem.outputs else np.zeros((len(samples), 0))
+        empty = np.zeros((found.shape[1], numbers.shape[1]))
+        return np.array([self._rows(value, empty, own)[0] for value, own in zip(found, numbers, strict=True)])
+
+    def _numbers(self, x: Array, samples: Sequence[Array]) -> Array:
+        """The numbers of the model in each sample."""
+        own = self.moves.apply(self.problem.base, x)
+        return np.array([self.spread.apply(own, one) for one in samples])
+
+    def _made(self, x: Array, samples: Sequence[Array]) -> Point:
+        numbers = self._numbers(x, samples)
+        self.runs += len(samples)
+        try:
+            values, slopes = self._differentiated(numbers)
+        except NoGradient as error:
+            return Point(x, np.zeros((0, 0)), np.zeros((0, 0, 0)), str(error))
+        by_x = self.moves.slopes(self.problem.base, x)
+        found, made = list[Array](), list[Array]()
+        for value, slope, own, sample in zip(values, slopes, numbers, samples, strict=True):
+            rows, by_numbers = self._rows(value, slope, own)
+            found.append(rows)
+            made.append(by_numbers @ (self.spread.passed(sample)[:, None] * by_x))
+        whole, by = np.array(found), np.array(made)
+        return Point(x, whole, by, self._fault(whole, by))
+
+    def _differentiated(self, numbers: Array) -> tuple[Any, Any]:
+        """Outputs and their derivatives by the numbers in each sample."""
+        if not self.problem.outputs:
+            return np.zeros((len(numbers), 0)), np.zeros((len(numbers), 0, numbers.shape[1]))
+        if len(numbers) > 1:
+            return self.function.batch_jacobian(numbers)  # type: ignore[no-any-return]
+        value, slope = self.function.value_and_jacobian(numbers[0])
+        return [value], [slope]
+
+    def _rows(self, values: Array, slopes: Array, numbers: Array) -> tuple[Array, Array]:
+        """Rows of the goal and of all limits."""
+        found = [
+            self._of(one, values[wanted], slopes[wanted], numbers)
+            for one, wanted in zip(self.sums, self.wanted, strict=True)
+        ]
+        return np.concatenate([value for value, _ in found]), np.concatenate([slope for _, slope in found])
+
+    def _of(self, one: Sum, values: Array, slopes: Array, numbers: Array) -> tuple[Array, Array]:
+        given = Given(values, slopes, numbers, self.places, self.problem.curves, self.problem.span)
+        return one.rows(given)
+
+    @cached_property
+    def parts(self) -> list[slice]:
+        """Places of the goal and of each limit among the rows."""
+        empty = [np.zeros(len(wanted)) for wanted in self.wanted]
+        none = np.zeros(len(self.problem.numbers))
+        counts = [
+            len(self._of(one, values, np.zeros((len(values), len(none))), self.problem.base)[0])
+            for one, values in zip(self.sums, empty, strict=True)
+        ]
+        ends = np.cumsum(counts).tolist()
+        return [slice(end - count, end) for end, count in zip(ends, counts, strict=True)]
+
+    def _fault(self, values: Array, slopes: Array) -> str:
+        """What is missing at a point; empty where nothing is."""
+        for one, part in zip(self.sums, self.parts, strict=True):
+            if not np.all(np.isfinite(values[:, part])):
+                return f"{one.name} has no value"
+            if not np.all(np.isfinite(slopes[:, part])):
+                return f"{one.name} has no gradient"
+        return ""
+
+
+def _nobody(point: Point) -> None:
+    """Nobody looks on."""

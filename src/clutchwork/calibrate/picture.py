@@ -1,0 +1,70 @@
+"""Pictures of a calibration: signals before and after, and the front of a goal over a limit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from clutchwork.calibrate.terms import Jerk, Plain, RmsJerk, Slope, SquaredSlope
+from clutchwork.results.plot.compare import compare
+from clutchwork.results.plot.figure import figure_of, written
+from clutchwork.results.plot.style import COLOURS
+
+if TYPE_CHECKING:
+    from clutchwork.calibrate.front import Front
+    from clutchwork.calibrate.result import Calibration
+    from clutchwork.results.plot.canvas import Picture
+
+MOST_PANELS = 5
+HEIGHT = 80.0  # mm
+
+
+def before_and_after(found: Calibration, signals: Sequence[Any], path: str | Path | None) -> Picture:
+    """Both runs over each other."""
+    runs = {"before": found.run_before(), "after": found.run()}
+    chosen = list(signals) or usual(found, set(runs["after"].names))
+    return compare(runs, *chosen, path=path)
+
+
+def usual(found: Calibration, known: set[str]) -> list[str]:
+    """Signals that the free numbers, the goal and the limits are about."""
+    return list(dict.fromkeys(name for name in _signals(found) if name in known))[:MOST_PANELS]
+
+
+def _signals(found: Calibration) -> Iterator[str]:
+    problem = found.problem
+    for one in problem.unknowns:
+        for name in one.numbers:
+            yield name.partition(".values[")[0].partition(".times[")[0]
+    for what in (problem.goal, *(limit.what for limit in problem.limits)):
+        for term, _ in what.terms:
+            yield from _of(term)
+
+
+def _of(term: Any) -> Iterator[str]:
+    if isinstance(term, Jerk | RmsJerk):
+        yield f"{term.shaft}.acceleration"
+    elif isinstance(term, Slope | SquaredSlope):
+        yield term.stem
+    elif isinstance(term, Plain):
+        contact = getattr(term.output, "contact", "")
+        owner = contact or str(getattr(term.output, "signal", "")).rpartition(".")[0]
+        yield from (f"{contact}.slip", f"{contact}.torque") if contact else (str(getattr(term.output, "signal", "")),)
+        yield f"{owner}.torque"
+
+
+def front(found: Front, path: Path | None) -> Picture:
+    """The goal over the bound, with short lines of the slope that the multipliers say."""
+    with figure_of(HEIGHT) as figure:
+        axes = figure.add_subplot()
+        axes.plot(found.bounds, found.goals, "o-", color=COLOURS[0], markersize=3.5)
+        reach = 0.3 * float(np.min(np.abs(np.diff(np.sort(found.bounds))), initial=np.inf))
+        for x, y, slope in zip(found.bounds, found.goals, found.slopes, strict=True):
+            if np.isfinite(reach * y * slope):
+                axes.plot([x - reach, x + reach], [y - reach * slope, y + reach * slope], color=COLOURS[1], linewidth=1.2)
+        axes.set_xlabel(f"{found.limit} allowed, {found.limit_unit}")
+        axes.set_ylabel(f"{found.goal}{f', {found.goal_unit}' if found.goal_unit else ''}")
+    return written(figure, path)

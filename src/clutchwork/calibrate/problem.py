@@ -1,0 +1,176 @@
+"""What is to be calibrated: unknowns, goal and limits of a model, all mistakes found at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UseError
+from clutchwork.base.shown import shown
+from clutchwork.calibrate.limits import Limit, Settled, Sum, summed
+from clutchwork.calibrate.moves import Moves, Unknown
+from clutchwork.calibrate.names import Curve, curve, numbers
+from clutchwork.calibrate.numbers import pair
+from clutchwork.calibrate.terms import Span
+from clutchwork.calibrate.together import VALUE, Together
+from clutchwork.results.channels import channels
+from clutchwork.sweeps.outputs import Integral, When
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+
+Array = NDArray[np.float64]
+SUCH = "{'c1.pressure.values[2:]': (0.0, 8e5)}"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A goal to be made least and limits to be held, by unknowns that move numbers of a model."""
+
+    system: System
+    span: Span
+    unknowns: tuple[Unknown, ...]
+    scatter: tuple[Unknown, ...]
+    numbers: tuple[str, ...]
+    base: Array  # the numbers as the model has them
+    goal: Sum
+    limits: tuple[Settled, ...]
+    curves: Mapping[str, Curve]
+    unit: str  # of the goal
+    begin: Array | None = None  # where the search begins, where not at the values of the model
+
+    @property
+    def identity(self) -> tuple[Any, ...]:
+        """What makes it this problem, beside its System."""
+        return (self.span, self.unknowns, self.scatter, self.goal, self.limits)
+
+    @cached_property
+    def outputs(self) -> list[Any]:
+        """The outputs of a run that are needed, each once."""
+        sums = (self.goal, *(limit.what for limit in self.limits))
+        return list(dict.fromkeys(output for one in sums for output in one.needs(self.span)))
+
+    @cached_property
+    def start(self) -> Array:
+        """The unknowns as the model has them, within their bounds."""
+        own = Moves(self.unknowns, self.numbers).start(self.base) if self.begin is None else self.begin
+        return np.clip(own, self.low, self.high)
+
+    @cached_property
+    def low(self) -> Array:
+        """Lower bounds of the unknowns."""
+        return np.array([one.low for one in self.unknowns])
+
+    @cached_property
+    def high(self) -> Array:
+        """Upper bounds of the unknowns."""
+        return np.array([one.high for one in self.unknowns])
+
+
+class Units:
+    """Units of outputs and tables of a System; what is not there is without one, and refused where it is run."""
+
+    def __init__(self, system: System) -> None:
+        self.system, self.channels = system, channels(system, True, True)
+
+    def output(self, one: Any) -> str:
+        """Of an output of a run."""
+        if isinstance(one, When):
+            return "s"
+        name = one.kept_as(self.channels) if isinstance(one, Integral) else one.signal
+        return str(self.channels[name].unit) if name in self.channels else ""
+
+    def table(self, stem: str) -> str:
+        """Of the values of a table."""
+        try:
+            return curve(self.system, stem).values[0].unit
+        except UseError:
+            return ""
+
+
+class Mistakes:
+    """All that is wrong with a call."""
+
+    def __init__(self) -> None:
+        self.found = list[str]()
+
+    def caught(self, what: Callable[[], Any], instead: Any) -> Any:
+        """What a function gives; where it refuses, something instead."""
+        try:
+            return what()
+        except UseError as error:
+            self.found += error.problems
+            return instead
+
+
+def problem(
+    system: System, span: Span, free: Any, minimise: Any, subject_to: Any, scatter: Any
+) -> Problem:  # fmt: skip
+    """What the arguments of a call mean; UseError names all that is wrong with them."""
+    mistakes, units = Mistakes(), Units(system)
+    unknowns = _unknowns(system, "free", free, mistakes)
+    spread = _unknowns(system, "scatter", scatter, mistakes) if scatter is not None else ([], {})
+    goal, fault = summed(minimise)
+    if goal is None:
+        mistakes.found.append(f"minimise: {fault}")
+    limits = list(_limits(subject_to, units, mistakes))
+    sums = [one for one in (goal, *(limit.what for limit in limits)) if one is not None]
+    stems = dict.fromkeys(stem for one in sums for stem in one.tables)
+    curves = {stem: mistakes.caught(lambda stem=stem: curve(system, stem), None) for stem in stems}
+    mistakes.found += _twice(unknowns[0])
+    if mistakes.found or goal is None:
+        raise UseError("calibrate", list(dict.fromkeys(mistakes.found)))
+    starts = unknowns[1] | spread[1]
+    base = np.array([*starts.values()])
+    made = (tuple(unknowns[0]), tuple(spread[0]), tuple(starts), base)
+    return Problem(system, span, *made, goal, tuple(limits), curves, goal.unit(units))
+
+
+def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tuple[list[Unknown], dict[str, float]]:
+    """Unknowns or scatters that a mapping means, and the numbers that they move with their values in the model."""
+    if not isinstance(given, Mapping) or not given:
+        mistakes.found.append(f"{what} is {shown(given)}: give names with their bounds, {SUCH}")
+        return [], {}
+    made, starts = list[Unknown](), dict[str, float]()
+    for name, ends in given.items():
+        named = ends.names if isinstance(ends, Together) else (name,)
+        found = [one for each in named for one in mistakes.caught(lambda each=each: numbers(system, each), ())]
+        starts |= {one.name: one.start for one in found}
+        if isinstance(ends, Together):
+            made.append(Unknown(str(name), ends.kind, tuple(one.name for one in found), ends.low, ends.high))
+            continue
+        for one in found:
+            both = pair(ends, one.unit)
+            if both is None:
+                wanted = f"(low, high){f' in {one.unit}' if one.unit else ''}, or with a unit that fits"
+                mistakes.found.append(f"{what} of {name!r} is {shown(ends)}: give {wanted}, the lower one first")
+                break
+            made.append(Unknown(one.name, VALUE, (one.name,), *both, one.unit))
+    return made, starts
+
+
+def _twice(unknowns: Sequence[Unknown]) -> Iterable[str]:
+    """Numbers that two unknowns set."""
+    names = [one.name for one in unknowns if one.kind == VALUE]
+    for name in dict.fromkeys(one for one in names if names.count(one) > 1):
+        yield f"{name} is free twice; give it once"
+
+
+def _limits(given: Any, units: Units, mistakes: Mistakes) -> Iterable[Settled]:
+    listed = [given] if isinstance(given, Limit) else given
+    if not isinstance(listed, Iterable) or isinstance(listed, str | Mapping):
+        mistakes.found.append(f"subject_to is {shown(given)}: give a list of cw.limit('c1.heat', upper=4e4)")
+        return
+    for one in listed:
+        if not isinstance(one, Limit):
+            mistakes.found.append(f"{shown(one)} in subject_to is not a limit: give cw.limit('c1.heat', upper=4e4)")
+            continue
+        found, faults = one.settled(units)
+        mistakes.found += [f"subject_to: {fault}" for fault in faults]
+        if found is not None:
+            yield found

@@ -1,0 +1,269 @@
+"""What a calibration found: values, limits, what each of them costs, and how it was found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import ClutchworkError, UseError, near
+from clutchwork.base.shown import shown
+from clutchwork.calibrate import words
+from clutchwork.calibrate.evaluate import Evaluator
+from clutchwork.calibrate.moves import Moves
+from clutchwork.calibrate.optimal import Certificate, certificate
+from clutchwork.calibrate.outcome import Outcome
+from clutchwork.calibrate.scaled import Samples, Scaled
+from clutchwork.declare.calls import explained_methods
+from clutchwork.gradients.parameters import changes, parameters
+from clutchwork.run.simulation import simulate
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.calibrate.front import Front
+    from clutchwork.calibrate.limits import Settled
+    from clutchwork.calibrate.problem import Problem
+    from clutchwork.calibrate.search import Search
+    from clutchwork.calibrate.verify import Verified
+    from clutchwork.declare.options import Options
+    from clutchwork.results.plot.canvas import Picture
+    from clutchwork.results.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+# what is left of a gradient, in shares of the goal over the ranges of the unknowns
+OPTIMAL = 1e-5
+
+
+class CalibrationError(ClutchworkError, RuntimeError):
+    """A calibration that found nothing: why, and what to do."""
+
+
+class CalibrationInterrupted(KeyboardInterrupt):
+    """Ctrl-C during a calibration; `calibration` holds the best so far, None where nothing was found yet."""
+
+    def __init__(self, message: str, calibration: Calibration | None) -> None:
+        super().__init__(message)
+        self.calibration = calibration
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.calibration)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """How it was searched for."""
+
+    options: Options
+    method: str
+    starts: int
+    samples: int
+    robust: str
+    threads: int
+    seed: int
+    tolerance: float
+    iterations: int
+
+    @property
+    def identity(self) -> tuple[Any, ...]:
+        """What the result depends on."""
+        return (self.options, self.method, self.starts, self.samples, self.robust, self.seed, self.tolerance)
+
+
+@dataclass(frozen=True)
+class Held:
+    """A limit, and what it is with the values that were found."""
+
+    name: str
+    unit: str
+    lower: float
+    upper: float
+    before: tuple[float, float]  # least and largest value with the values of the model
+    after: tuple[float, float]
+    active: bool
+    multiplier: float  # by how much the goal gets less where the bound moves out by one, both in SI
+
+
+@explained_methods("calibration")
+@dataclass(frozen=True, eq=False, repr=False)
+class Calibration:
+    """What `cw.calibrate` found.
+
+    `values` are the numbers by name, `system` the model with them. `solved` says whether all limits hold and no
+    small change makes the goal less; `message` says what stands in the way. `print(found)` shows it all.
+    """
+
+    problem: Problem = field(repr=False)
+    asked: Asked = field(repr=False)
+    x: Array
+    goal: tuple[float, float]  # with the values of the model, and with those that were found
+    limits: tuple[Held, ...]
+    certificate: Certificate
+    outcomes: tuple[Outcome, ...]
+    samples: tuple[Array, ...]  # of production that decided it
+    finished: bool  # not interrupted
+
+    # ---------------------------------------------------------------------------------------------------------- values
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the unknowns."""
+        return tuple(one.name for one in self.problem.unknowns)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The unknowns by name, in SI; factors and shifts of `cw.together` by the name that they were given."""
+        return dict(zip(self.names, self.x.tolist(), strict=True))
+
+    @property
+    def start(self) -> dict[str, float]:
+        """The same as the model has them."""
+        return dict(zip(self.names, self.problem.start.tolist(), strict=True))
+
+    @cached_property
+    def changes(self) -> dict[str, Any]:
+        """What `System.changed` takes."""
+        return self._changes(self.x)
+
+    @cached_property
+    def system(self) -> System:
+        """The model with these values."""
+        return self.problem.system.changed(self.changes)
+
+    def _changes(self, x: Array) -> dict[str, Any]:
+        """Of values of the unknowns."""
+        system, names = self.problem.system, list(self.problem.numbers)
+        numbers = Moves(self.problem.unknowns, names).apply(self.problem.base, x)
+        moved = {name for one in self.problem.unknowns for name in one.numbers}
+        chosen = [place for place, name in enumerate(names) if name in moved]
+        return changes(system, parameters(system, [names[place] for place in chosen]), numbers[chosen])
+
+    # ------------------------------------------------------------------------------------------------------------ runs
+
+    def run(self) -> Trajectory:
+        """A run with the values that were found."""
+        return simulate(self.system, self.problem.span.end, options=self.asked.options)
+
+    def run_before(self) -> Trajectory:
+        """A run with the values of the model."""
+        return simulate(self.problem.system, self.problem.span.end, options=self.asked.options)
+
+    # --------------------------------------------------------------------------------------------------------- verdict
+
+    @property
+    def feasible(self) -> bool:
+        """Whether all limits hold, to a millionth of their scale."""
+        return min(self.outcomes, key=lambda one: one.rank).is_feasible
+
+    @property
+    def solved(self) -> bool:
+        """Whether the search ended, all limits hold, and no small change makes the goal less."""
+        return self.finished and self.feasible and self.certificate.residual <= OPTIMAL
+
+    @property
+    def message(self) -> str:
+        """What stands in the way of using the values, one line each; empty when nothing does."""
+        return "\n".join(words.faults(self))
+
+    @property
+    def costs(self) -> tuple[str, ...]:
+        """What each active limit costs, in words."""
+        return tuple(words.costs(self))
+
+    def raise_for_status(self) -> Calibration:
+        """Return itself when it is solved, else raise CalibrationError."""
+        if not self.solved:
+            raise CalibrationError(self.message)
+        return self
+
+    def __getitem__(self, name: str) -> float:
+        """A value by name; KeyError with a near name where there is none."""
+        if name not in self.values:
+            raise KeyError(f"no unknown {shown(name)}{near(name, self.names)}")
+        return self.values[name]
+
+    def __str__(self) -> str:
+        """What `print` shows."""
+        return words.text(self)
+
+    def __repr__(self) -> str:
+        state = "solved" if self.solved else "not solved"
+        return f"<Calibration {state}: {self.problem.goal.name} {self.goal[0]:.6g} -> {self.goal[1]:.6g}>"
+
+    # --------------------------------------------------------------------------------------------------- what to do next
+
+    def plot(self, *signals: Any, path: str | Path | None = None) -> Picture:
+        """Draw signals before and after; without names those that goal and limits are about. Needs matplotlib.
+
+        Parameters: signals, as `cw.compare` takes them; path, of a picture that is written.
+        """
+        from clutchwork.calibrate.picture import before_and_after
+
+        return before_and_after(self, signals, path)
+
+    def front(self, limit: str, bounds: Sequence[Any], *, progress: Any = False) -> Front:
+        """The least goal for each bound of a limit, as of jerk over heat.
+
+        Parameters: limit, its name; bounds, of its upper side, or of the lower one where it has no upper one.
+        """
+        from clutchwork.calibrate.front import front
+
+        return front(self, self.limit(limit), bounds, progress)
+
+    def verify(self, samples: int = 1000, *, seed: int = 1, threads: int | None = None) -> Verified:
+        """Run production samples that the search has not seen, and say which break a limit.
+
+        Parameters: samples, how many; seed, of the draws; threads, how many runs go at once.
+        """
+        from clutchwork.calibrate.verify import verify
+
+        return verify(self, samples, seed, threads)
+
+    def limit(self, name: str) -> Settled:
+        """A limit by name; UseError where there is none."""
+        known = {one.name: one for one in self.problem.limits}
+        if name not in known:
+            raise UseError("calibration", [f"no limit {shown(name)}{near(name, known, f'there are {[*known]}')}"])
+        return known[name]
+
+
+def found_by(search: Search, asked: Asked) -> Calibration:
+    """The result of a search; CalibrationError where it found nothing."""
+    outcomes = tuple(search.found[number] for number in sorted(search.found))
+    best = min((one for one in outcomes if not one.fault), key=lambda one: one.rank, default=None)
+    problem = search.problem
+    if best is None:
+        why = next((one.fault for one in outcomes if one.fault), "it was interrupted before the first run")
+        remedy = "change the start values of the model, widen t_end, or give starts=8"
+        raise CalibrationError(f"no start could be run with a gradient: {why}; {remedy}")
+    worst = search.way.scatter is not None and search.way.scatter.worst
+    averaged = len(search.way.scatter.first().chosen) if search.way.scatter else 1
+    evaluator = Evaluator(problem, search.function)
+    scaled = Scaled(evaluator, best.x, Samples(best.samples, averaged, worst), best.scales)
+    proof = certificate(scaled, scaled.start)
+    before, after = (evaluator.values(x, [evaluator.nominal])[0] for x in (problem.start, best.x))
+    held = tuple(
+        _held(limit, before[part], after[part], proof, number)
+        for number, (limit, part) in enumerate(zip(problem.limits, evaluator.parts[1:], strict=True))
+    )
+    goals = float(np.max(before[evaluator.parts[0]])), best.goal
+    finished = len(outcomes) == search.way.starts and all(one.ended for one in outcomes)
+    return Calibration(problem, asked, best.x, goals, held, proof, outcomes, best.samples, finished)
+
+
+def _held(limit: Settled, before: Array, after: Array, proof: Certificate, number: int) -> Held:
+    mine = [one for one in proof.active if one.row.limit == number]
+    ends = [(float(np.min(one)), float(np.max(one))) for one in (before, after)]
+    # a lower bound that moves out gets less
+    multiplier = sum(one.multiplier for one in mine)
+    return Held(limit.name, limit.unit, limit.lower, limit.upper, ends[0], ends[1], bool(mine), multiplier)
+
+
+def with_limit(problem: Problem, old: Settled, new: Settled) -> Problem:
+    """The problem with one limit in place of another."""
+    return replace(problem, limits=tuple(new if one is old else one for one in problem.limits))

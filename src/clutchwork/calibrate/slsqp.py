@@ -1,0 +1,79 @@
+"""Sequential quadratic programming, SLSQP of SciPy, on unknowns in which the known curvature is the same everywhere.
+
+D. Kraft, A software package for sequential quadratic programming, DFVLR-FB 88-28, 1988.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.extras import need
+from clutchwork.calibrate.rows import Block
+from clutchwork.calibrate.scaled import Scaled
+
+Array = NDArray[np.float64]
+# share of its bounds that an unknown is moved by in the first step, where nothing is known of curvatures
+FIRST_STEP = 0.2
+
+
+def slsqp(scaled: Scaled, tolerance: float, iterations: int) -> Array:
+    """The scaled unknowns where the search ended."""
+    optimize = need("scipy.optimize", "calibrate", "calibrate")
+    start, count = scaled.start, scaled.count
+    by_z = whitened(scaled)
+    matrix, ends = scaled.linear
+    blocks = [Block([one for one in scaled.rows if (one.sign == 0.0) == equal]) for equal in (True, False)]
+
+    def to_y(z: Array) -> Array:
+        made: Array = start + by_z @ z
+        return made
+
+    constraints: list[dict[str, Any]] = [
+        {
+            "type": kind,
+            "fun": lambda z, block=block: scaled.values(to_y(z), block),
+            "jac": lambda z, block=block: scaled.slopes(to_y(z), block) @ by_z,
+        }
+        for kind, block in zip(("eq", "ineq"), blocks, strict=True)
+        if block.rows
+    ]
+    own = len(scaled.width)
+    plain = np.count_nonzero(by_z - np.diag(np.diag(by_z))) == 0
+    box: Any = None
+    if plain:
+        scale = np.diag(by_z)[:own]
+        box = [*zip(-start[:own] / scale, (1.0 - start[:own]) / scale, strict=True), *[(None, None)] * (count - own)]
+    else:
+        unit = np.eye(count)[:own]
+        matrix = np.vstack([matrix, unit, -unit])
+        ends = np.concatenate([ends, np.ones(own), np.zeros(own)])
+    if len(ends):
+        lines, room = -matrix @ by_z, ends - matrix @ start
+        constraints.append({"type": "ineq", "fun": lambda z: room + lines @ z, "jac": lambda z: lines})
+    found = optimize.minimize(
+        lambda z: scaled.goal(to_y(z)),
+        np.zeros(count),
+        jac=lambda z: scaled.gradient(to_y(z)) @ by_z,
+        bounds=box,
+        constraints=constraints,
+        method="SLSQP",
+        options={"ftol": tolerance, "maxiter": iterations},
+    )
+    return to_y(found.x)
+
+
+def whitened(scaled: Scaled) -> Array:
+    """Scaled unknowns by those of the solver, in which the first guess of the curvature is one."""
+    gradient = scaled.gradient(scaled.start)
+    size = float(np.linalg.norm(gradient)) / FIRST_STEP or 1.0
+    if scaled.curvature is None:
+        return np.eye(scaled.count) / np.sqrt(size)
+    known = scaled.curvature
+    touched = np.diag(known) > 0.0
+    more = np.where(touched, 1e-9 * np.max(np.diag(known)), size)
+    lower = np.linalg.cholesky(known + np.diag(more))
+    made: Array = np.linalg.inv(lower).T
+    return made

@@ -1,0 +1,304 @@
+"""What goals and limits are made of: outputs of a run, the jerk of a shaft, slopes of tables that are free.
+
+Each term gives one number or several with their derivatives by the numbers of the model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UseError
+from clutchwork.base.shown import shown
+from clutchwork.calibrate.numbers import number
+from clutchwork.declare.calls import explained
+from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
+
+if TYPE_CHECKING:
+    from clutchwork.calibrate.names import Curve
+    from clutchwork.gradients.parameters import Parameter
+
+Array = NDArray[np.float64]
+OUTPUTS = (AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When)
+
+
+class Span(NamedTuple):
+    """When a run begins and ends [s]."""
+
+    begin: float
+    end: float
+
+
+class Given(NamedTuple):
+    """What a term is computed from."""
+
+    values: Array  # of the outputs that it needs
+    slopes: Array  # of these by the numbers, shape (outputs, numbers)
+    numbers: Array
+    places: Mapping[str, int]  # of the numbers by name
+    curves: Mapping[str, Curve]
+    span: Span
+
+
+class UnitOf(Protocol):
+    """Units of a model."""
+
+    def output(self, one: Any) -> str:
+        """Of an output of a run."""
+
+    def table(self, stem: str) -> str:
+        """Of the values of a table."""
+
+
+# of jerks by those of speeds
+RATES = {"rad/s": "rad/s3", "m/s": "m/s3"}
+Rows: TypeAlias = "tuple[Array, Array]"
+
+
+class Term(Protocol):
+    """One of them."""
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+
+    def needs(self, span: Span) -> list[Any]:
+        """The outputs of a run that it is made of, each one number."""
+
+    def unit(self, units: UnitOf) -> str:
+        """Its unit."""
+
+    def rows(self, given: Given) -> Rows:
+        """Its values, and their derivatives by the numbers."""
+
+
+@dataclass(frozen=True)
+class Plain:
+    """An output of a run as it is; one at several instants has as many values."""
+
+    output: Any
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return str(self.output.name)
+
+    def needs(self, span: Span) -> list[Any]:
+        """Itself, each instant on its own."""
+        one = self.output
+        return [AtTimes(one.signal, (time,)) for time in one.times] if isinstance(one, AtTimes) else [one]
+
+    def unit(self, units: UnitOf) -> str:
+        """That of the output."""
+        return units.output(self.output)
+
+    def rows(self, given: Given) -> Rows:
+        """What the run gave."""
+        return given.values, given.slopes
+
+
+@dataclass(frozen=True)
+class Jerk:
+    """The jerk of a shaft or a mass, averaged over windows: second differences of its speed."""
+
+    shaft: str
+    window: float  # s
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return f"jerk({self.shaft})"
+
+    def needs(self, span: Span) -> list[Any]:
+        """Its speed at instants that lie half a window apart."""
+        count = int((span.end - span.begin) / (0.5 * self.window) * (1.0 + 1e-12))
+        times = np.minimum(span.begin + 0.5 * self.window * np.arange(count + 1), span.end)
+        return [AtTimes(f"{self.shaft}.speed", (float(time),)) for time in times]
+
+    def unit(self, units: UnitOf) -> str:
+        """Of its speed, over seconds squared."""
+        return RATES.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
+
+    def rows(self, given: Given) -> Rows:
+        """One value for each window. docs/theory/calibration.md (3)"""
+        scale = 1.0 / self.window**2
+        return _second(given.values) * scale, _second(given.slopes) * scale
+
+
+def _second(values: Array) -> Array:
+    """Second differences over two places."""
+    made: Array = values[4:] - 2.0 * values[2:-2] + values[:-4]
+    return made
+
+
+@dataclass(frozen=True)
+class RmsJerk:
+    """The root of the mean square of the jerk of a shaft or a mass over the run."""
+
+    shaft: str
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return f"rms_jerk({self.shaft})"
+
+    def needs(self, span: Span) -> list[Any]:
+        """The integral of its square."""
+        return [SquaredJerk(self.shaft)]
+
+    def unit(self, units: UnitOf) -> str:
+        """Of its speed, over seconds squared."""
+        return RATES.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
+
+    def rows(self, given: Given) -> Rows:
+        """One value."""
+        time = given.span.end - given.span.begin
+        value = np.sqrt(given.values / time)
+        # at rest all the while it has no derivative, and cannot be less
+        return value, given.slopes / (2.0 * time * np.maximum(value, 1e-12))
+
+
+@dataclass(frozen=True)
+class Slope:
+    """Slopes of the pieces of a table."""
+
+    stem: str
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return f"slope({self.stem})"
+
+    def needs(self, span: Span) -> list[Any]:
+        """No run."""
+        return []
+
+    def unit(self, units: UnitOf) -> str:
+        """Of the table, a second."""
+        return f"{units.table(self.stem)}/s"
+
+    def rows(self, given: Given) -> Rows:
+        """One value for each piece."""
+        step, by_step, rise, by_rise = _pieces(given, self.stem)
+        value = rise / step
+        return value, (by_rise - value[:, None] * by_step) / step[:, None]
+
+
+@dataclass(frozen=True)
+class SquaredSlope:
+    """The integral over time of the square of the slope of a table."""
+
+    stem: str
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return f"squared_slope({self.stem})"
+
+    def needs(self, span: Span) -> list[Any]:
+        """No run."""
+        return []
+
+    def unit(self, units: UnitOf) -> str:
+        """Of the table squared, a second."""
+        return f"({units.table(self.stem)})2/s"
+
+    def rows(self, given: Given) -> Rows:
+        """One value."""
+        step, by_step, rise, by_rise = _pieces(given, self.stem)
+        slope = rise / step
+        gradient = (2.0 * slope) @ by_rise - (slope**2) @ by_step
+        return np.array([rise @ slope]), gradient[None, :]
+
+    def curvature(self, given: Given) -> Array:
+        """Its second derivative by the numbers where times stay."""
+        step, _, _, by_rise = _pieces(given, self.stem)
+        made: Array = 2.0 * (by_rise.T / step) @ by_rise
+        return made
+
+
+def _pieces(given: Given, stem: str) -> tuple[Array, Array, Array, Array]:
+    """Lengths and rises of the pieces of a table that take time, and their derivatives by the numbers."""
+    table = given.curves[stem]
+    sides = [_column(given, column) for column in (table.times, table.values)]
+    (step, by_step), (rise, by_rise) = ((np.diff(value), np.diff(slope, axis=0)) for value, slope in sides)
+    # a jump has no slope
+    long = np.diff([one.start for one in table.times]) > 0.0
+    return step[long], by_step[long], rise[long], by_rise[long]
+
+
+def _column(given: Given, column: Sequence[Parameter]) -> Rows:
+    """Times or values of a table as they are now, and their derivatives by the numbers."""
+    made, slopes = np.array([one.start for one in column]), np.zeros((len(column), len(given.numbers)))
+    for row, one in enumerate(column):
+        if one.name in given.places:
+            place = given.places[one.name]
+            made[row], slopes[row, place] = given.numbers[place], 1.0
+    return made, slopes
+
+
+@explained("cw.jerk", shaft="'car'")
+def jerk(shaft: str, window: Any = 0.05) -> Jerk:
+    """The jerk of a shaft [rad/s3] or a mass [m/s3] for `calibrate`: at every instant, averaged over windows.
+
+    Parameters: shaft, its name; window [s], or with a unit: what is shorter does not count, 0.05 s is what a person
+    feels. A jump of the acceleration counts as its height over the window. docs/theory/calibration.md (3)
+    """
+    length = number(window, "s")
+    if length is None or length <= 0.0:
+        raise UseError("jerk", [f"window is {shown(window)}: give a time > 0 s, such as 0.05"])
+    return Jerk(_named("jerk", shaft), length)
+
+
+@explained("cw.rms_jerk", shaft="'car'")
+def rms_jerk(shaft: str) -> RmsJerk:
+    """The root of the mean square of the jerk of a shaft [rad/s3] or a mass [m/s3] over a run, for `calibrate`.
+
+    Parameters: shaft, its name. Jumps of the acceleration do not count, as in `cw.squared_jerk`.
+    """
+    return RmsJerk(_named("rms_jerk", shaft))
+
+
+@explained("cw.slope", signal="'c1.pressure'")
+def slope(signal: str) -> Slope:
+    """The slopes of the pieces of a table for `calibrate`, in the unit of its values a second.
+
+    Parameters: signal, the name of the table, such as "c1.pressure".
+    """
+    return Slope(_named("slope", signal))
+
+
+@explained("cw.squared_slope", signal="'c1.pressure'")
+def squared_slope(signal: str) -> SquaredSlope:
+    """The integral of the square of the slope of a table for `calibrate`: how restless a profile is.
+
+    Parameters: signal, the name of the table, such as "c1.pressure".
+    """
+    return SquaredSlope(_named("squared_slope", signal))
+
+
+def _named(call: str, name: object) -> str:
+    if not isinstance(name, str):
+        raise UseError(call, [f"{shown(name)} is not a name; give one such as 'c1.pressure'"])
+    return name
+
+
+def term(given: Any) -> Term | None:
+    """The term that a goal or a limit means; None where it is none."""
+    if isinstance(given, str):
+        return Plain(AtEnd(given))
+    if isinstance(given, Jerk | RmsJerk | Slope | SquaredSlope):
+        return given
+    return Plain(given) if isinstance(given, OUTPUTS) else None
+
+
+def is_computed(given: Any) -> bool:
+    """Whether it is a function of a run, which has no derivative."""
+    return isinstance(given, Computed) or callable(given)
+
+
+__all__ = ["Output", "Term", "jerk", "rms_jerk", "slope", "squared_slope", "term"]

@@ -1,0 +1,115 @@
+"""A calibration in words: what was found, what each limit costs, what stands in the way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import floor, isfinite, log10
+from typing import TYPE_CHECKING
+
+from clutchwork.base.text import columns, counted
+
+if TYPE_CHECKING:
+    from clutchwork.calibrate.result import Calibration, Held
+
+# values of a table with more lines are shown without the middle
+MOST_VALUES = 24
+
+
+def text(found: Calibration) -> str:
+    """All of it for the terminal."""
+    head = f"{found.problem.goal.name}: {_number(found.goal[0])} -> {_number(found.goal[1])} {found.problem.unit}".rstrip()
+    parts = [head, _values(found), _limits(found), "\n".join(found.costs), _effort(found), found.message]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _values(found: Calibration) -> str:
+    lines = [["number", "before", "after", "unit", ""]]
+    walls = {number: side for number, side, _ in found.certificate.at_bounds}
+    for number, one in enumerate(found.problem.unknowns):
+        at = {-1.0: "at its lower bound", 1.0: "at its upper bound"}.get(walls.get(number, 0.0), "")
+        lines.append([one.name, _number(found.start[one.name]), _number(found.values[one.name]), one.unit, at])
+    if len(lines) > MOST_VALUES:
+        half = MOST_VALUES // 2
+        lines = [*lines[:half], ["...", "", "", "", ""], *lines[-half:]]
+    return columns(lines, right=(1, 2))
+
+
+def _limits(found: Calibration) -> str:
+    if not found.limits:
+        return ""
+    lines = [["limit", "from", "to", "before", "after", "unit", ""]]
+    for one in found.limits:
+        sides = [_number(side) if isfinite(side) else "" for side in (one.lower, one.upper)]
+        lines.append([one.name, *sides, _range(one.before), _range(one.after), one.unit, "active" if one.active else ""])
+    return columns(lines, right=(1, 2, 3, 4))
+
+
+def _range(ends: tuple[float, float]) -> str:
+    low, high = map(_number, ends)
+    return low if low == high else f"{low} ... {high}"
+
+
+def _number(value: float) -> str:
+    return f"{value:.6g}"
+
+
+def costs(found: Calibration) -> Iterator[str]:
+    """What each active limit costs: "1000 J more of c1.heat allowed saves 0.3 m/s3 of rms_jerk(car)"."""
+    for one in found.limits:
+        if one.active and abs(one.multiplier) > 0.0:
+            yield _cost(one, found)
+
+
+def _cost(one: Held, found: Calibration) -> str:
+    bound = one.upper if isfinite(one.upper) else one.lower
+    amount = _round(abs(bound) or max(map(abs, one.before)) or 1.0)
+    saved = amount * one.multiplier
+    goal, unit = found.problem.goal.name, found.problem.unit
+    if one.lower == one.upper:
+        verb, word = ("saves" if saved > 0.0 else "costs"), "more"
+    else:
+        verb, word = "saves", "more" if isfinite(one.upper) else "less"
+    allowed = "asked of" if one.lower == one.upper else "allowed of"
+    amount_said = f"{amount:g} {one.unit}".rstrip()
+    return f"{amount_said} {word} {allowed} {one.name} {verb} {abs(saved):.3g} {unit}".rstrip() + f" of {goal}"
+
+
+def _round(size: float) -> float:
+    """About a hundredth of it, one digit."""
+    return float(10.0 ** floor(log10(size / 10.0)))
+
+
+def _effort(found: Calibration) -> str:
+    runs = sum(one.runs for one in found.outcomes)
+    said = [f"{found.asked.method}, {counted(len(found.outcomes), 'starts')}, {counted(runs, 'points run')}"]
+    said.append(f"largest violation {found.certificate.violation:.1g}, residual {found.certificate.residual:.1g}")
+    if found.samples:
+        said.append(f"{found.asked.samples} samples of production, {len(found.samples)} of them decided")
+    return "; ".join(said)
+
+
+def faults(found: Calibration) -> Iterator[str]:
+    """What stands in the way of using the values."""
+    if not found.finished:
+        yield "the search was interrupted: these are the best values so far"
+    if not found.feasible:
+        for one in found.limits:
+            low, high = one.after
+            if low < one.lower or high > one.upper:
+                yield (
+                    f"{one.name} is {_range(one.after)} {one.unit}".rstrip() + f", outside of its bounds "
+                    f"{_bounds(one)}: widen them or those of the free numbers, or give more starts"
+                )
+    elif found.finished and not found.solved:
+        yield (
+            f"what is left of the gradient is {found.certificate.residual:.2g} of the goal: the search stopped before the"
+            " least goal; give more iterations or starts, or another method"
+        )
+    for one in found.outcomes:
+        if one.fault:
+            yield f"start {one.number + 1} could not be used: {one.fault}"
+
+
+def _bounds(one: Held) -> str:
+    sides = [f"{side:.6g}" if isfinite(side) else "" for side in (one.lower, one.upper)]
+    return " to ".join(side for side in sides if side)
