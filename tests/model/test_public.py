@@ -42,6 +42,8 @@ PUBLIC = [
     ),
     *("sweep", "variants"),
     *("Differentiable", "Gradient", "NoGradient", "differentiable", "squared_jerk"),
+    *("Calibration", "CalibrationError", "CalibrationInterrupted", "calibrate", "limit", "together"),
+    *("jerk", "rms_jerk", "slope", "squared_slope"),
     *("Moment", "environment"),
     *("Linear", "linearise", "linearize"),
     *("load_run", "read_columns"),

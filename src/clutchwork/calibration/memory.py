@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -14,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.base.errors import UseError
-from clutchwork.calibrate.outcome import Outcome
+from clutchwork.calibration.outcome import Outcome
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.problem import Problem
+    from clutchwork.calibration.problem import Problem
 
 FORMAT = "clutchwork calibration 1"
 # s between two writings
@@ -49,7 +48,7 @@ class Memory:
             # a file that is read is always whole
             beside = self.path.with_name(f"{self.path.name}.new")
             beside.write_text(json.dumps(data, indent=1), encoding="utf-8")
-            os.replace(beside, self.path)
+            beside.replace(self.path)
 
 
 def _key(problem: Problem, settings: Iterable[Any]) -> str:

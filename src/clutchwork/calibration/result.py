@@ -11,26 +11,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.above import above
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, UseError, near
 from clutchwork.base.shown import shown
-from clutchwork.calibrate import words
-from clutchwork.calibrate.evaluate import Evaluator
-from clutchwork.calibrate.moves import Moves
-from clutchwork.calibrate.optimal import Certificate, certificate
-from clutchwork.calibrate.outcome import Outcome
-from clutchwork.calibrate.scaled import Samples, Scaled
+from clutchwork.calibration import words
+from clutchwork.calibration.evaluate import Evaluator
+from clutchwork.calibration.held import Held
+from clutchwork.calibration.moves import Moves
+from clutchwork.calibration.optimal import Certificate, certificate
+from clutchwork.calibration.outcome import Outcome
+from clutchwork.calibration.scaled import Samples, Scaled
 from clutchwork.declare.calls import explained_methods
 from clutchwork.gradients.parameters import changes, parameters
 from clutchwork.run.simulation import simulate
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.calibrate.front import Front
-    from clutchwork.calibrate.limits import Settled
-    from clutchwork.calibrate.problem import Problem
-    from clutchwork.calibrate.search import Search
-    from clutchwork.calibrate.verify import Verified
+    from clutchwork.calibration.limits import Settled
+    from clutchwork.calibration.problem import Problem
+    from clutchwork.calibration.search import Search
     from clutchwork.declare.options import Options
     from clutchwork.results.plot.canvas import Picture
     from clutchwork.results.trajectory import Trajectory
@@ -60,7 +60,7 @@ class Asked:
     """How it was searched for."""
 
     options: Options
-    method: str
+    solver: str
     starts: int
     samples: int
     robust: str
@@ -72,21 +72,7 @@ class Asked:
     @property
     def identity(self) -> tuple[Any, ...]:
         """What the result depends on."""
-        return (self.options, self.method, self.starts, self.samples, self.robust, self.seed, self.tolerance)
-
-
-@dataclass(frozen=True)
-class Held:
-    """A limit, and what it is with the values that were found."""
-
-    name: str
-    unit: str
-    lower: float
-    upper: float
-    before: tuple[float, float]  # least and largest value with the values of the model
-    after: tuple[float, float]
-    active: bool
-    multiplier: float  # by how much the goal gets less where the bound moves out by one, both in SI
+        return (self.options, self.solver, self.starts, self.samples, self.robust, self.seed, self.tolerance)
 
 
 @explained_methods("calibration")
@@ -166,6 +152,11 @@ class Calibration:
         return self.finished and self.feasible and self.certificate.residual <= OPTIMAL
 
     @property
+    def effort(self) -> str:
+        """How it was searched for."""
+        return self.asked.solver
+
+    @property
     def message(self) -> str:
         """What stands in the way of using the values, one line each; empty when nothing does."""
         return "\n".join(words.faults(self))
@@ -195,34 +186,29 @@ class Calibration:
         state = "solved" if self.solved else "not solved"
         return f"<Calibration {state}: {self.problem.goal.name} {self.goal[0]:.6g} -> {self.goal[1]:.6g}>"
 
-    # --------------------------------------------------------------------------------------------------- what to do next
+    # -------------------------------------------------------------------------------------------------- what to do next
 
     def plot(self, *signals: Any, path: str | Path | None = None) -> Picture:
         """Draw signals before and after; without names those that goal and limits are about. Needs matplotlib.
 
         Parameters: signals, as `cw.compare` takes them; path, of a picture that is written.
         """
-        from clutchwork.calibrate.picture import before_and_after
+        made: Picture = above("calibration.plot", self, signals, path)
+        return made
 
-        return before_and_after(self, signals, path)
-
-    def front(self, limit: str, bounds: Sequence[Any], *, progress: Any = False) -> Front:
+    def front(self, limit: str, bounds: Sequence[Any], *, progress: Any = False) -> Any:
         """The least goal for each bound of a limit, as of jerk over heat.
 
         Parameters: limit, its name; bounds, of its upper side, or of the lower one where it has no upper one.
         """
-        from clutchwork.calibrate.front import front
+        return above("calibration.front", self, self.limit(limit), bounds, progress)
 
-        return front(self, self.limit(limit), bounds, progress)
-
-    def verify(self, samples: int = 1000, *, seed: int = 1, threads: int | None = None) -> Verified:
+    def verify(self, samples: int = 1000, *, seed: int = 1, threads: int | None = None) -> Any:
         """Run production samples that the search has not seen, and say which break a limit.
 
         Parameters: samples, how many; seed, of the draws; threads, how many runs go at once.
         """
-        from clutchwork.calibrate.verify import verify
-
-        return verify(self, samples, seed, threads)
+        return above("calibration.verify", self, samples, seed, threads)
 
     def limit(self, name: str) -> Settled:
         """A limit by name; UseError where there is none."""

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.extras import need
-from clutchwork.calibrate.rows import Block
-from clutchwork.calibrate.scaled import REFUSED, Scaled
-from clutchwork.calibrate.slsqp import whitened
+from clutchwork.calibration.rows import Block
+from clutchwork.calibration.scaled import REFUSED, Scaled
+from clutchwork.calibration.slsqp import whitened
 
 Array = NDArray[np.float64]
 UNBOUNDED = 1e20
@@ -54,7 +54,7 @@ class _Functions:
 
 def ipopt(scaled: Scaled, tolerance: float, iterations: int) -> Array:
     """The scaled unknowns where the search ended."""
-    cyipopt = need("cyipopt", "ipopt", "method='ipopt'")
+    cyipopt = need("cyipopt", "ipopt", "solver='ipopt'")
     functions = _Functions(scaled, whitened(scaled))
     free = np.full(scaled.count, UNBOUNDED)
     task = cyipopt.Problem(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
-from clutchwork.calibrate.numbers import pair
+from clutchwork.calibration.numbers import pair
 from clutchwork.declare.calls import explained
 
 FACTOR, SHIFT, VALUE = "factor", "shift", "value"

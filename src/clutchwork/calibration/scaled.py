@@ -1,7 +1,7 @@
-"""The same problem in scaled unknowns and outputs, as solvers take it. docs/theory/calibration.md (1)
+"""The same problem in scaled unknowns and outputs, as solvers take it.
 
 Unknowns go from 0 to 1 between their bounds. Where the worst of several values is to be made least, one unknown more is
-a bound of all of them.
+a bound of all of them. docs/theory/calibration.md (1)
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.calibrate.linear import Linear, is_linear_table, without_run
-from clutchwork.calibrate.rows import Block, Row, rows_of, size_of
-from clutchwork.calibrate.terms import SquaredSlope
+from clutchwork.calibration.linear import Linear, is_linear_table, without_run
+from clutchwork.calibration.rows import Block, Row, rows_of, size_of
+from clutchwork.calibration.terms import SquaredSlope
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.evaluate import Evaluator, Point
+    from clutchwork.calibration.evaluate import Evaluator, Point
 
 Array = NDArray[np.float64]
 # a value that no solver takes for an improvement, in scaled numbers

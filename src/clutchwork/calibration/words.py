@@ -4,25 +4,84 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import floor, isfinite, log10
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from clutchwork.base.text import columns, counted
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.result import Calibration, Held
+    from collections.abc import Mapping, Sequence
+
+    from clutchwork.calibration.held import Held
+    from clutchwork.calibration.optimal import Certificate
+    from clutchwork.calibration.outcome import Outcome
+    from clutchwork.calibration.problem import Problem
 
 # values of a table with more lines are shown without the middle
 MOST_VALUES = 24
 
 
-def text(found: Calibration) -> str:
+class Told(Protocol):
+    """What is said of a calibration."""
+
+    @property
+    def problem(self) -> Problem:
+        """What was asked for."""
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """The unknowns that were found."""
+
+    @property
+    def start(self) -> Mapping[str, float]:
+        """The unknowns as the model has them."""
+
+    @property
+    def goal(self) -> tuple[float, float]:
+        """Before and after."""
+
+    @property
+    def limits(self) -> Sequence[Held]:
+        """All limits."""
+
+    @property
+    def certificate(self) -> Certificate:
+        """What holds at the values."""
+
+    @property
+    def outcomes(self) -> Sequence[Outcome]:
+        """What each start led to."""
+
+    @property
+    def samples(self) -> Sequence[object]:
+        """Samples of production that decided it."""
+
+    @property
+    def finished(self) -> bool:
+        """Whether the search was not interrupted."""
+
+    @property
+    def feasible(self) -> bool:
+        """Whether all limits hold."""
+
+    @property
+    def solved(self) -> bool:
+        """Whether it is optimal."""
+
+    @property
+    def effort(self) -> str:
+        """How it was searched for."""
+
+
+def text(found: Told) -> str:
     """All of it for the terminal."""
-    head = f"{found.problem.goal.name}: {_number(found.goal[0])} -> {_number(found.goal[1])} {found.problem.unit}".rstrip()
-    parts = [head, _values(found), _limits(found), "\n".join(found.costs), _effort(found), found.message]
+    head = (
+        f"{found.problem.goal.name}: {_number(found.goal[0])} -> {_number(found.goal[1])} {found.problem.unit}".rstrip()
+    )
+    parts = [head, _values(found), _limits(found), "\n".join(costs(found)), _effort(found), "\n".join(faults(found))]
     return "\n\n".join(part for part in parts if part)
 
 
-def _values(found: Calibration) -> str:
+def _values(found: Told) -> str:
     lines = [["number", "before", "after", "unit", ""]]
     walls = {number: side for number, side, _ in found.certificate.at_bounds}
     for number, one in enumerate(found.problem.unknowns):
@@ -34,13 +93,15 @@ def _values(found: Calibration) -> str:
     return columns(lines, right=(1, 2))
 
 
-def _limits(found: Calibration) -> str:
+def _limits(found: Told) -> str:
     if not found.limits:
         return ""
     lines = [["limit", "from", "to", "before", "after", "unit", ""]]
     for one in found.limits:
         sides = [_number(side) if isfinite(side) else "" for side in (one.lower, one.upper)]
-        lines.append([one.name, *sides, _range(one.before), _range(one.after), one.unit, "active" if one.active else ""])
+        lines.append(
+            [one.name, *sides, _range(one.before), _range(one.after), one.unit, "active" if one.active else ""]
+        )
     return columns(lines, right=(1, 2, 3, 4))
 
 
@@ -53,14 +114,14 @@ def _number(value: float) -> str:
     return f"{value:.6g}"
 
 
-def costs(found: Calibration) -> Iterator[str]:
+def costs(found: Told) -> Iterator[str]:
     """What each active limit costs: "1000 J more of c1.heat allowed saves 0.3 m/s3 of rms_jerk(car)"."""
     for one in found.limits:
         if one.active and abs(one.multiplier) > 0.0:
             yield _cost(one, found)
 
 
-def _cost(one: Held, found: Calibration) -> str:
+def _cost(one: Held, found: Told) -> str:
     bound = one.upper if isfinite(one.upper) else one.lower
     amount = _round(abs(bound) or max(map(abs, one.before)) or 1.0)
     saved = amount * one.multiplier
@@ -79,16 +140,16 @@ def _round(size: float) -> float:
     return float(10.0 ** floor(log10(size / 10.0)))
 
 
-def _effort(found: Calibration) -> str:
+def _effort(found: Told) -> str:
     runs = sum(one.runs for one in found.outcomes)
-    said = [f"{found.asked.method}, {counted(len(found.outcomes), 'starts')}, {counted(runs, 'points run')}"]
+    said = [f"{found.effort}, {counted(len(found.outcomes), 'starts')}, {counted(runs, 'runs with gradient')}"]
     said.append(f"largest violation {found.certificate.violation:.1g}, residual {found.certificate.residual:.1g}")
     if found.samples:
-        said.append(f"{found.asked.samples} samples of production, {len(found.samples)} of them decided")
+        said.append(f"limits hold in all samples of production, of which {len(found.samples)} decided")
     return "; ".join(said)
 
 
-def faults(found: Calibration) -> Iterator[str]:
+def faults(found: Told) -> Iterator[str]:
     """What stands in the way of using the values."""
     if not found.finished:
         yield "the search was interrupted: these are the best values so far"
@@ -101,13 +162,11 @@ def faults(found: Calibration) -> Iterator[str]:
                     f"{_bounds(one)}: widen them or those of the free numbers, or give more starts"
                 )
     elif found.finished and not found.solved:
-        yield (
-            f"what is left of the gradient is {found.certificate.residual:.2g} of the goal: the search stopped before the"
-            " least goal; give more iterations or starts, or another method"
-        )
-    for one in found.outcomes:
-        if one.fault:
-            yield f"start {one.number + 1} could not be used: {one.fault}"
+        left = f"what is left of the gradient is {found.certificate.residual:.2g} of the goal"
+        yield f"{left}: the search stopped before the least one; give more iterations or starts, or another solver"
+    for start in found.outcomes:
+        if start.fault:
+            yield f"start {start.number + 1} could not be used: {start.fault}"
 
 
 def _bounds(one: Held) -> str:

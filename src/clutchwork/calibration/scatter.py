@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.extras import need
-from clutchwork.calibrate.moves import Moves
-from clutchwork.calibrate.scaled import Samples, Scaled
+from clutchwork.calibration.moves import Moves
+from clutchwork.calibration.scaled import Samples, Scaled
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.evaluate import Evaluator
-    from clutchwork.calibrate.moves import Unknown
-    from clutchwork.calibrate.problem import Problem
+    from clutchwork.calibration.evaluate import Evaluator
+    from clutchwork.calibration.moves import Unknown
+    from clutchwork.calibration.problem import Problem
 
 Array = NDArray[np.float64]
 Solve = Callable[[Scaled], Array]

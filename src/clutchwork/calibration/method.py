@@ -8,10 +8,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.calibrate.interior import ipopt
-from clutchwork.calibrate.scaled import Scaled
-from clutchwork.calibrate.slsqp import slsqp
-from clutchwork.calibrate.trust import trust_constr
+from clutchwork.calibration.interior import ipopt
+from clutchwork.calibration.scaled import Scaled
+from clutchwork.calibration.slsqp import slsqp
+from clutchwork.calibration.trust import trust_constr
 
 Array = NDArray[np.float64]
 Solver: TypeAlias = Callable[[Scaled, float, int], Array]

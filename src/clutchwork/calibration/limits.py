@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
-from clutchwork.calibrate.numbers import bounds, number
-from clutchwork.calibrate.terms import Given, Rows, Slope, Span, SquaredSlope, Term, UnitOf, is_computed, term
+from clutchwork.calibration.numbers import bounds, number
+from clutchwork.calibration.terms import Given, Rows, Slope, Span, SquaredSlope, Term, UnitOf, is_computed, term
 from clutchwork.declare.calls import explained
 
 Array = NDArray[np.float64]
@@ -135,5 +135,3 @@ def limit(what: Any, lower: Any = None, upper: Any = None, *, name: str = "") ->
     if not isinstance(name, str):
         raise UseError("limit", [f"name is {shown(name)}: give a string"])
     return Limit(what, lower, upper, name)
-
-

@@ -11,13 +11,13 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.base.text import columns
-from clutchwork.calibrate.evaluate import Evaluator
-from clutchwork.calibrate.scatter import drawn
+from clutchwork.calibration.evaluate import Evaluator
+from clutchwork.calibration.scatter import drawn
 from clutchwork.gradients.differentiable import differentiable
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.limits import Settled
-    from clutchwork.calibrate.result import Calibration
+    from clutchwork.calibration.limits import Settled
+    from clutchwork.calibration.result import Calibration
 
 Array = NDArray[np.float64]
 # a limit counts as held where it is passed by less, in shares of its bound
@@ -60,7 +60,9 @@ def verify(found: Calibration, count: int, seed: int, threads: int | None) -> Ve
     """Samples that are drawn anew."""
     problem = found.problem
     if not problem.scatter:
-        raise UseError("verify", ["nothing scatters in this calibration; give scatter={name: (low, high)} to calibrate"])
+        raise UseError(
+            "verify", ["nothing scatters in this calibration; give scatter={name: (low, high)} to calibrate"]
+        )
     if not isinstance(count, int) or isinstance(count, bool) or count < 1:
         raise UseError("verify", [f"samples is {shown(count)}: give a whole number from 1 on"])
     samples = drawn(problem.scatter, count, seed)

@@ -10,14 +10,14 @@ from clutchwork.base.errors import UseError, near
 from clutchwork.base.paths import path_fault, path_of
 from clutchwork.base.progress import followed
 from clutchwork.base.shown import shown
-from clutchwork.calibrate.limits import Limit
-from clutchwork.calibrate.memory import Memory
-from clutchwork.calibrate.method import SOLVERS
-from clutchwork.calibrate.problem import Mistakes, Problem, problem
-from clutchwork.calibrate.result import Asked, Calibration, CalibrationInterrupted, found_by
-from clutchwork.calibrate.scatter import Scatter
-from clutchwork.calibrate.search import Search, Way
-from clutchwork.calibrate.terms import Span
+from clutchwork.calibration.limits import Limit
+from clutchwork.calibration.memory import Memory
+from clutchwork.calibration.method import SOLVERS
+from clutchwork.calibration.problem import Mistakes, Problem, problem
+from clutchwork.calibration.result import Asked, Calibration, CalibrationInterrupted, found_by
+from clutchwork.calibration.scatter import Scatter
+from clutchwork.calibration.search import Search, Way
+from clutchwork.calibration.terms import Span
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.gradients.differentiable import differentiable
@@ -44,7 +44,7 @@ def calibrate(
     free: Mapping[str, Any],
     minimise: Any,
     subject_to: Sequence[Limit] | Limit = (),
-    method: str = "slsqp",
+    solver: str = "slsqp",
     starts: int = 1,
     scatter: Mapping[str, Any] | None = None,
     samples: int = 64,
@@ -64,7 +64,7 @@ def calibrate(
     unless it is given; free, bounds (low, high) by name, in SI or with units: names of `cw.differentiable`, a range of
     a table by "c1.pressure.values[2:]", or any name with `cw.together`; minimise, an output as `cw.sweep` takes it,
     `cw.jerk`, `cw.rms_jerk`, `cw.squared_slope`, or a sum {output: weight, ...}; one of several values is made least
-    where it is largest. subject_to, limits, each a `cw.limit`; method, "slsqp", "trust-constr" or "ipopt"; starts, from
+    where it is largest. subject_to, limits, each a `cw.limit`; solver, "slsqp", "trust-constr" or "ipopt"; starts, from
     how many points to search: the values of the model first, then others between the bounds; threads, how many of
     these go at once.
 
@@ -83,13 +83,13 @@ def calibrate(
     plain = chosen.changed({"dt": None, "times": None})
     mistakes = Mistakes()
     counts = {"starts": starts, "samples": samples, "threads": threads, "iterations": iterations}
-    mistakes.found += _faults(counts, seed, tolerance, method, robust, file)
+    mistakes.found += _faults(counts, seed, tolerance, solver, robust, file)
     wanted = mistakes.caught(
         lambda: problem(system, Span(plain.t_start, end), free, minimise, subject_to, scatter), None
     )
     if mistakes.found or wanted is None:
         raise UseError("calibrate", mistakes.found)
-    asked = Asked(plain, method, starts, samples, robust, threads, seed, tolerance, iterations)
+    asked = Asked(plain, solver, starts, samples, robust, threads, seed, tolerance, iterations)
     return searched(wanted, asked, None if file is None else path_of("calibrate", file, "shift.json"), progress)
 
 
@@ -106,7 +106,7 @@ def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) ->
     if wanted.scatter:
         spread = Scatter.of(wanted, asked.samples, asked.seed, asked.robust == "worst")
     way = Way(
-        SOLVERS[asked.method], asked.tolerance, asked.iterations, asked.starts, asked.threads, asked.seed, spread
+        SOLVERS[asked.solver], asked.tolerance, asked.iterations, asked.starts, asked.threads, asked.seed, spread
     )  # fmt: skip
     memory = Memory(file, wanted, asked.identity)
     most = asked.starts * asked.iterations
@@ -122,7 +122,7 @@ def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) ->
 
 
 def _faults(
-    counts: Mapping[str, Any], seed: Any, tolerance: Any, method: Any, robust: Any, file: Any
+    counts: Mapping[str, Any], seed: Any, tolerance: Any, solver: Any, robust: Any, file: Any
 ) -> list[str]:  # fmt: skip
     """What is wrong with settings."""
     found = [
@@ -134,10 +134,12 @@ def _faults(
         found.append(f"seed is {shown(seed)}: give a whole number from 0 on")
     if not isinstance(tolerance, float) or not 0.0 < tolerance < 1.0:
         found.append(f"tolerance is {shown(tolerance)}: give a number between 0 and 1, such as 1e-10")
-    for name, value, known in (("method", method, (*SOLVERS,)), ("robust", robust, ROBUST)):
+    for name, value, known in (("solver", solver, (*SOLVERS,)), ("robust", robust, ROBUST)):
         if value not in known:
             choices = " or ".join(map(repr, known))
             found.append(f"{name} is {shown(value)}{near(value, known, f'give {choices}')}")
-    if file is not None and (fault := path_fault(os.fspath(file) if isinstance(file, os.PathLike) else file, "shift.json")):
+    if file is not None and (
+        fault := path_fault(os.fspath(file) if isinstance(file, os.PathLike) else file, "shift.json")
+    ):
         found.append(f"file: {fault}")
     return found

@@ -12,22 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.calibrate.evaluate import Evaluator, Point
-from clutchwork.calibrate.linear import Linear
-from clutchwork.calibrate.method import Solver
-from clutchwork.calibrate.optimal import certificate
-from clutchwork.calibrate.outcome import Outcome
-from clutchwork.calibrate.rows import size_of
-from clutchwork.calibrate.scaled import Samples, Scaled
-from clutchwork.calibrate.scatter import Scatter, in_all, sobol, violations
+from clutchwork.calibration.evaluate import Evaluator, Point
+from clutchwork.calibration.linear import Linear
+from clutchwork.calibration.method import Solver
+from clutchwork.calibration.outcome import Outcome
+from clutchwork.calibration.rows import size_of
+from clutchwork.calibration.scaled import Samples, Scaled
+from clutchwork.calibration.scatter import Scatter, in_all, sobol, violations
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.memory import Memory
-    from clutchwork.calibrate.problem import Problem
+    from clutchwork.calibration.memory import Memory
+    from clutchwork.calibration.problem import Problem
 
 Array = NDArray[np.float64]
-# times that a solver begins anew, and what may be left of the gradient of the goal
-MOST_AGAIN, ENOUGH = 3, 1e-5
 # points that are run for each start, of which the best is taken
 PILOTS = 8
 
@@ -61,7 +58,7 @@ class Search:
 
     def run(self) -> None:
         """Search from every start; KeyboardInterrupt leaves what was found until then."""
-        pending = [pair for pair in enumerate(self._starts()) if not self._known(*pair)]
+        pending = [pair for pair in enumerate(self._starts()) if not self._known(pair[0])]
         if self.way.threads == 1 or len(pending) == 1:
             for number, start in pending:
                 self._from(number, start)
@@ -75,7 +72,7 @@ class Search:
                 self.stop.set()
                 raise
 
-    def _known(self, number: int, start: Array) -> bool:
+    def _known(self, number: int) -> bool:
         """Whether a file has the end of this start."""
         before = self.memory.outcome(number)
         if before is not None:
@@ -112,13 +109,7 @@ class Search:
         keeper.end(x, samples)
 
     def _solved(self, scaled: Scaled) -> Array:
-        """Where the solver ends; it begins anew there where more is to be had."""
-        for _ in range(MOST_AGAIN):
-            y = self.way.solver(scaled, self.way.tolerance, self.way.iterations)
-            if certificate(scaled, y).residual <= ENOUGH:
-                break
-            scaled.start = y
-        return y
+        return self.way.solver(scaled, self.way.tolerance, self.way.iterations)
 
     def _samples(self) -> Samples:
         return Samples() if self.way.scatter is None else self.way.scatter.first()
@@ -175,7 +166,7 @@ class Keeper:
         point = self.evaluator.at(x, samples.chosen)
         made = self._outcome(point, self.scaled, True) if point.is_fine else None
         before = self.search.found.get(self.number)
-        if made is None or (before is not None and before.rank < made.rank and before.is_feasible):
+        if made is None or (before is not None and _clearly_better(before, made)):
             made = before
         if made is not None:
             self.search.found[self.number] = replace(made, ended=True, runs=self.evaluator.runs)
@@ -187,6 +178,13 @@ class Keeper:
         value = float(np.max(goal)) if scaled.worst else float(np.mean(goal[: scaled.averaged]))
         runs, chosen = self.evaluator.runs, tuple(scaled.samples)
         return Outcome(self.number, self.start, point.x, value, float(np.max(over)), ended, runs, scaled.scales, chosen)
+
+
+def _clearly_better(one: Outcome, other: Outcome) -> bool:
+    """Whether a point on the way is better than the last one, which has the smaller gradient."""
+    if not one.is_feasible or not other.is_feasible:
+        return one.rank < other.rank
+    return one.goal < other.goal - 1e-6 * abs(other.goal)
 
 
 def _best(evaluator: Evaluator, points: Sequence[Array], count: int) -> list[Array]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.calibrate.together import FACTOR, SHIFT, VALUE
+from clutchwork.calibration.together import FACTOR, SHIFT, VALUE
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.calibrate.moves import Moves
-from clutchwork.calibrate.terms import Given
+from clutchwork.calibration.moves import Moves
+from clutchwork.calibration.terms import Given
 from clutchwork.results.gradient import NoGradient
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.limits import Sum
-    from clutchwork.calibrate.problem import Problem
+    from clutchwork.calibration.limits import Sum
+    from clutchwork.calibration.problem import Problem
 
 Array = NDArray[np.float64]
 # solvers ask for values and gradients of a few points in turn

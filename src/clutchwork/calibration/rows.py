@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.evaluate import Point
-    from clutchwork.calibrate.limits import Settled
+    from clutchwork.calibration.evaluate import Point
+    from clutchwork.calibration.limits import Settled
 
 Array = NDArray[np.float64]
 

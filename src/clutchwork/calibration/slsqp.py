@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.extras import need
-from clutchwork.calibrate.rows import Block
-from clutchwork.calibrate.scaled import Scaled
+from clutchwork.calibration.ending import Ended, Ending
+from clutchwork.calibration.rows import Block
+from clutchwork.calibration.scaled import Scaled
 
 Array = NDArray[np.float64]
 # share of its bounds that an unknown is moved by in the first step, where nothing is known of curvatures
@@ -52,25 +53,33 @@ def slsqp(scaled: Scaled, tolerance: float, iterations: int) -> Array:
         ends = np.concatenate([ends, np.ones(own), np.zeros(own)])
     if len(ends):
         lines, room = -matrix @ by_z, ends - matrix @ start
-        constraints.append({"type": "ineq", "fun": lambda z: room + lines @ z, "jac": lambda z: lines})
-    found = optimize.minimize(
-        lambda z: scaled.goal(to_y(z)),
-        np.zeros(count),
-        jac=lambda z: scaled.gradient(to_y(z)) @ by_z,
-        bounds=box,
-        constraints=constraints,
-        method="SLSQP",
-        options={"ftol": tolerance, "maxiter": iterations},
-    )
+        constraints.append({"type": "ineq", "fun": lambda z: room + lines @ z, "jac": lambda _: lines})
+    ending = Ending(scaled, tolerance)
+    try:
+        found = optimize.minimize(
+            lambda z: scaled.goal(to_y(z)),
+            np.zeros(count),
+            jac=lambda z: scaled.gradient(to_y(z)) @ by_z,
+            bounds=box,
+            constraints=constraints,
+            method="SLSQP",
+            callback=lambda z: ending.look(to_y(z)),
+            # it ends by what is left of the gradient
+            options={"ftol": 1e-18, "maxiter": iterations},
+        )
+    except Ended as end:
+        return end.y
     return to_y(found.x)
 
 
 def whitened(scaled: Scaled) -> Array:
     """Scaled unknowns by those of the solver, in which the first guess of the curvature is one."""
+    # docs/theory/calibration.md (2)
     gradient = scaled.gradient(scaled.start)
     size = float(np.linalg.norm(gradient)) / FIRST_STEP or 1.0
     if scaled.curvature is None:
-        return np.eye(scaled.count) / np.sqrt(size)
+        plain: Array = np.eye(scaled.count) / np.sqrt(size)
+        return plain
     known = scaled.curvature
     touched = np.diag(known) > 0.0
     more = np.where(touched, 1e-9 * np.max(np.diag(known)), size)

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.extras import need
-from clutchwork.calibrate.rows import Block, Row
+from clutchwork.calibration.rows import Block, Row
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.scaled import Scaled
+    from clutchwork.calibration.scaled import Scaled
 
 Array = NDArray[np.float64]
 # limits and bounds that are closer than this are active, in scaled numbers
@@ -75,5 +75,3 @@ def certificate(scaled: Scaled, y: Array) -> Certificate:
         for (k, side), factor in zip(edges, found[len(found) - len(edges) :], strict=True)
     )
     return Certificate(violation, float(np.max(np.abs(left), initial=0.0)), active, at_bounds)
-
-

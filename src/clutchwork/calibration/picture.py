@@ -6,20 +6,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from clutchwork.calibrate.terms import Jerk, Plain, RmsJerk, Slope, SquaredSlope
+from clutchwork.calibration.terms import Jerk, Plain, RmsJerk, Slope, SquaredSlope
 from clutchwork.results.plot.compare import compare
-from clutchwork.results.plot.figure import figure_of, written
-from clutchwork.results.plot.style import COLOURS
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.front import Front
-    from clutchwork.calibrate.result import Calibration
+    from clutchwork.calibration.result import Calibration
     from clutchwork.results.plot.canvas import Picture
 
 MOST_PANELS = 5
-HEIGHT = 80.0  # mm
 
 
 def before_and_after(found: Calibration, signals: Sequence[Any], path: str | Path | None) -> Picture:
@@ -54,17 +48,3 @@ def _of(term: Any) -> Iterator[str]:
         owner = contact or str(getattr(term.output, "signal", "")).rpartition(".")[0]
         yield from (f"{contact}.slip", f"{contact}.torque") if contact else (str(getattr(term.output, "signal", "")),)
         yield f"{owner}.torque"
-
-
-def front(found: Front, path: Path | None) -> Picture:
-    """The goal over the bound, with short lines of the slope that the multipliers say."""
-    with figure_of(HEIGHT) as figure:
-        axes = figure.add_subplot()
-        axes.plot(found.bounds, found.goals, "o-", color=COLOURS[0], markersize=3.5)
-        reach = 0.3 * float(np.min(np.abs(np.diff(np.sort(found.bounds))), initial=np.inf))
-        for x, y, slope in zip(found.bounds, found.goals, found.slopes, strict=True):
-            if np.isfinite(reach * y * slope):
-                axes.plot([x - reach, x + reach], [y - reach * slope, y + reach * slope], color=COLOURS[1], linewidth=1.2)
-        axes.set_xlabel(f"{found.limit} allowed, {found.limit_unit}")
-        axes.set_ylabel(f"{found.goal}{f', {found.goal_unit}' if found.goal_unit else ''}")
-    return written(figure, path)

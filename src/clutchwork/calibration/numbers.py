@@ -30,7 +30,7 @@ def pair(given: Any, unit: str) -> tuple[float, float] | None:
 
 
 def bounds(lower: Any, upper: Any, unit: str) -> tuple[float, float] | None:
-    """A lower and an upper bound, infinite where there is none; None where they are no numbers that fit."""
+    """A lower and an upper bound, infinite where there is none; None where one does not fit."""
     low = -inf if lower is None else number(lower, unit)
     high = inf if upper is None else number(upper, unit)
     return (low, high) if low is not None and high is not None and low <= high else None

@@ -17,15 +17,20 @@ from clutchwork.base.paths import target
 from clutchwork.base.progress import followed
 from clutchwork.base.shown import shown
 from clutchwork.base.text import columns
-from clutchwork.calibrate.numbers import number
+from clutchwork.calibration.calibrate import searched
+from clutchwork.calibration.numbers import number
+from clutchwork.calibration.result import CalibrationError, with_limit
 from clutchwork.results.plot.chosen import PICTURES
+from clutchwork.results.plot.figure import figure_of, written
+from clutchwork.results.plot.style import COLOURS
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.limits import Settled
-    from clutchwork.calibrate.result import Calibration
+    from clutchwork.calibration.limits import Settled
+    from clutchwork.calibration.result import Calibration
     from clutchwork.results.plot.canvas import Picture
 
 Array = NDArray[np.float64]
+HEIGHT = 80.0  # mm
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,24 +59,20 @@ class Front:
 
     def plot(self, path: str | Path | None = None) -> Picture:
         """Draw it, with the slope at each point; written to `path` when given. Needs matplotlib."""
-        from clutchwork.calibrate.picture import front
-
-        return front(self, None if path is None else target("front.plot", path, "front.png", PICTURES))
+        return drawn(self, None if path is None else target("front.plot", path, "front.png", PICTURES))
 
 
 def front(found: Calibration, limit: Settled, bounds: Sequence[Any], progress: Any) -> Front:
     """Each bound from what the one before led to."""
-    from clutchwork.calibrate.calibrate import searched
-    from clutchwork.calibrate.result import CalibrationError, with_limit
-
-    ends = [number(one, limit.unit) for one in bounds] if not isinstance(bounds, str) else []
-    if not ends or None in ends or limit.is_equal:
+    ends = [one for one in (number(given, limit.unit) for given in bounds) if one is not None]
+    if isinstance(bounds, str) or not ends or len(ends) < len(bounds) or limit.is_equal:
         raise UseError("front", [f"bounds are {shown(bounds)}: give several numbers for one side of {limit.name}"])
     made, last = list["Calibration"](), found
     with followed(progress, len(ends), "front", "(bounds done, bounds)", unit=" bounds") as told:
         for place, end in enumerate(ends):
-            side = {"upper": end} if np.isfinite(limit.upper) else {"lower": end}
-            moved = with_limit(found.problem, limit, replace(limit, **side))
+            above = np.isfinite(limit.upper)
+            side = replace(limit, upper=float(end)) if above else replace(limit, lower=float(end))
+            moved = with_limit(found.problem, limit, side)
             try:
                 last = searched(replace(moved, begin=last.x), replace(found.asked, starts=1), None, False)
                 made.append(last)
@@ -84,3 +85,19 @@ def front(found: Calibration, limit: Settled, bounds: Sequence[Any], progress: A
     problem = found.problem
     named = (limit.name, limit.unit, problem.goal.name, problem.unit)
     return Front(*named, np.array(ends, dtype=float), goals, slopes, tuple(made))
+
+
+def drawn(found: Front, path: Path | None) -> Picture:
+    """The goal over the bound, with short lines of the slope that the multipliers say."""
+    with figure_of(HEIGHT) as figure:
+        axes = figure.add_subplot()
+        axes.plot(found.bounds, found.goals, "o-", color=COLOURS[0], markersize=3.5)
+        reach = 0.3 * float(np.min(np.abs(np.diff(np.sort(found.bounds))), initial=np.inf))
+        for x, y, slope in zip(found.bounds, found.goals, found.slopes, strict=True):
+            if np.isfinite(reach * y * slope):
+                axes.plot(
+                    [x - reach, x + reach], [y - reach * slope, y + reach * slope], color=COLOURS[1], linewidth=1.2
+                )
+        axes.set_xlabel(f"{found.limit} allowed, {found.limit_unit}")
+        axes.set_ylabel(f"{found.goal}{f', {found.goal_unit}' if found.goal_unit else ''}")
+    return written(figure, path)

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
-from clutchwork.calibrate.numbers import number
+from clutchwork.calibration.numbers import number
 from clutchwork.declare.calls import explained
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.names import Curve
+    from clutchwork.calibration.names import Curve
     from clutchwork.gradients.parameters import Parameter
 
 Array = NDArray[np.float64]
@@ -87,7 +87,7 @@ class Plain:
         """What messages call it."""
         return str(self.output.name)
 
-    def needs(self, span: Span) -> list[Any]:
+    def needs(self, span: Span) -> list[Any]:  # noqa: ARG002, others do
         """Itself, each instant on its own."""
         one = self.output
         return [AtTimes(one.signal, (time,)) for time in one.times] if isinstance(one, AtTimes) else [one]
@@ -124,7 +124,8 @@ class Jerk:
         return RATES.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
 
     def rows(self, given: Given) -> Rows:
-        """One value for each window. docs/theory/calibration.md (3)"""
+        """One value for each window."""
+        # docs/theory/calibration.md (3)
         scale = 1.0 / self.window**2
         return _second(given.values) * scale, _second(given.slopes) * scale
 
@@ -146,7 +147,7 @@ class RmsJerk:
         """What messages call it."""
         return f"rms_jerk({self.shaft})"
 
-    def needs(self, span: Span) -> list[Any]:
+    def needs(self, span: Span) -> list[Any]:  # noqa: ARG002, others do
         """The integral of its square."""
         return [SquaredJerk(self.shaft)]
 
@@ -173,7 +174,7 @@ class Slope:
         """What messages call it."""
         return f"slope({self.stem})"
 
-    def needs(self, span: Span) -> list[Any]:
+    def needs(self, span: Span) -> list[Any]:  # noqa: ARG002, others do
         """No run."""
         return []
 
@@ -199,7 +200,7 @@ class SquaredSlope:
         """What messages call it."""
         return f"squared_slope({self.stem})"
 
-    def needs(self, span: Span) -> list[Any]:
+    def needs(self, span: Span) -> list[Any]:  # noqa: ARG002, others do
         """No run."""
         return []
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
-from clutchwork.calibrate.limits import Limit, Settled, Sum, summed
-from clutchwork.calibrate.moves import Moves, Unknown
-from clutchwork.calibrate.names import Curve, curve, numbers
-from clutchwork.calibrate.numbers import pair
-from clutchwork.calibrate.terms import Span
-from clutchwork.calibrate.together import VALUE, Together
+from clutchwork.calibration.limits import Limit, Settled, Sum, summed
+from clutchwork.calibration.moves import Moves, Unknown
+from clutchwork.calibration.names import Curve, curve, numbers
+from clutchwork.calibration.numbers import pair
+from clutchwork.calibration.terms import Span
+from clutchwork.calibration.together import VALUE, Together
 from clutchwork.results.channels import channels
 from clutchwork.sweeps.outputs import Integral, When
 
@@ -121,7 +121,7 @@ def problem(
     limits = list(_limits(subject_to, units, mistakes))
     sums = [one for one in (goal, *(limit.what for limit in limits)) if one is not None]
     stems = dict.fromkeys(stem for one in sums for stem in one.tables)
-    curves = {stem: mistakes.caught(lambda stem=stem: curve(system, stem), None) for stem in stems}
+    curves = {stem: mistakes.caught(partial(curve, system, stem), None) for stem in stems}
     mistakes.found += _twice(unknowns[0])
     if mistakes.found or goal is None:
         raise UseError("calibrate", list(dict.fromkeys(mistakes.found)))
@@ -139,7 +139,7 @@ def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tupl
     made, starts = list[Unknown](), dict[str, float]()
     for name, ends in given.items():
         named = ends.names if isinstance(ends, Together) else (name,)
-        found = [one for each in named for one in mistakes.caught(lambda each=each: numbers(system, each), ())]
+        found = [one for each in named for one in mistakes.caught(partial(numbers, system, each), ())]
         starts |= {one.name: one.start for one in found}
         if isinstance(ends, Together):
             made.append(Unknown(str(name), ends.kind, tuple(one.name for one in found), ends.low, ends.high))

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.extras import need
-from clutchwork.calibrate.moves import Moves
-from clutchwork.calibrate.rows import Row, rows_of, size_of
-from clutchwork.calibrate.terms import Given, SquaredSlope
-from clutchwork.calibrate.together import VALUE
+from clutchwork.calibration.moves import Moves
+from clutchwork.calibration.rows import Row, rows_of, size_of
+from clutchwork.calibration.terms import Given, SquaredSlope
+from clutchwork.calibration.together import VALUE
 
 if TYPE_CHECKING:
-    from clutchwork.calibrate.limits import Settled
-    from clutchwork.calibrate.problem import Problem
+    from clutchwork.calibration.limits import Settled
+    from clutchwork.calibration.problem import Problem
 
 Array = NDArray[np.float64]
 

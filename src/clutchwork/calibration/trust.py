@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.extras import need
-from clutchwork.calibrate.rows import Block
-from clutchwork.calibrate.scaled import Scaled
-from clutchwork.calibrate.slsqp import whitened
+from clutchwork.calibration.rows import Block
+from clutchwork.calibration.scaled import Scaled
+from clutchwork.calibration.slsqp import whitened
 
 Array = NDArray[np.float64]
 
@@ -53,6 +53,11 @@ def trust_constr(scaled: Scaled, tolerance: float, iterations: int) -> Array:
         hess=optimize.BFGS(),
         constraints=limits,
         method="trust-constr",
-        options={"gtol": 1e-4 * tolerance, "xtol": 10.0 * tolerance, "barrier_tol": 10.0 * tolerance, "maxiter": iterations},
+        options={
+            "gtol": 1e-4 * tolerance,
+            "xtol": 10.0 * tolerance,
+            "barrier_tol": 10.0 * tolerance,
+            "maxiter": iterations,
+        },
     )
     return to_y(found.x)
