@@ -141,7 +141,7 @@ def test_a_table_of_derivatives_says_names_and_units(function):
 def test_names_that_mean_no_number_are_refused_all_at_once():
     wrong = {
         "c1.pressure": "c1.pressure is a table; take c1.pressure.values, c1.pressure.values[1]",
-        "c1.pressure.values[4]": "counted from 1: c1.pressure.values[1] to c1.pressure.values[3]",
+        "c1.pressure.values[4]": "counted from 1, c1.pressure.values[1] to c1.pressure.values[3]",
         "c1.pressure.arguments": "has no arguments; take c1.pressure.values or c1.pressure.times",
         "c1.friction": "is a Coulomb; take c1.friction.static, c1.friction.kinetic",
         "c1.locked": "is a choice, which has no derivative",

@@ -227,6 +227,21 @@ def test_random_drivelines():
     sweep(check, amount(60))
 
 
+@pytest.mark.parametrize(
+    "stop",
+    [
+        lambda a, b: cw.Backlash("x", base=a, follower=b, gap=0.01),
+        lambda a, b: cw.EndStop("x", base=a, follower=b, lower=-0.1, upper=0.1),
+    ],
+)
+def test_where_a_stop_is_at_the_start(stop):
+    d = cw.Driveline("play")
+    made = d.add(stop(d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)))
+    name = next(item.name for item, _ in specs(type(made), "option") if item.name.startswith("initial"))
+    assert compared(d, {f"x.{name}": 0.002}) == ""
+    assert d.assemble().changed({f"x.{name}": 0.002}).initial_state.tolist() == [0.002]
+
+
 def test_six_speed_gearbox():
     def check(seed: int) -> str:
         d = six_speed.gearbox(six_speed.SHIFT)

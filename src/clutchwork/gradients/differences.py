@@ -83,7 +83,9 @@ class Differences:
 
     def _steps(self, x: Array) -> list[float]:
         scaled = zip(self.task.parameters, np.abs(x).tolist(), strict=True)
-        return [min(STEP * (max(size, one.scale) if one.place else size or 1.0), one.reach / 8) for one, size in scaled]
+        return [
+            min(STEP * (max(size, one.scale) if one.places else size or 1.0), one.reach / 8) for one, size in scaled
+        ]
 
     def _sides(self, x: Array, number: int, step: float) -> tuple[list[System], Array]:
         """Systems beside a point in one number, and the weights of their values."""

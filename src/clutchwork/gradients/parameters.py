@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from math import inf
+from itertools import groupby
+from math import inf, nextafter
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,7 @@ from clutchwork.model.changes import Owners, Target, changeable, field_of, named
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.declare.schema import Spec
     from clutchwork.model.model import Model
 
 Array = NDArray[np.float64]
@@ -34,10 +36,12 @@ class Parameter:
 
     name: str
     field: str  # what `System.changed` calls it, or the table that it stands in
-    place: tuple[int, ...]  # in the table, from 0 on; nothing where it is a number of its own
+    places: tuple[tuple[int, ...], ...]  # in the table, from 0 on; nothing where it is a number of its own
     unit: str
     start: float
     scale: float  # what a change of it is compared with
+    lower: float = -inf  # what the declaration allows
+    upper: float = inf
     reach: float = inf  # how far it is from its neighbours in a table
 
 
@@ -80,7 +84,8 @@ def _meant(model: Model, owners: Owners, name: Any) -> list[Parameter]:
     found, wanted = list(_entries(table, parts[1], parts[2])), f"{parts[1]}.{parts[2]}{parts[3]}"
     chosen = [one for one in found if not parts[3] or one.name == wanted]
     if not chosen:
-        raise Unfit(f"{name} is not there; entries are counted from 1: {found[0].name} to {found[-1].name}")
+        together = "; points of a jump move under the number of the first one" if parts[2] != "values" else ""
+        raise Unfit(f"{name} is not there: entries are counted from 1, {found[0].name} to {found[-1].name}{together}")
     return chosen
 
 
@@ -93,7 +98,17 @@ def _number(aim: Target, name: str) -> Parameter:
         value = vars(value)["value"]
     if not isinstance(value, Real):
         raise Unfit(f"{name} {_inside(value, name)}")
-    return Parameter(name, name, (), unit_of(aim), float(value), abs(float(value)) or 1.0)
+    start = float(value)
+    return Parameter(name, name, (), unit_of(aim), start, abs(start) or 1.0, *_bounds(spec))
+
+
+def _bounds(*found: Spec) -> tuple[float, float]:
+    """What all declarations allow."""
+    lower = [nextafter(spec.above, inf) for spec in found if spec.above is not None]
+    upper = [nextafter(spec.below, -inf) for spec in found if spec.below is not None]
+    lower += [spec.at_least for spec in found if spec.at_least is not None]
+    upper += [spec.at_most for spec in found if spec.at_most is not None]
+    return max(lower, default=-inf), min(upper, default=inf)
 
 
 def _inside(value: Any, name: str) -> str:
@@ -113,26 +128,37 @@ def _inside(value: Any, name: str) -> str:
 def _entries(table: Target, name: str, which: str) -> Iterator[Parameter]:
     """Ordinates or abscissae of a table, or the numbers of a list."""
     field, (value, spec) = name, field_of(table)
+    declared = [spec]
     if isinstance(value, Signal) and "points" in changeable(value):
         table, field = Target(table.owner, (*table.path, "points")), f"{name}.points"
         value, spec = field_of(table)
+        declared.append(spec)
     if spec.what not in ("curve", "numbers") or not hasattr(value, "__len__"):
         raise Unfit(f"{name} is {shown(value)}, which is not a table; take {name} itself")
     abscissae = "" if spec.what == "numbers" else "times" if spec.unit_x == "s" else "arguments"
     if which not in ("values", abscissae):
         raise Unfit(f"{name} has no {which}; take {name}.values{abscissae and f' or {name}.{abscissae}'}")
+    found: list[tuple[str, tuple[tuple[int, ...], ...], float]]
     if spec.what == "numbers":
-        found = [(_words(place), place, one) for place, one in _numbers(value)]
+        found = [(_words(place), (place,), one) for place, one in _numbers(value)]
+        unit = unit_of(table)
+    elif which == "values":
+        found = [(_words((i,)), ((i, 1),), float(point[1])) for i, point in enumerate(value)]
         unit = unit_of(table)
     else:
-        column = 1 if which == "values" else 0
-        found = [(_words((i,)), (i, column), float(point[column])) for i, point in enumerate(value)]
-        unit = unit_of(table) if column else spec.unit_x
+        found, unit = list(_knots(value)), spec.unit_x
     gaps = np.diff([one for _, _, one in found]) if which == abscissae else np.zeros(0)
-    reach = float(np.min(gaps[gaps > 0.0], initial=inf))
-    scale = max(abs(one) for _, _, one in found) or 1.0
-    for words, place, one in found:
-        yield Parameter(f"{name}.{which}{words}", field, place, unit, one, scale, reach)
+    bounds = _bounds(*declared) if which == "values" else (-inf, inf)
+    reach, scale = float(np.min(gaps, initial=inf)), max(abs(one) for _, _, one in found) or 1.0
+    for words, places, one in found:
+        yield Parameter(f"{name}.{which}{words}", field, places, unit, one, scale, *bounds, reach)
+
+
+def _knots(points: Any) -> Iterator[tuple[str, tuple[tuple[int, ...], ...], float]]:
+    """Abscissae of a table; points of a jump move together, under the number of the first one."""
+    for x, jump in groupby(enumerate(points), key=lambda entry: float(entry[1][0])):
+        numbers = [i for i, _ in jump]
+        yield _words(numbers[:1]), tuple((i, 0) for i in numbers), x
 
 
 def _numbers(value: Any) -> Iterator[tuple[tuple[int, ...], float]]:
@@ -144,7 +170,7 @@ def _numbers(value: Any) -> Iterator[tuple[tuple[int, ...], float]]:
             yield (i,), float(row)
 
 
-def _words(place: tuple[int, ...]) -> str:
+def _words(place: Sequence[int]) -> str:
     return "".join(f"[{number + 1}]" for number in place)
 
 
@@ -153,13 +179,14 @@ def changes(system: System, chosen: Sequence[Parameter], x: Array) -> dict[str, 
     owners = named(system.source) if system.source else Owners()
     made = dict[str, Any]()
     for one, value in zip(chosen, x.tolist(), strict=True):
-        aim = target(owners, one.field) if one.place and one.field not in made else None
+        aim = target(owners, one.field) if one.places and one.field not in made else None
         if aim is not None:
             made[one.field] = _lists(field_of(aim)[0])
-        row: Any = made
-        for step in (one.field, *one.place)[:-1]:
-            row = row[step]
-        row[(one.field, *one.place)[-1]] = value
+        for place in one.places or ((),):
+            row: Any = made
+            for step in (one.field, *place)[:-1]:
+                row = row[step]
+            row[(one.field, *place)[-1]] = value
     return made
 
 

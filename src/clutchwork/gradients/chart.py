@@ -1,0 +1,98 @@
+"""How the words of one structure of a driveline follow from numbers: written in place, or assembled."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.gradients.assembled import Assembled
+from clutchwork.gradients.discovery import identity, tables, together
+from clutchwork.gradients.packed import Structure
+from clutchwork.gradients.tables import TableWords
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.gradients.parameters import Parameter
+
+Array = NDArray[np.float64]
+Places = NDArray[np.int64]
+
+
+class Slopes(NamedTuple):
+    """Words that change with numbers, and their derivatives: a line for each word, a column for each number."""
+
+    places: Places
+    matrix: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """The words as functions of numbers, as long as the structure stays."""
+
+    scalars: dict[int, Places]  # words that are a number themselves
+    tables: tuple[TableWords, ...]
+    bound: list[int]  # numbers that words are assembled from
+    assembled: Assembled
+
+    @classmethod
+    def of(cls, system: System, parameters: tuple[Parameter, ...], x: Array) -> Chart:
+        """Look at how the words of a System, which has these values, follow from them."""
+        structure = Structure.of(system)
+        found = ((n, identity(system, structure, one, float(x[n]))) for n, one in enumerate(parameters))
+        scalars = {number: places for number, places in found if places is not None}
+        signals = tuple(tables(system, structure, parameters))
+        for written in (scalars, {}):
+            chart = cls._with(system, structure, parameters, x, written, signals)
+            if chart.holds(together(system, parameters, x, [])) or chart.holds(
+                together(system, parameters, x, chart.bound)
+            ):
+                return chart
+        return cls._with(system, structure, parameters, x, {}, ())
+
+    @classmethod
+    def _with(
+        cls,
+        system: System,
+        structure: Structure,
+        parameters: tuple[Parameter, ...],
+        x: Array,
+        scalars: dict[int, Places],
+        signals: tuple[TableWords, ...],
+    ) -> Chart:
+        written = {*scalars, *(number for table in signals for number in table.numbers)}
+        bound = [number for number in range(len(x)) if number not in written]
+        chosen = tuple(parameters[number] for number in bound)
+        return cls(scalars, signals, bound, Assembled(system, structure, chosen, x[bound]))
+
+    def holds(self, given: tuple[Array, Array]) -> bool:
+        """Whether the words at a point are those that are given."""
+        there, words = given
+        own = self.words(there)
+        return own is not None and own.tobytes() == words.tobytes()
+
+    def words(self, x: Array) -> Array | None:
+        """The words at a point; None where the structure is another one there."""
+        assembled = self.assembled.words(x[self.bound])
+        if assembled is None:
+            return None
+        words = assembled.copy()
+        for number, places in self.scalars.items():
+            words[places] = x[number]
+        return words if all(table.written(words, x) for table in self.tables) else None
+
+    def slopes(self, x: Array) -> Slopes:
+        """Derivatives of the words at a point; NoGradient where there is none."""
+        more = self.assembled.slopes(x[self.bound]) if self.bound else None
+        known = np.flatnonzero(more.any(axis=1)) if more is not None else np.zeros(0, dtype=np.int64)
+        places = np.unique(np.concatenate([known, *self.scalars.values(), *(table.places for table in self.tables)]))
+        matrix = np.zeros((len(places), len(x)))
+        for number, own in self.scalars.items():
+            matrix[np.searchsorted(places, own), number] = 1.0
+        for table in self.tables:
+            matrix[np.ix_(np.searchsorted(places, table.places), table.numbers)] = table.slopes(x)
+        if more is not None:
+            matrix[np.searchsorted(places, known)[:, None], self.bound] = more[known]
+        return Slopes(places, matrix)

@@ -1,0 +1,111 @@
+"""Derivatives of smooth functions by differences of high order, with a measure of their error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.errors import ModelError
+
+Array = NDArray[np.float64]
+
+# first width, over the scale of the number: rounding leaves 1e-13 of the derivative, the eighth order far less
+WIDTH = 5e-3
+NARROWER = 1 / 6
+MOST_TRIES = 5
+# what two orders may differ by, of the size of the derivative
+ALLOWED = 1e-9
+CENTRAL = tuple(k for k in range(-4, 5) if k)
+UPWARD = tuple(range(7))
+
+
+class Slope(NamedTuple):
+    """A derivative, and whether the function is a straight line as far as was looked."""
+
+    value: Array
+    straight: bool
+
+
+class Bent(Exception):  # noqa: N818, it is caught where it is raised
+    """A function that has no derivative: it jumps or has a kink."""
+
+
+class Rebuilt(Exception):  # noqa: N818, it is caught where it is raised
+    """A function is another one there."""
+
+
+def slope(function: Callable[[float], Array], here: Array, scale: float, reach: float) -> Slope:
+    """The derivative of a function at 0, by differences over steps of the scale of its argument.
+
+    Parameters: function, raises ModelError where it is not defined, so that one side is asked alone, and Rebuilt where
+    it is another one; here, its value at 0; reach, how far it is the same. Bent where there is no derivative.
+    """
+    width = min(WIDTH * scale, reach / 5)
+    for number in range(MOST_TRIES):
+        found = _tried(function, CENTRAL, here, width)
+        if found is None and number >= MOST_TRIES - 2:
+            sides = (_tried(function, tuple(sign * k for k in UPWARD), here, width) for sign in (1, -1))
+            # of a kink both sides would have one
+            found = next(filter(None, sides), None) if not _is_defined(function, width) else None
+        if found is not None:
+            return found
+        width *= NARROWER
+    raise Bent
+
+
+def _is_defined(function: Callable[[float], Array], width: float) -> bool:
+    """Whether a function has values on both sides."""
+    try:
+        return all(len(function(side)) for side in (-width, width))
+    except ModelError:
+        return False
+    except Rebuilt:
+        return True
+
+
+def _tried(function: Callable[[float], Array], places: tuple[int, ...], here: Array, width: float) -> Slope | None:
+    try:
+        values = np.array([here if k == 0 else function(k * width) for k in places])
+    except (ModelError, Rebuilt):
+        return None
+    return _fitted(places, values, here, width)
+
+
+def _fitted(places: tuple[int, ...], values: Array, here: Array, width: float) -> Slope | None:
+    """The derivative from values beside one, None where two orders do not agree."""
+    rises = values - here
+    fine, coarse = weights(places, len(places)), weights(places, len(places) - 2)
+    value = fine @ rises / width
+    other = coarse @ rises / width
+    size = np.abs(rises).max(axis=0) / (width * max(map(abs, places)))
+    noise = 4e-16 * np.abs(values).max(axis=0)
+    # the mean of both sides would do for a kink
+    apart = np.abs(_kink(places) @ rises / width) if places == CENTRAL else 0.0
+    if np.any(np.maximum(np.abs(value - other), apart) > ALLOWED * size + 10 * noise / width):
+        return None
+    line = np.outer(np.array(places) * width, value)
+    return Slope(value, bool(np.all(np.abs(rises - line) <= 1e-12 * size * width + 10 * noise)))
+
+
+@cache
+def weights(places: tuple[int, ...], order: int) -> Array:
+    """Weights of values at places for the derivative at 0, exact for polynomials below an order; far ones have none."""
+    used = sorted(places, key=abs)[:order]
+    powers = np.vander(np.array(used, dtype=float), len(used), increasing=True).T
+    right = np.zeros(len(used))
+    right[1] = 1.0
+    shares: dict[int, Any] = dict(zip(used, np.linalg.solve(powers, right), strict=True))
+    return np.array([shares.get(place, 0.0) for place in places])
+
+
+@cache
+def _kink(places: tuple[int, ...]) -> Array:
+    """Weights of values at places on both sides for the share of |x| in what they have in common."""
+    far = sorted({abs(place) for place in places})
+    powers = np.array([[k, *(k ** (2 * j) for j in range(1, len(far)))] for k in far], dtype=float)
+    first = np.linalg.inv(powers)[0] / 2
+    return np.array([first[far.index(abs(place))] for place in places])

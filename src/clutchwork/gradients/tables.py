@@ -1,0 +1,163 @@
+"""A table over time as words of a System: where its knots stand there, and how the words follow from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.declare.node import Signal
+from clutchwork.gradients.parameters import Parameter
+from clutchwork.model.changes import Target, field_of, named, target
+from clutchwork.signals.table import Table
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.sweeps.axes import Layout
+
+Array = NDArray[np.float64]
+Places = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class TableWords:
+    """The knots of a table, which of them are free, and the words of the signal that it is.
+
+    A knot (t, y) is a piece that starts at t with the value y and the slope to the next knot: docs/theory/gradients.md
+    (2). A table that begins after 0 has a constant piece before, two knots at one time have one piece.
+    """
+
+    points: Array  # knots as they are
+    numbers: Places  # of the parameters that move them
+    along: Array  # of each parameter: how it moves the knots
+    begins: Places  # knots at which pieces begin, -1: before the first one
+    copies: int  # signals that it is
+    places: Places  # words of all starts, values and slopes
+    at_start: Places  # words of the value at 0, one for each signal
+
+    @classmethod
+    def of(
+        cls, system: System, beside: System, layout: Layout, field: str, free: Sequence[tuple[int, Parameter]]
+    ) -> TableWords | None:
+        """The words of a table of a System; None where it is more than a signal of its own.
+
+        Parameters: beside, the same System with other values in the table; field, the name of its points; free, its
+        parameters with their numbers.
+        """
+        points, moved = _points(system, field), _points(beside, field)
+        if points is None or moved is None:
+            return None
+        begins = pieces(points)
+        both = zip(system.inputs, beside.inputs, strict=True)
+        inputs = [i for i, (here, there) in enumerate(both) if _is(here.signal, points) and _is(there.signal, moved)]
+        first = np.array([system.arrays["input_first"][number] for number in inputs], dtype=np.int64)
+        if not inputs or any(system.arrays["input_count"][number] != len(begins) for number in inputs):
+            return None
+        along = np.zeros((len(free), *points.shape))
+        for line, (_, one) in zip(along, free, strict=True):
+            for place in one.places:
+                line[place] = 1.0
+        rows = (first[:, None] + np.arange(len(begins))).ravel()
+        coef = layout.starts["segment_coef"] // 8 + 12 * rows
+        places = np.concatenate([layout.starts["segment_time"] // 8 + rows, coef, coef + 1])
+        at_start = layout.starts["input_value"] // 8 + np.array(inputs, dtype=np.int64)
+        numbers = np.array([number for number, _ in free])
+        return cls(points, numbers, along, begins, len(inputs), places, at_start)
+
+    @cached_property
+    def _free(self) -> tuple[Places, Places, Places]:
+        """Parameter, knot and coordinate of all that moves."""
+        line, knot, column = np.nonzero(self.along)
+        return self.numbers[line], knot, column
+
+    def moved(self, x: Array) -> Array:
+        """The knots for values of all parameters."""
+        made, (numbers, knots, columns) = self.points.copy(), self._free
+        made[knots, columns] = x[numbers]
+        return made
+
+    def written(self, words: Array, x: Array) -> bool:
+        """Write the words for values of all parameters; False where these make other pieces."""
+        points = self.moved(x)
+        if self._moves_times and not (
+            np.all(np.diff(points[:, 0]) >= 0.0) and np.array_equal(pieces(points), self.begins)
+        ):
+            return False
+        numbers, at_start = numbers_of(points, self.begins)
+        words[self.places], words[self.at_start] = np.repeat(numbers, self.copies, axis=0).ravel(), at_start
+        return True
+
+    @cached_property
+    def _moves_times(self) -> bool:
+        return bool(np.any(self.along[:, :, 0]))
+
+    def slopes(self, x: Array) -> Array:
+        """Derivatives of the words in `places`, a column for each of its parameters."""
+        return self._fixed_slopes if not self._moves_times else self._slopes(self.moved(x))
+
+    @cached_property
+    def _fixed_slopes(self) -> Array:
+        return self._slopes(self.points)
+
+    def _slopes(self, points: Array) -> Array:
+        found = derivatives(points, self.along, self.begins)
+        return np.repeat(found, self.copies, axis=1).reshape(len(found), -1).T
+
+
+def _points(system: System, field: str) -> Array | None:
+    """The knots of a signal that is a table, None where it is another one."""
+    aim = target(named(system.source), field) if system.source else None
+    if aim is None or len(aim.path) < 2:
+        return None
+    signal, _ = field_of(Target(aim.owner, aim.path[:-1]))
+    return _as_array(signal)
+
+
+def _as_array(signal: Any) -> Array | None:
+    if not isinstance(signal, Signal) or type(signal).segments is not Table.segments:
+        return None
+    return np.array([[float(x), float(y)] for x, y in vars(signal)["points"]])
+
+
+def _is(signal: Signal, points: Array) -> bool:
+    own = _as_array(signal)
+    return own is not None and np.array_equal(own, points)
+
+
+def pieces(points: Array) -> Places:
+    """Knots at which the pieces of a table begin, -1 for a constant one before the first."""
+    count = len(points)
+    begins = np.flatnonzero(np.diff(points[:, 0]) > 0.0)
+    before = [-1] if points[0, 0] > 0.0 else []
+    return np.array([*before, *begins.tolist(), count - 1], dtype=np.int64)
+
+
+def numbers_of(points: Array, begins: Places) -> tuple[Array, float]:
+    """Starts, values and slopes of the pieces, and the value at 0."""
+    made, inner = np.zeros((3, len(begins))), begins[_is_sloped(points, begins)]
+    made[:2] = points[np.maximum(begins, 0)].T
+    made[0, begins < 0] = 0.0
+    step = points[inner + 1] - points[inner]
+    made[2, _is_sloped(points, begins)] = step[:, 1] / step[:, 0]
+    now = max(int(np.searchsorted(made[0], 0.0, "right")) - 1, 0)
+    return made, float(made[1, now] + (0.0 - made[0, now]) * made[2, now])
+
+
+def derivatives(points: Array, along: Array, begins: Places) -> Array:
+    """Derivatives of starts, values and slopes of the pieces where the knots move along directions."""
+    made, sloped = np.zeros((len(along), 3, len(begins))), _is_sloped(points, begins)
+    inner = begins[sloped]
+    made[:, :2] = along[:, np.maximum(begins, 0)].transpose(0, 2, 1)
+    made[:, 0, begins < 0] = 0.0
+    step, moved = points[inner + 1] - points[inner], along[:, inner + 1] - along[:, inner]
+    made[:, 2, sloped] = (moved[:, :, 1] - step[:, 1] / step[:, 0] * moved[:, :, 0]) / step[:, 0]
+    return made
+
+
+def _is_sloped(points: Array, begins: Places) -> NDArray[np.bool_]:
+    """Pieces that lead to another knot; those before the first and behind the last are constant."""
+    return (begins >= 0) & (begins < len(points) - 1)

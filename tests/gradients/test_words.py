@@ -1,0 +1,144 @@
+"""Words of a System as functions of its numbers: the bytes of assembling them, and their derivatives."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from clutchwork.base.errors import ModelError
+from clutchwork.gradients.packed import made, words_of
+from clutchwork.gradients.parameters import parameters
+from clutchwork.gradients.words import Words
+from support import free_numbers, random_drivelines, random_parts, random_stops, six_speed
+
+SEEDS = range(12)
+
+
+def model(seed):
+    kinds = (random_parts.driveline, random_stops.driveline, lambda s: random_drivelines.describe(s).driveline())
+    return kinds[seed % 3](seed).assemble()
+
+
+def assembled(system, chosen, x):
+    """The System with values, or what is wrong with them."""
+    try:
+        return made(system, chosen, x), ""
+    except ModelError as error:
+        return None, str(error)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_words_are_those_of_assembling(seed):
+    system, rng = model(seed), np.random.default_rng(seed)
+    chosen = free_numbers.some(system, rng, 15)
+    words, seen = Words(system, chosen), 0
+    for share in (0.0, 1e-3, 1e-2, 0.1):
+        x = free_numbers.beside(chosen, rng, share)
+        exact, wrong = assembled(system, chosen, x)
+        if exact is None:
+            with pytest.raises(ModelError) as caught:
+                words.at(x)
+            assert str(caught.value) == wrong
+            continue
+        assert words.bytes_at(x) == exact.to_bytes()
+        seen += 1
+    assert seen > 0
+
+
+def differences(system, chosen, x, number, width):
+    """The derivative of all words by two plain differences, where the structure stays."""
+    found = []
+    for step in (-width, width):
+        moved = x.copy()
+        moved[number] += step
+        found.append(words_of(made(system, chosen, moved)))
+    return (found[1] - found[0]) / (2 * width)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_derivatives_of_words_are_those_of_differences(seed):
+    system, rng = model(seed), np.random.default_rng(100 + seed)
+    chosen = free_numbers.some(system, rng, 12)
+    compared = 0
+    try:
+        Words(system, chosen).slopes_at(free_numbers.start(chosen))
+    except cw.NoGradient as none:
+        # such as the start of a sine at 0, before which there is another piece
+        chosen = tuple(one for one in chosen if not any(text.startswith(one.name) for text in none.problems))
+    x = free_numbers.start(chosen)
+    found = Words(system, chosen).slopes_at(x)
+    base = np.where(np.isfinite(words_of(system)), words_of(system), 0.0)
+    for number, one in enumerate(chosen):
+        width = 1e-5 * min(one.scale, one.reach)
+        try:
+            other = differences(system, chosen, x, number, width)
+        except ModelError:
+            # at a bound
+            continue
+        whole = np.zeros(len(base))
+        whole[found.places] = found.matrix[:, number]
+        size = np.maximum(np.abs(base) / one.scale, np.abs(whole))
+        other = np.where(np.isfinite(other), other, 0.0)
+        # structure that changes beside, such as other independent speeds, is compared elsewhere
+        if np.array_equal(whole != 0.0, np.abs(other) > 1e-9 * size):
+            np.testing.assert_array_less(np.abs(whole - other), 1e-7 * size + 1e-300)
+            compared += 1
+    assert compared > 0
+
+
+def test_an_ordinate_in_an_optimiser_costs_a_fraction_of_a_run():
+    d = cw.Driveline("launch")
+    engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)
+    p = cw.Table([(number / 30, 1e5 * number / 30) for number in range(31)])
+    lining = cw.Coulomb(static=0.125, kinetic=0.1)
+    d.add(cw.Clutch("c1", base=engine, follower=load, friction=lining, gain=5e-4, pressure=p))
+    system = d.assemble()
+    chosen = parameters(system, "c1.pressure.values")
+    words, x = Words(system, chosen), free_numbers.start(chosen)
+    chart, _ = words.at(x)
+    assert not chart.bound
+    # no System is assembled: all points have the chart of the first
+    for number in range(1, 100):
+        there, _ = words.at(x * (1 + 1e-3 * number))
+        assert there is chart
+
+
+def test_other_structures_have_charts_of_their_own():
+    system = six_speed.gearbox(six_speed.SHIFT).assemble()
+    chosen = parameters(system, ["w6.inertia", "w1.inertia", "w7.inertia"])
+    words = Words(system, chosen)
+    for x in ([27.31, 19.37, 4.2], [0.01, 19.37, 4.2], [27.31, 0.001, 40.0]):
+        x = np.array(x)
+        assert words.bytes_at(x) == made(system, chosen, x).to_bytes()
+        assert np.all(np.isfinite(words.slopes_at(x).matrix))
+
+
+def test_knots_of_jumps_move_together():
+    d = cw.Driveline("step")
+    a = d.shaft("a", inertia=1.0)
+    d.add(cw.Torque("t", shaft=a, torque=cw.Table([(0.0, 0.0), (0.5, 0.0), (0.5, 10.0), (1.0, 20.0)])))
+    system = d.assemble()
+    chosen = parameters(system, "t.torque.times")
+    assert [one.name for one in chosen] == ["t.torque.times[1]", "t.torque.times[2]", "t.torque.times[4]"]
+    words = Words(system, chosen)
+    x = np.array([0.0, 0.6, 1.0])
+    assert words.bytes_at(x) == made(system, chosen, x).to_bytes()
+    found = words.slopes_at(x)
+    # the start of the last two pieces and the slope of one
+    assert np.count_nonzero(found.matrix[:, 1]) == 2
+
+
+def test_a_number_at_a_kink_of_the_assembly_is_refused():
+    d = cw.Driveline("band")
+    a = d.shaft("a", inertia=1.0, speed=1.0)
+    law = cw.Karnopp(static=0.1, kinetic=0.1, speed=1.0, band=1e-3)
+    d.add(cw.Brake("b", shaft=a, friction=law, gain=1.0, normal_force=1.0, tolerance=1e-3))
+    system = d.assemble()
+    words = Words(system, parameters(system, ["b.friction.band", "b.tolerance"]))
+    with pytest.raises(cw.NoGradient) as caught:
+        words.slopes_at(np.array([1e-3, 1e-3]))
+    assert len(caught.value.problems) == 2
+    assert "b.tolerance = 0.001" in str(caught.value)
+    # beside the kink one of both counts
+    assert words.slopes_at(np.array([1e-3, 2e-3])).matrix[0] == pytest.approx([0.0, 1.0], abs=1e-12)
