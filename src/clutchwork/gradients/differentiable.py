@@ -14,9 +14,11 @@ from clutchwork.base.errors import UseError, near
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained, explained_methods
+from clutchwork.declare.core import core
 from clutchwork.declare.options import Options
 from clutchwork.gradients.differences import Differences
 from clutchwork.gradients.engine import Engine, Found, Task
+from clutchwork.gradients.exact import Exact
 from clutchwork.gradients.parameters import parameters
 from clutchwork.results.channels import channels
 from clutchwork.results.gradient import Gradient
@@ -209,12 +211,13 @@ def made(
     _refuse(system, outputs)
     chosen = parameters(system, by)
     Wanted.of(system, options, outputs, t_end)
-    task = Task(system, outputs, chosen, t_end, options, threads_of(threads))
     known = channels(system, options.angles, options.work)
     labels = [(label, unit_of(one, known)) for name, one in outputs.items() for label in _labels(name, one)]
     of, units = zip(*labels, strict=True)
+    task = Task(system, outputs, chosen, t_end, options, threads_of(threads), of)
     by_units = tuple(one.unit for one in chosen)
-    return Differentiable(task, Differences(task), of, tuple(one.name for one in chosen), units, by_units)
+    engine: Engine = Exact(task) if hasattr(core(), "tangents") else Differences(task)
+    return Differentiable(task, engine, of, tuple(one.name for one in chosen), units, by_units)
 
 
 def _labels(name: str, one: Output) -> list[str]:

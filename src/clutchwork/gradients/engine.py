@@ -29,6 +29,7 @@ class Task:
     t_end: float  # s
     options: Options
     threads: int
+    labels: Sequence[str]  # names of all values
 
 
 class Found(NamedTuple):

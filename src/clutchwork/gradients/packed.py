@@ -36,7 +36,7 @@ def made(system: System, parameters: Sequence[Parameter], x: Array) -> System:
 
 
 def finite(words: Array) -> Array:
-    """Words without those that are no number, as a parameter that is left out."""
+    """Words without those that are not a number, as a parameter that is left out."""
     return np.where(np.isfinite(words), words, 0.0)
 
 
@@ -60,7 +60,7 @@ class Structure:
         return cls(words, is_number, layout)
 
     def is_that_of(self, words: Array) -> bool:
-        """Whether other words are built alike: they have the same length, and the same words that are no numbers."""
+        """Whether other words are built alike: they have the same length, and the same words that are not numbers."""
         if len(words) != len(self.words):
             return False
         fixed = ~self.is_number

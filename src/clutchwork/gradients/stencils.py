@@ -42,7 +42,7 @@ def slope(function: Callable[[float], Array], here: Array, scale: float, reach: 
     """The derivative of a function at 0, by differences over steps of the scale of its argument.
 
     Parameters: function, raises ModelError where it is not defined, so that one side is asked alone, and Rebuilt where
-    it is another one; here, its value at 0; reach, how far it is the same. Bent where there is no derivative.
+    it is another one; here, its value at 0; reach, how far it is the same. Bent where it has no derivative.
     """
     width = min(WIDTH * scale, reach / 5)
     for number in range(MOST_TRIES):

@@ -24,7 +24,7 @@ def in_parts(times: Array) -> Array:
 
 def steps_of(times: Array) -> NDArray[np.intp]:
     """Numbers of the rows at which a step begins; the rows of it are this one and the next `PARTS`."""
-    firsts = np.flatnonzero(np.r_[True, times[1:] <= times[:-1]])
+    firsts = np.flatnonzero(np.r_[True, times[1:] <= times[:-1]])[: len(times)]
     counts = (np.diff(np.r_[firsts, len(times)]) - 1) // PARTS
     within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     found = np.repeat(firsts, counts) + PARTS * within

@@ -1,0 +1,74 @@
+"""Where derivatives hardly exist: guards that are hardly passed, and events at one instant.
+
+docs/theory/gradients.md (9)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.wiring import wiring
+from clutchwork.declare.layout import EVENT
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+
+Array = NDArray[np.float64]
+
+# time derivative of a guard over its size [1/s]: below the first it is said, below the second it is refused
+WARNED, REFUSED = 0.1, 0.01
+# by so much the derivatives of two events at one instant may differ, of the time that a number takes to be all of it
+APART = 1e-9
+TIME, KIND, COMPONENT, INDEX, DIFFERENCE = range(5)
+# kinds of guards that decide about contacts, by their numbers in the core: slips, capacities, sets, spares, loads
+DECIDED = (1, 2, 3, 4, 5)
+AT = {name: column for column, (name, _) in enumerate(EVENT)}
+
+
+def decided(grazes: Array, events: Array) -> Array:
+    """Those that made a contact stick, slip, close or open.
+
+    What passes from one piece of a law or a table to the next, and what bounces, may do so slowly: the motion goes on
+    as it was, or jumps by less the slower it is.
+    """
+    changed = events[events[:, AT["from"]] != events[:, AT["to"]], AT["time"]]
+    there = np.isclose(grazes[:, TIME, None], changed, rtol=1e-12, atol=1e-12).any(axis=1)
+    found: Array = grazes[there & np.isin(grazes[:, KIND], DECIDED)]
+    return found
+
+
+def refused(system: System, grazes: Array, until: float, sizes: float) -> Iterator[str]:
+    """Why a derivative of what is looked at up to a time does not exist.
+
+    Parameters: sizes, the largest size of a number, by which derivatives of instants become times.
+    """
+    for graze in grazes[grazes[:, TIME] <= until]:
+        time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
+        if graze[INDEX] < REFUSED:
+            measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {REFUSED:g} 1/s"
+            remedy = "move a number so that it passes clearly, or not at all"
+            yield f"{name} at {time:.9g} s grazes what it is watched for: {measure}; {remedy}"
+        if graze[DIFFERENCE] * sizes > APART:
+            yield f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"
+
+
+def noted(system: System, grazes: Array) -> Iterator[str]:
+    """What is only just differentiable."""
+    for graze in grazes:
+        if REFUSED <= graze[INDEX] < WARNED:
+            name = component(system, int(graze[COMPONENT]), int(graze[KIND]))
+            measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {WARNED:g} 1/s"
+            yield f"{name} at {graze[TIME]:.9g} s nearly grazes: {measure}; derivatives are large and hold nearby"
+
+
+def component(system: System, number: int, kind: int) -> str:
+    """What an event belongs to: an element, a contact or a signal."""
+    if kind < 0:
+        return system.inputs[number].name if 0 <= number < len(system.inputs) else "a signal"
+    known = wiring(system)
+    parts = [*known.elements, *known.contacts]
+    return parts[number].name if 0 <= number < len(parts) else "a process"

@@ -1,0 +1,43 @@
+"""How the instants between two steps move with the numbers: docs/theory/gradients.md (7)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.gradients.functional import Functional
+from clutchwork.gradients.primal import EVENT, KINK, KNOT, Primal
+
+Array = NDArray[np.float64]
+
+# jumps of accelerations, and of their slopes, that are more than what polynomials miss: of the larger side
+JUMP, BEND = 1e-6, 1e-4
+
+
+def add_shift(primal: Primal, step: int, share: float, into: Functional) -> None:
+    """Add a share of the derivative of the instant at which a step begins."""
+    kind, number = (int(found[step]) for found in primal.between)
+    if kind == EVENT:
+        into.add_event(number, share)
+    elif kind == KNOT:
+        into.direct += share * primal.knots.moved[number]
+    elif kind == KINK:
+        _add_kink(primal, step, share, into)
+
+
+def _add_kink(primal: Primal, step: int, share: float, into: Functional) -> None:
+    """The same of a piece of a law or a table, by what it bends: a speed, else an acceleration of some shaft."""
+    steps = primal.steps
+    before, behind = steps.rows[step - 1], steps.rows[step]
+    acceleration = primal.rows[:, primal.accelerations]
+    jumps = steps.right[step - 1] @ acceleration[before], steps.left[step] @ acceleration[behind]
+    bends = steps.right_slope[step - 1] @ acceleration[before], steps.left_slope[step] @ acceleration[behind]
+    for first, (left, right), least in ((primal.speeds, jumps, JUMP), (primal.accelerations, bends, BEND)):
+        rise, size = left - right, np.maximum(np.abs(left), np.abs(right))
+        relative = np.abs(rise) / np.maximum(size, 1e-12 * max(1.0, float(size.max(initial=0.0))))
+        shaft = int(np.argmax(relative))
+        if relative[shaft] > least:
+            column = np.array([first.start + shaft])
+            into.add(behind, column, (share / rise[shaft] * steps.left[step])[:, None])
+            into.add(before, column, (-share / rise[shaft] * steps.right[step - 1])[:, None])
+            return

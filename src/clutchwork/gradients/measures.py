@@ -1,0 +1,110 @@
+"""What is asked of a run, as values and how they change: one measure for each number of each output."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.declare.layout import EVENT
+from clutchwork.gradients import extremes, jerk
+from clutchwork.gradients.functional import Functional
+from clutchwork.gradients.primal import Primal
+from clutchwork.gradients.signals import add_signal, signal_at
+from clutchwork.results.forms import LOCKED
+from clutchwork.sweeps.outputs import AtEnd, AtTimes, Extreme, Integral, Output, SquaredJerk, When
+
+Array = NDArray[np.float64]
+
+AT = {name: column for column, (name, _) in enumerate(EVENT)}
+
+
+class Measure(NamedTuple):
+    """A value of a run: NaN where there is none, how it changes, and up to when it looks."""
+
+    value: float
+    changes: tuple[Functional, ...]  # more than one where there are equal extremes
+    until: float  # s
+    when: tuple[float, ...] = ()  # s, where the extremes are
+
+
+class Asked(NamedTuple):
+    """What outputs need to know of a System."""
+
+    contacts: tuple[str, ...]
+    kept_as: Mapping[str, str]  # integrals by name -> signal
+    begin: float  # s
+
+
+def measures(primal: Primal, outputs: Mapping[str, Output], asked: Asked) -> list[Measure]:
+    """All of them, in order."""
+    return [measure for one in outputs.values() for measure in _measures(primal, one, asked)]
+
+
+def _measures(primal: Primal, one: Output, asked: Asked) -> Iterator[Measure]:
+    match one:
+        case AtEnd(signal):
+            yield _at(primal, signal, primal.t_end)
+        case AtTimes(signal, times):
+            yield from (_at(primal, signal, time) for time in times)
+        case Integral():
+            yield _change(primal, asked.kept_as[one.name], asked.begin)
+        case When():
+            yield _when(primal, one, asked)
+        case Extreme():
+            yield _extreme(primal, one)
+        case SquaredJerk():
+            yield _jerk(primal, one)
+
+
+def _at(primal: Primal, signal: str, time: float) -> Measure:
+    into, row = primal.functional(), np.array([primal.row(time)])
+    add_signal(primal, signal, row, np.ones(1), into)
+    return Measure(float(signal_at(primal, signal, row)[0]), (into,), time)
+
+
+def _change(primal: Primal, signal: str, begin: float) -> Measure:
+    into, rows = primal.functional(), np.array([primal.row(begin), primal.row(primal.t_end)])
+    add_signal(primal, signal, rows, np.array([-1.0, 1.0]), into)
+    first, last = signal_at(primal, signal, rows)
+    return Measure(float(last - first), (into,), primal.t_end)
+
+
+def number_of(events: Array, one: When, contacts: tuple[str, ...]) -> int:
+    """The event that is asked for, by its number among all; -1 where it does not happen."""
+    mine = events[:, AT["contact"]] == contacts.index(one.contact)
+    was, became = events[:, AT["from"]] == LOCKED, events[:, AT["to"]] == LOCKED
+    found = np.flatnonzero(mine & (became & ~was if one.kind == "lock" else was & ~became))
+    found = found[np.argsort(events[found, AT["time"]], kind="stable")]
+    place = one.number - 1 if one.number > 0 else len(found) + one.number
+    return int(found[place]) if 0 <= place < len(found) else -1
+
+
+def _when(primal: Primal, one: When, asked: Asked) -> Measure:
+    number = number_of(primal.events, one, asked.contacts)
+    if number < 0:
+        return Measure(float("nan"), (), primal.t_end)
+    into = primal.functional()
+    into.add_event(number, 1.0)
+    time = float(primal.events[number, AT["time"]])
+    # whether one comes before it shows up to the end where they are counted from there
+    return Measure(time, (into,), time if one.number > 0 else primal.t_end)
+
+
+def _extreme(primal: Primal, one: Extreme) -> Measure:
+    steps = primal.steps
+    found = extremes.apart(primal, extremes.candidates(one, steps, signal_at(primal, one.signal, steps.rows)))
+    changes = list[Functional]()
+    for place in found:
+        changes.append(primal.functional())
+        extremes.add_extreme(primal, one, place, changes[-1])
+    when = tuple(place.time(steps) for place in found)
+    return Measure(extremes.value(one, found), tuple(changes), max(when, default=primal.t_end), when)
+
+
+def _jerk(primal: Primal, one: SquaredJerk) -> Measure:
+    into, acceleration = primal.functional(), signal_at(primal, one.signal, primal.steps.rows)
+    jerk.add_jerk(primal, one.signal, acceleration, into)
+    return Measure(jerk.value(primal.steps, acceleration), (into,), primal.t_end)

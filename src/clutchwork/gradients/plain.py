@@ -1,0 +1,152 @@
+"""Values alone, of many points at once: runs without derivatives, by the door of sweeps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.declare.core import core
+from clutchwork.declare.status import DONE
+from clutchwork.gradients import extremes, jerk
+from clutchwork.gradients.measures import number_of
+from clutchwork.gradients.steps import Steps
+from clutchwork.sweeps.batch import Wanted
+from clutchwork.sweeps.columns import all_needed, moved
+from clutchwork.sweeps.outputs import AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When
+from clutchwork.sweeps.parts import PARTS
+
+if TYPE_CHECKING:
+    from clutchwork.results.forms import Form
+
+Array = NDArray[np.float64]
+
+IN_STEPS = (Extreme, SquaredJerk)
+
+
+class Run(NamedTuple):
+    """What the core gave for one point."""
+
+    status: int
+    detail: tuple[int, float, float, int]  # component, time, value, column
+    grid: Array  # rows at the instants
+    times: Array  # instants of rows in steps
+    rows: Array
+    events: Array  # as layout.EVENT, without what is not asked for
+
+
+@dataclass(frozen=True, eq=False)
+class Plain:
+    """Runs without derivatives, and outputs of them."""
+
+    wanted: Wanted
+    options: Mapping[str, float]
+    threads: int
+
+    def runs(self, systems: Sequence[bytes], columns: Sequence[int], *, grid: bool, steps: bool) -> list[Run]:
+        """One run for each of the bytes; numbers of a row that are kept, at the instants and in the steps."""
+        on_grid = self._call(systems, columns, 0) if grid else None
+        in_steps = self._call(systems, columns, PARTS) if steps else None
+        first: Any = on_grid or in_steps
+        status, detail = first[0], first[1]
+        rows = on_grid[2] if on_grid else np.zeros((len(systems), 0, len(columns)))
+        parts = _by_variant(in_steps[3], len(systems), len(columns)) if in_steps else [_nothing(columns)] * len(systems)
+        events = _events(first[3], len(systems))
+        return [Run(int(status[n]), _detail(detail[n]), rows[n], *parts[n], events[n]) for n in range(len(systems))]
+
+    def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int) -> Any:
+        count = len(systems)
+        choice = np.arange(count, dtype=np.int64).reshape(-1, 1)
+        times = np.zeros(0) if parts else self.wanted.grid
+        threads = min(self.threads, max(1, count // 2))
+        options, kept = list(self.options.items()), np.array(columns, dtype=np.int64)
+        found = core().sweep(
+            list(systems), [], choice, options, self.wanted.t_end, times, parts, kept, True, threads, None
+        )
+        if found[4] is not None:
+            raise found[4]
+        return found
+
+    # ---------------------------------------------------------------------------------------------------------- outputs
+
+    @cached_property
+    def in_steps(self) -> bool:
+        """Whether any output is looked for within the steps."""
+        return any(isinstance(one, IN_STEPS) for one in self.wanted.outputs.values())
+
+    @cached_property
+    def on_grid(self) -> bool:
+        """Whether any output is read at instants."""
+        return bool(self.wanted.signals(AtEnd, AtTimes, Integral)) or not self.in_steps
+
+    def values(self, systems: Sequence[bytes], forms: Sequence[Mapping[str, Form]]) -> Array:
+        """Outputs of each of the bytes, with the forms of its signals; NaN for what there is not."""
+        columns = all_needed(form for some in forms for form in some.values())
+        places = {column: place for place, column in enumerate(columns)}
+        runs = self.runs(systems, columns, grid=self.on_grid, steps=self.in_steps)
+        return np.array(
+            [
+                self._of(run, {name: moved(form, places) for name, form in own.items()})
+                for run, own in zip(runs, forms, strict=True)
+            ]
+        )
+
+    def _of(self, run: Run, forms: Mapping[str, Form]) -> list[float]:
+        found = list[float]()
+        steps = Steps.of_parts(run.times)
+        reached = run.status == DONE
+        for one in self.wanted.outputs.values():
+            if isinstance(one, When):
+                number = number_of(run.events, one, self.wanted.contacts)
+                found.append(float(run.events[number, 0]) if number >= 0 else np.nan)
+            elif isinstance(one, IN_STEPS):
+                inside = np.asarray(forms[one.signal](run.rows), dtype=float)[steps.rows]
+                found.append(_in_steps(one, steps, inside) if reached else np.nan)
+            else:
+                found += self._on_grid(one, run.grid, forms, reached)
+        return found
+
+    def _on_grid(self, one: Any, grid: Array, forms: Mapping[str, Form], reached: bool) -> list[float]:
+        values = np.asarray(forms[self.wanted.kept_as(one)](np.nan_to_num(grid)), dtype=float)
+        if isinstance(one, AtTimes):
+            rows = np.searchsorted(self.wanted.grid, one.times)
+            there = ~np.isnan(grid[rows]).all(axis=1) if grid.shape[1] else np.full(len(rows), reached)
+            return [float(value) for value in np.where(there, values[rows], np.nan)]
+        if not reached:
+            return [float("nan")]
+        return [float(values[-1] - values[0] if isinstance(one, Integral) else values[-1])]
+
+
+def _in_steps(one: Any, steps: Steps, values: Array) -> float:
+    if isinstance(one, SquaredJerk):
+        return jerk.value(steps, values)
+    return extremes.value(one, extremes.candidates(one, steps, values))
+
+
+def _nothing(columns: Sequence[int]) -> tuple[Array, Array]:
+    return np.zeros(0), np.zeros((0, len(columns)))
+
+
+def _by_variant(parts: Any, count: int, width: int) -> list[tuple[Array, Array]]:
+    """Times and rows of each variant, from what each thread has."""
+    found = [(np.zeros(0), np.zeros((0, width)))] * count
+    for variants, counts, times, rows, _ in parts:
+        ends = np.cumsum(counts)
+        for variant, begin, end in zip(variants.tolist(), (ends - counts).tolist(), ends.tolist(), strict=True):
+            found[variant] = times[begin:end], rows[begin:end]
+    return found
+
+
+def _events(parts: Any, count: int) -> list[Array]:
+    """Events of each variant: time, contact, modes."""
+    known = np.concatenate([np.zeros((0, 5)), *(part[4] for part in parts)])
+    return [known[known[:, 0] == number][:, 1:] for number in range(count)]
+
+
+def _detail(numbers: Array) -> tuple[int, float, float, int]:
+    component, time, value, column = np.nan_to_num(numbers, nan=-1.0).tolist()
+    return int(component), time, value, int(column)

@@ -1,0 +1,109 @@
+"""The forms of signals at a point, and how they change with numbers that are in them: ratios, inertias, stiffnesses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field
+from functools import cached_property, partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import ModelError
+from clutchwork.gradients.discovery import PROBES
+from clutchwork.gradients.stencils import Bent, slope
+from clutchwork.gradients.words import Words
+from clutchwork.results.channels import channels
+from clutchwork.results.gradient import NoGradient
+from clutchwork.sweeps.columns import fixed, needed
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.results.forms import Form
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SignalsAt:
+    """Forms of some signals as functions of the numbers."""
+
+    words: Words
+    names: tuple[str, ...]
+    _kept: dict[bytes, Mapping[str, Form]] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def plain(self) -> Mapping[str, Form]:
+        """The forms of the driveline as it is."""
+        return forms_of(self.words.system, self.names)
+
+    @cached_property
+    def _open(self) -> tuple[str, ...]:
+        """Signals whose forms may be others for other numbers."""
+        return tuple(name for name, form in self.plain.items() if not fixed(name, form))
+
+    @cached_property
+    def within(self) -> tuple[int, ...]:
+        """Numbers that are in the forms of signals, seen by moving each."""
+        if not self._open:
+            return ()
+        start = np.array([one.start for one in self.words.parameters])
+        width = max(column for name in self._open for column in needed(self.plain[name])) + 1
+        rows = np.random.default_rng(0).uniform(0.5, 1.5, (2, width))
+        return tuple(n for n in range(len(start)) if self._is_within(n, start, rows))
+
+    def _is_within(self, number: int, start: Array, rows: Array) -> bool:
+        here = _evaluated({name: self.plain[name] for name in self._open}, rows)
+        for share in PROBES:
+            moved = start.copy()
+            moved[number] += share * min(self.words.parameters[number].scale, self.words.parameters[number].reach)
+            try:
+                there = forms_of(self.words.assembled(moved), self._open)
+            except ModelError:
+                continue
+            return _evaluated(there, rows).tobytes() != here.tobytes()
+        return True
+
+    def at(self, x: Array) -> Mapping[str, Form]:
+        """The forms at a point."""
+        if not self.within:
+            return self.plain
+        key = x[list(self.within)].tobytes()
+        if key not in self._kept:
+            self._kept.clear()
+            self._kept[key] = forms_of(self.words.assembled(x), self.names)
+        return self._kept[key]
+
+    def bent(self, x: Array, rows: Array) -> dict[str, Array]:
+        """Derivatives of the signals that have such numbers in them, in some rows: a column for each number."""
+        made = {name: np.zeros((len(rows), len(x))) for name in self._open} if self.within else {}
+        forms = {name: self.at(x)[name] for name in made}
+        here = _evaluated(forms, rows)
+        for number in self.within:
+            one = self.words.parameters[number]
+            size = max(abs(float(x[number])), one.scale if one.places else 0.0) or 1.0
+            try:
+                found = slope(partial(self._along, x, number, tuple(made), rows), here, size, one.reach).value
+            except Bent:
+                text = f"{one.name} = {x[number]:g} {one.unit}: signals jump or have a kink here; move it"
+                raise NoGradient([text]) from None
+            for name, line in zip(made, found.reshape(len(made), -1), strict=True):
+                made[name][:, number] = line
+        return made
+
+    def _along(self, x: Array, number: int, names: tuple[str, ...], rows: Array, step: float) -> Array:
+        moved = x.copy()
+        moved[number] += step
+        return _evaluated(forms_of(self.words.assembled(moved), names), rows)
+
+
+def forms_of(system: System, names: tuple[str, ...]) -> dict[str, Form]:
+    """The forms of signals of a System."""
+    known = channels(system, True, True)
+    return {name: known[name].evaluate for name in names}
+
+
+def _evaluated(forms: Mapping[str, Form], rows: Array) -> Array:
+    return np.concatenate([np.zeros(0), *(np.asarray(form(rows), dtype=float) for form in forms.values())])

@@ -1,0 +1,112 @@
+"""Steps of the solver as polynomials: signals from five rows in each, their slopes, and their limits at its ends.
+
+Rows of a plain run stand at equal parts of each step, its ends among them. Those of a run with derivatives stay inside,
+because the instants of its events differ in the last digits. docs/theory/gradients.md (5)
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.sweeps.parts import PARTS, steps_of
+
+Array = NDArray[np.float64]
+Places = NDArray[np.intp]
+
+# how far rows of a run with derivatives stay away from the ends of a step, of its length, and [s]
+INSIDE, MOST_INSIDE, APART = 1e-3, 0.1, 3e-9
+# steps that are left out, as jumps are [s]
+LEAST = 1e-9
+SLOPES = np.arange(1, PARTS + 1)
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """Steps in order, and where in each of them rows are known."""
+
+    begin: Array  # s
+    length: Array  # s
+    share: Array  # of each step: places of its rows in it, from 0 to 1
+    rows: Places  # of each step: its rows
+
+    @classmethod
+    def of_parts(cls, times: Array) -> Steps:
+        """From the instants of a run whose steps are cut into equal parts."""
+        first = steps_of(times)
+        first = first[times[first + PARTS] - times[first] > LEAST * (1.0 + np.abs(times[first]))]
+        shares = np.broadcast_to(np.arange(PARTS + 1) / PARTS, (len(first), PARTS + 1))
+        rows = first[:, None] + np.arange(PARTS + 1)
+        return cls(times[first], times[first + PARTS] - times[first], shares, rows)
+
+    def inside(self) -> Steps:
+        """The same steps with rows that stay away from their ends; their places are not known yet."""
+        away = np.clip(APART * (1.0 + np.abs(self.begin)) / self.length, INSIDE, MOST_INSIDE)
+        shares = np.tile(np.arange(PARTS + 1) / PARTS, (len(self.begin), 1))
+        shares[:, 0], shares[:, -1] = away, 1.0 - away
+        return Steps(self.begin, self.length, shares, self.rows)
+
+    @property
+    def times(self) -> Array:
+        """Instants of all rows [s]."""
+        return self.begin[:, None] + self.share * self.length[:, None]
+
+    @property
+    def end(self) -> Array:
+        """Ends of the steps [s]."""
+        return self.begin + self.length
+
+    def on(self, grid: Array) -> Steps:
+        """The same steps with the places of their rows on a grid."""
+        return Steps(self.begin, self.length, self.share, np.searchsorted(grid, self.times))
+
+    def __len__(self) -> int:
+        return len(self.begin)
+
+    @cached_property
+    def basis(self) -> Array:
+        """Of each step: coefficients of the polynomials that are one at a row and zero at the others."""
+        # the first place says where the others are
+        _, which, same = np.unique(self.share[:, 0], return_index=True, return_inverse=True)
+        powers = self.share[which][:, :, None] ** np.arange(PARTS + 1)
+        found: Array = np.linalg.inv(powers)[same].astype(np.float64)
+        return found
+
+    @cached_property
+    def left(self) -> Array:
+        """Of each step: weights of its rows for the limit at its begin."""
+        return self.basis[:, 0]
+
+    @cached_property
+    def right(self) -> Array:
+        """Of each step: weights of its rows for the limit at its end."""
+        found: Array = self.basis.sum(axis=1)
+        return found
+
+    @cached_property
+    def left_slope(self) -> Array:
+        """Of each step: weights of its rows for the time derivative at its begin."""
+        found: Array = self.basis[:, 1] / self.length[:, None]
+        return found
+
+    @cached_property
+    def right_slope(self) -> Array:
+        """Of each step: weights of its rows for the time derivative at its end."""
+        found: Array = np.einsum("k,nki->ni", SLOPES, self.basis[:, 1:]) / self.length[:, None]
+        return found
+
+    @cached_property
+    def squared_slope(self) -> Array:
+        """Of each step: the quadratic form of its rows that is the integral of the square of the time derivative."""
+        slopes = SLOPES[:, None] * self.basis[:, 1:]
+        powers = np.arange(PARTS)
+        found: Array = np.einsum("nki,kl,nlj->nij", slopes, 1.0 / (powers[:, None] + powers + 1.0), slopes)
+        return found / self.length[:, None, None]
+
+    def at(self, step: int, share: float) -> Array:
+        """Weights of the rows of a step for the value at a place in it."""
+        found: Array = share ** np.arange(PARTS + 1) @ self.basis[step]
+        return found
