@@ -13,7 +13,7 @@ from clutchwork.base.shown import shown
 from clutchwork.calibration.limits import Limit
 from clutchwork.calibration.memory import Memory
 from clutchwork.calibration.method import SOLVERS
-from clutchwork.calibration.problem import Mistakes, Problem, problem
+from clutchwork.calibration.problem import Mistakes, Problem, problem, refuse_bounds
 from clutchwork.calibration.result import Asked, Calibration, CalibrationInterrupted, found_by
 from clutchwork.calibration.scatter import Scatter
 from clutchwork.calibration.search import Search, Way
@@ -89,6 +89,7 @@ def calibrate(
     )
     if mistakes.found or wanted is None:
         raise UseError("calibrate", mistakes.found)
+    refuse_bounds(wanted)
     asked = Asked(plain, solver, starts, samples, robust, threads, seed, tolerance, iterations)
     return searched(wanted, asked, None if file is None else path_of("calibrate", file, "shift.json"), progress)
 

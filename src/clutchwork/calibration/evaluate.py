@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import ModelError
 from clutchwork.calibration.moves import Moves
 from clutchwork.calibration.terms import Given
 from clutchwork.results.gradient import NoGradient
@@ -90,7 +91,7 @@ class Evaluator:
         self.runs += len(samples)
         try:
             values, slopes = self._differentiated(numbers)
-        except NoGradient as error:
+        except (NoGradient, ModelError) as error:
             return Point(x, np.zeros((0, 0)), np.zeros((0, 0, 0)), str(error))
         by_x = self.moves.slopes(self.problem.base, x)
         found, made = list[Array](), list[Array]()

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
+from clutchwork.base.errors import ModelError, UseError
+from clutchwork.base.errors import Problem as Wrong
 from clutchwork.base.shown import shown
 from clutchwork.calibration.limits import Limit, Settled, Sum, summed
 from clutchwork.calibration.moves import Moves, Unknown
@@ -18,6 +19,7 @@ from clutchwork.calibration.names import Curve, curve, numbers
 from clutchwork.calibration.numbers import pair
 from clutchwork.calibration.terms import Span
 from clutchwork.calibration.together import VALUE, Together
+from clutchwork.gradients.parameters import changes, parameters
 from clutchwork.results.channels import channels
 from clutchwork.sweeps.outputs import Integral, When
 
@@ -174,3 +176,41 @@ def _limits(given: Any, units: Units, mistakes: Mistakes) -> Iterable[Settled]:
         mistakes.found += [f"subject_to: {fault}" for fault in faults]
         if found is not None:
             yield found
+
+
+def refuse_bounds(found: Problem) -> None:
+    """ModelError names all bounds with which the model cannot be run.
+
+    Times of tables are left out: with those of their neighbours moved they may be right.
+    """
+    problems = list[Wrong]()
+    for unknowns in (found.unknowns, found.scatter):
+        own = [one for one in unknowns if not any(".times[" in name for name in one.numbers)]
+        # all at once, and one by one where that is refused: values may only do together
+        if any(_refused(found, unknowns, own, side) for side in ("low", "high")):
+            each = [_refused(found, unknowns, [one], side) for one in own for side in ("low", "high")]
+            problems += [problem for several in each for problem in several]
+    if problems:
+        raise ModelError(list(dict.fromkeys(problems)), found.system.name)
+
+
+def _refused(found: Problem, unknowns: Sequence[Unknown], moved: Sequence[Unknown], side: str) -> tuple[Wrong, ...]:
+    """What is wrong with the model where some unknowns are at one side of their bounds."""
+    moves = Moves(unknowns, found.numbers)
+    x = moves.start(found.base)
+    for one in moved:
+        x[unknowns.index(one)] = getattr(one, side)
+    names = dict.fromkeys(name for one in moved for name in one.numbers)
+    try:
+        if names:
+            found.system.changed(changed_by(found, moves.apply(found.base, x), names))
+    except ModelError as error:
+        return error.problems
+    return ()
+
+
+def changed_by(found: Problem, numbers: Array, names: Iterable[str]) -> dict[str, Any]:
+    """What `System.changed` takes for some of the numbers."""
+    listed = list(names)
+    places = {name: place for place, name in enumerate(found.numbers)}
+    return changes(found.system, parameters(found.system, listed), numbers[[places[name] for name in listed]])

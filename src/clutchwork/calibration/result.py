@@ -21,9 +21,9 @@ from clutchwork.calibration.held import Held
 from clutchwork.calibration.moves import Moves
 from clutchwork.calibration.optimal import Certificate, certificate
 from clutchwork.calibration.outcome import Outcome
+from clutchwork.calibration.problem import changed_by
 from clutchwork.calibration.scaled import Samples, Scaled
 from clutchwork.declare.calls import explained_methods
-from clutchwork.gradients.parameters import changes, parameters
 from clutchwork.run.simulation import simulate
 
 if TYPE_CHECKING:
@@ -123,11 +123,9 @@ class Calibration:
 
     def _changes(self, x: Array) -> dict[str, Any]:
         """Of values of the unknowns."""
-        system, names = self.problem.system, list(self.problem.numbers)
-        numbers = Moves(self.problem.unknowns, names).apply(self.problem.base, x)
+        numbers = Moves(self.problem.unknowns, self.problem.numbers).apply(self.problem.base, x)
         moved = {name for one in self.problem.unknowns for name in one.numbers}
-        chosen = [place for place, name in enumerate(names) if name in moved]
-        return changes(system, parameters(system, [names[place] for place in chosen]), numbers[chosen])
+        return changed_by(self.problem, numbers, [name for name in self.problem.numbers if name in moved])
 
     # ------------------------------------------------------------------------------------------------------------ runs
 

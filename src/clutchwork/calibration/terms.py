@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
-from clutchwork.calibration.numbers import number
+from clutchwork.calibration.numbers import number, pair
 from clutchwork.declare.calls import explained
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
 
@@ -103,10 +103,11 @@ class Plain:
 
 @dataclass(frozen=True)
 class Jerk:
-    """The jerk of a shaft or a mass, averaged over windows: second differences of its speed."""
+    """The size of the jerk of a shaft or a mass, averaged over windows: second differences of its speed."""
 
     shaft: str
     window: float  # s
+    between: tuple[float, float] | None = None  # s
 
     @property
     def name(self) -> str:
@@ -115,8 +116,10 @@ class Jerk:
 
     def needs(self, span: Span) -> list[Any]:
         """Its speed at instants that lie half a window apart."""
-        count = int((span.end - span.begin) / (0.5 * self.window) * (1.0 + 1e-12))
-        times = np.minimum(span.begin + 0.5 * self.window * np.arange(count + 1), span.end)
+        first, last = self.between or span
+        first, last = max(first, span.begin), min(last, span.end)
+        count = int((last - first) / (0.5 * self.window) * (1.0 + 1e-12))
+        times = np.minimum(first + 0.5 * self.window * np.arange(count + 1), last)
         return [AtTimes(f"{self.shaft}.speed", (float(time),)) for time in times]
 
     def unit(self, units: UnitOf) -> str:
@@ -124,10 +127,10 @@ class Jerk:
         return RATES.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
 
     def rows(self, given: Given) -> Rows:
-        """One value for each window."""
+        """Two values for each window: of either sign, the larger one is the size."""
         # docs/theory/calibration.md (3)
-        scale = 1.0 / self.window**2
-        return _second(given.values) * scale, _second(given.slopes) * scale
+        value, slope = (_second(one) / self.window**2 for one in (given.values, given.slopes))
+        return np.concatenate([value, -value]), np.concatenate([slope, -slope])
 
 
 def _second(values: Array) -> Array:
@@ -243,16 +246,20 @@ def _column(given: Given, column: Sequence[Parameter]) -> Rows:
 
 
 @explained("cw.jerk", shaft="'car'")
-def jerk(shaft: str, window: Any = 0.05) -> Jerk:
-    """The jerk of a shaft [rad/s3] or a mass [m/s3] for `calibrate`: at every instant, averaged over windows.
+def jerk(shaft: str, window: Any = 0.05, between: Any = None) -> Jerk:
+    """The size of the jerk of a shaft [rad/s3] or a mass [m/s3] for `calibrate`: at every instant, over windows.
 
     Parameters: shaft, its name; window [s], or with a unit: what is shorter does not count, 0.05 s is what a person
-    feels. A jump of the acceleration counts as its height over the window. docs/theory/calibration.md (3)
+    feels; between, two times [s], two windows apart or more, by default the whole run. A jump of the acceleration
+    counts as its height over the window. docs/theory/calibration.md (3)
     """
     length = number(window, "s")
     if length is None or length <= 0.0:
         raise UseError("jerk", [f"window is {shown(window)}: give a time > 0 s, such as 0.05"])
-    return Jerk(_named("jerk", shaft), length)
+    ends = None if between is None else pair(between, "s")
+    if between is not None and (ends is None or ends[1] - ends[0] < 2.0 * length):
+        raise UseError("jerk", [f"between is {shown(between)}: give two times [s], two windows apart or more"])
+    return Jerk(_named("jerk", shaft), length, ends)
 
 
 @explained("cw.rms_jerk", shaft="'car'")
