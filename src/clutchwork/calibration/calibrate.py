@@ -18,6 +18,7 @@ from clutchwork.calibration.result import Asked, Calibration, CalibrationInterru
 from clutchwork.calibration.scatter import Scatter
 from clutchwork.calibration.search import Search, Way
 from clutchwork.calibration.terms import Span
+from clutchwork.calibration.threads import one_thread
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.gradients.differentiable import differentiable
@@ -111,7 +112,7 @@ def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) ->
     )  # fmt: skip
     memory = Memory(file, wanted, asked.identity)
     most = asked.starts * asked.iterations
-    with followed(progress, most, "calibrate", "(points, most)", unit=" points") as told:
+    with followed(progress, most, "calibrate", "(points, most)", unit=" points") as told, one_thread():
         search = Search(wanted, function, way, memory, told)
         try:
             search.run()
@@ -119,7 +120,7 @@ def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) ->
             memory.keep(search.found.values(), now=True)
             message = f"interrupted after {search.asked} points; the best so far is in .calibration"
             raise CalibrationInterrupted(message, found_by(search, asked)) from None
-    return found_by(search, asked)
+        return found_by(search, asked)
 
 
 def _faults(

@@ -19,12 +19,13 @@ from clutchwork.calibration.names import Curve, curve, numbers
 from clutchwork.calibration.numbers import pair
 from clutchwork.calibration.terms import Span
 from clutchwork.calibration.together import VALUE, Together
-from clutchwork.gradients.parameters import changes, parameters
+from clutchwork.gradients.parameters import changes
 from clutchwork.results.channels import channels
 from clutchwork.sweeps.outputs import Integral, When
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.gradients.parameters import Parameter
 
 Array = NDArray[np.float64]
 SUCH = "{'c1.pressure.values[2:]': (0.0, 8e5)}"
@@ -38,13 +39,22 @@ class Problem:
     span: Span
     unknowns: tuple[Unknown, ...]
     scatter: tuple[Unknown, ...]
-    numbers: tuple[str, ...]
-    base: Array  # the numbers as the model has them
+    moved: tuple[Parameter, ...]  # the numbers that unknowns and scatter move
     goal: Sum
     limits: tuple[Settled, ...]
     curves: Mapping[str, Curve]
     unit: str  # of the goal
     begin: Array | None = None  # where the search begins, where not at the values of the model
+
+    @cached_property
+    def numbers(self) -> tuple[str, ...]:
+        """Names of the numbers."""
+        return tuple(one.name for one in self.moved)
+
+    @cached_property
+    def base(self) -> Array:
+        """The numbers as the model has them."""
+        return np.array([one.start for one in self.moved])
 
     @property
     def identity(self) -> tuple[Any, ...]:
@@ -127,22 +137,21 @@ def problem(
     mistakes.found += _twice(unknowns[0])
     if mistakes.found or goal is None:
         raise UseError("calibrate", list(dict.fromkeys(mistakes.found)))
-    starts = unknowns[1] | spread[1]
-    base = np.array([*starts.values()])
-    made = (tuple(unknowns[0]), tuple(spread[0]), tuple(starts), base)
+    moved = unknowns[1] | spread[1]
+    made = (tuple(unknowns[0]), tuple(spread[0]), tuple(moved.values()))
     return Problem(system, span, *made, goal, tuple(limits), curves, goal.unit(units))
 
 
-def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tuple[list[Unknown], dict[str, float]]:
-    """Unknowns or scatters that a mapping means, and the numbers that they move with their values in the model."""
+def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tuple[list[Unknown], dict[str, Parameter]]:
+    """Unknowns or scatters that a mapping means, and the numbers that they move by name."""
     if not isinstance(given, Mapping) or not given:
         mistakes.found.append(f"{what} is {shown(given)}: give names with their bounds, {SUCH}")
         return [], {}
-    made, starts = list[Unknown](), dict[str, float]()
+    made, moved = list[Unknown](), dict[str, "Parameter"]()
     for name, ends in given.items():
         named = ends.names if isinstance(ends, Together) else (name,)
         found = [one for each in named for one in mistakes.caught(partial(numbers, system, each), ())]
-        starts |= {one.name: one.start for one in found}
+        moved |= {one.name: one for one in found}
         if isinstance(ends, Together):
             made.append(Unknown(str(name), ends.kind, tuple(one.name for one in found), ends.low, ends.high))
             continue
@@ -153,7 +162,7 @@ def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tupl
                 mistakes.found.append(f"{what} of {name!r} is {shown(ends)}: give {wanted}, the lower one first")
                 break
             made.append(Unknown(one.name, VALUE, (one.name,), *both, one.unit))
-    return made, starts
+    return made, moved
 
 
 def _twice(unknowns: Sequence[Unknown]) -> Iterable[str]:
@@ -211,6 +220,6 @@ def _refused(found: Problem, unknowns: Sequence[Unknown], moved: Sequence[Unknow
 
 def changed_by(found: Problem, numbers: Array, names: Iterable[str]) -> dict[str, Any]:
     """What `System.changed` takes for some of the numbers."""
-    listed = list(names)
-    places = {name: place for place, name in enumerate(found.numbers)}
-    return changes(found.system, parameters(found.system, listed), numbers[[places[name] for name in listed]])
+    wanted = set(names)
+    places = [place for place, one in enumerate(found.moved) if one.name in wanted]
+    return changes(found.system, [found.moved[place] for place in places], numbers[places])

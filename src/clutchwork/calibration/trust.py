@@ -6,6 +6,7 @@ doi:10.1137/S1052623497325107.
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -46,18 +47,21 @@ def trust_constr(scaled: Scaled, tolerance: float, iterations: int) -> Array:
                 hess=optimize.BFGS(),
             )
         )
-    found = optimize.minimize(
-        lambda z: scaled.goal(to_y(z)),
-        np.zeros(scaled.count),
-        jac=lambda z: scaled.gradient(to_y(z)) @ by_z,
-        hess=optimize.BFGS(),
-        constraints=limits,
-        method="trust-constr",
-        options={
-            "gtol": 1e-4 * tolerance,
-            "xtol": 10.0 * tolerance,
-            "barrier_tol": 10.0 * tolerance,
-            "maxiter": iterations,
-        },
-    )
+    with warnings.catch_warnings():
+        # of a goal that is linear, whose curvature is zero as it should be
+        warnings.filterwarnings("ignore", "delta_grad == 0.0", UserWarning)
+        found = optimize.minimize(
+            lambda z: scaled.goal(to_y(z)),
+            np.zeros(scaled.count),
+            jac=lambda z: scaled.gradient(to_y(z)) @ by_z,
+            hess=optimize.BFGS(),
+            constraints=limits,
+            method="trust-constr",
+            options={
+                "gtol": 1e-4 * tolerance,
+                "xtol": 10.0 * tolerance,
+                "barrier_tol": 10.0 * tolerance,
+                "maxiter": iterations,
+            },
+        )
     return to_y(found.x)
