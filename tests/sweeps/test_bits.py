@@ -168,7 +168,10 @@ def test_values_that_act_together():
     found = cw.sweep(system, 2.0, vary=vary, outputs=asked)
     plan = Plan.of(system, given(vary))
     bound = {one.name for one in plan.bound}
-    assert bound == set(vary) - {"plates.capacity", "plates.temperature"}
+    together = ("c.normal_force.height", "c.normal_force.duration")
+    assert bound == set(vary) - {"plates.capacity", "plates.temperature", *together}
+    # numbers of one signal share an axis
+    assert together in [axis.names for axis in plan.axes]
     assert compared(system, found, 2.0, {}, range(0, 256, 17)) == ""
 
 

@@ -1,8 +1,9 @@
 """From variants to what the core takes: bytes of Systems, words that change in them, and who has which.
 
 Names whose numbers stand at places of their own, such as a gain or a pressure, become axes: words of eight bytes in
-the System that are replaced for each value. Where values act together, as inertias and ratios do in the mass matrix,
-each combination gets a System of its own.
+the System that are replaced for each value. Names inside of one signal share an axis, whose words are replaced for each
+combination. Where values act together, as inertias and ratios do in the mass matrix, each combination gets a System of
+its own.
 """
 
 from __future__ import annotations
@@ -17,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.changes import UNKNOWN_SOURCE
-from clutchwork.assembly.patches import PLAIN, Patch, Unpatched, patches
+from clutchwork.assembly.patches import PLAIN, Unpatched, patches
 from clutchwork.base.errors import ModelError, Problem
 from clutchwork.declare.given import settled
-from clutchwork.declare.layout import COUNTS, FIELDS
+from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.node import Component, Law, Signal, ThermalNode
 from clutchwork.declare.quantity import has_unit
 from clutchwork.declare.schema import specs
@@ -32,45 +33,13 @@ from clutchwork.model.numbers import At, is_right, number_problems
 from clutchwork.model.parts import role
 from clutchwork.model.thermal import thermal_problems
 from clutchwork.sweeps.variants import Codes, Variants, Varied
+from clutchwork.sweeps.words import Axis, Layout
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
-Words = NDArray[np.uint64]
 # so many mistakes of a sweep are told
 MOST_PROBLEMS = 20
-
-
-@dataclass(frozen=True, eq=False)
-class Axis:
-    """A name on its own: places of words in the System, and what they are for each of its values."""
-
-    name: str
-    place: NDArray[np.int64]
-    words: Words
-
-
-@dataclass(frozen=True, eq=False)
-class Layout:
-    """Where each array of a System begins in its bytes."""
-
-    starts: dict[str, int]
-
-    @classmethod
-    def of(cls, system: System) -> Layout:
-        """The places in `System.to_bytes`."""
-        starts, at = {}, 16 + 8 * len(COUNTS)
-        for name, _, _, _ in FIELDS:
-            starts[name] = at
-            at += -(-system.arrays[name].nbytes // 8) * 8
-        return cls(starts)
-
-    def places(self, patch: Patch, array: NDArray[Any]) -> NDArray[np.int64]:
-        """Words that a patch of numbers of eight bytes touches."""
-        if array.dtype.itemsize != 8:
-            raise Unpatched
-        first = self.starts[patch.array] // 8 + patch.start
-        return np.arange(first, first + len(patch.values), dtype=np.int64)
 
 
 @dataclass
@@ -93,9 +62,9 @@ class Plan:
         plan.targets, problems = targets_of(base.source, [one.name for one in variants.varied])
         if problems:
             raise ModelError(problems, base.name)
-        for one in variants.varied:
+        for group in plan._groups():
             try:
-                plan._add(one)
+                plan._add(group)
             except ModelError as error:
                 problems += error.problems
         if problems:
@@ -115,17 +84,26 @@ class Plan:
             except ModelError as error:
                 yield from error.problems
 
-    def _add(self, one: Varied) -> None:
-        """A name as an axis of its own where it is one."""
-        aim = self.targets[one.name]
-        others = [other for name, other in self.targets.items() if name != one.name and other.owner is aim.owner]
-        if not _alone(aim, others, self.base):
-            self.bound.append(one)
+    def _groups(self) -> list[list[Varied]]:
+        """Names whose numbers stand together, such as those inside of one signal."""
+        found = dict[Any, list[Varied]]()
+        for one in self.variants.varied:
+            aim = self.targets[one.name]
+            found.setdefault((id(aim.owner), _slot(aim)), []).append(one)
+        return list(found.values())
+
+    def _add(self, group: Sequence[Varied]) -> None:
+        """Names that stand together as an axis where they are one."""
+        aims = [self.targets[one.name] for one in group]
+        names = {one.name for one in group}
+        others = [o for name, o in self.targets.items() if name not in names and o.owner is aims[0].owner]
+        if not all(_alone(aim, [*others, *(o for o in aims if o is not aim)], self.base) for aim in aims):
+            self.bound += group
             return
         try:
-            self.axes.append(self._axis(one, aim))
+            self.axes.append(self._axis(group[0], aims[0]) if len(group) == 1 else self._joint(group, aims))
         except Unpatched:
-            self.bound.append(one)
+            self.bound += group
 
     def _axis(self, one: Varied, aim: Target) -> Axis:
         spec = _plain_number(aim)
@@ -133,49 +111,47 @@ class Plan:
             problems = [found for value in one.values for found in _number_problems(value, spec, aim)]
             if problems:
                 raise ModelError(problems[:MOST_PROBLEMS], self.base.name)
-            place = np.array([self._layout.starts["params"] // 8 + self.base.parameters[one.name]], dtype=np.int64)
+            place = self._layout.parameter(one.name)
             if self._nothing_follows(one, aim, place):
-                return Axis(one.name, place, np.array(one.values, dtype=float).view(np.uint64).reshape(-1, 1))
-        lines = [self._line(patches(self.base.numbered, aim.owner, owner)) for owner in self._all_renewed(one, aim)]
-        place = np.array(sorted({word for place, _ in lines for word in place.tolist()}), dtype=np.int64)
-        base = np.frombuffer(self.base.to_bytes(), dtype=np.uint64)
-        words = np.tile(base[place], (len(lines), 1))
-        for line, (own, numbers) in zip(words, lines, strict=True):
-            line[np.searchsorted(place, own)] = numbers
-        return Axis(one.name, place, words)
+                words = np.array(one.values, dtype=float).view(np.uint64).reshape(-1, 1)
+                return Axis((one.name,), place, words, one.codes)
+        made = self._all_renewed(aim.owner, [[(aim.path, value)] for value in one.values])
+        return self._of_owners([one], aim.owner, made, one.codes)
+
+    def _joint(self, group: Sequence[Varied], aims: Sequence[Target]) -> Axis:
+        """One axis for names of one signal."""
+        lines, codes = combined(group)
+        paths, owner = [aim.path for aim in aims], aims[0].owner
+        made = self._all_renewed(owner, [list(zip(paths, values, strict=True)) for values in lines])
+        return self._of_owners(group, owner, made, codes)
+
+    def _of_owners(self, group: Sequence[Varied], owner: Any, made: Sequence[Any], codes: Codes) -> Axis:
+        """The axis that puts other owners into the place of one."""
+        place, words = self._layout.words([patches(self.base.numbered, owner, new) for new in made])
+        return Axis(tuple(one.name for one in group), place, words, codes)
 
     def _nothing_follows(self, one: Varied, aim: Target, place: NDArray[np.int64]) -> bool:
         """Whether a number stands at its own place alone, for the least and the largest of its values."""
-        for value in sorted(one.values)[:: max(1, len(one.values) - 1)]:
-            touched, _ = self._line(patches(self.base.numbered, aim.owner, self._renewed(aim, value)))
-            if not np.isin(touched, place).all():
-                return False
-        return True
+        ends = sorted(one.values)[:: max(1, len(one.values) - 1)]
+        made = self._all_renewed(aim.owner, [[(aim.path, value)] for value in ends])
+        touched, _ = self._layout.words([patches(self.base.numbered, aim.owner, new) for new in made])
+        return bool(np.isin(touched, place).all())
 
-    def _line(self, found: Sequence[Patch]) -> tuple[NDArray[np.int64], Words]:
-        """Words that patches change, and what to."""
-        arrays = self.base.arrays
-        changing = [patch for patch in found if _differs(arrays[patch.array], patch)]
-        place = [self._layout.places(patch, arrays[patch.array]) for patch in changing]
-        words = [np.array(patch.values, dtype=float).view(np.uint64) for patch in changing]
-        empty = np.zeros(0, dtype=np.int64)
-        return np.concatenate([empty, *place]), np.concatenate([empty.view(np.uint64), *words])
-
-    def _all_renewed(self, one: Varied, aim: Target) -> list[Any]:
-        """The owner with each of the values; ModelError names all that are wrong."""
+    def _all_renewed(self, owner: Any, changes: Sequence[Any]) -> list[Any]:
+        """The owner with each set of values at its paths; ModelError names all that are wrong."""
         made, problems = list[Any](), list[Problem]()
-        for value in one.values:
+        for values in changes:
             try:
-                made.append(self._renewed(aim, value))
+                made.append(self._renewed(owner, values))
             except ModelError as error:
                 problems += error.problems
         if problems:
-            raise ModelError(problems[:MOST_PROBLEMS], self.base.name)
+            raise ModelError(list(dict.fromkeys(problems))[:MOST_PROBLEMS], self.base.name)
         return made
 
-    def _renewed(self, aim: Target, value: Any) -> Any:
-        """The owner with one value, which must be right on its own."""
-        made = renewed(aim.owner, [(aim.path, value)])
+    def _renewed(self, owner: Any, values: Any) -> Any:
+        """The owner with other values, which must be right on their own."""
+        made = renewed(owner, values)
         found = list(thermal_problems(made) if isinstance(made, ThermalNode) else component_problems(made))
         if found:
             raise ModelError(found[:MOST_PROBLEMS], self.base.name)
@@ -187,7 +163,7 @@ class Plan:
 
     def _together(self) -> Iterable[Problem]:
         """Mistakes of values that are right one by one, where an element or its friction law has rules between them."""
-        free = {axis.name for axis in self.axes}
+        free = self._named()
         groups = dict[tuple[int, bool], list[Varied]]()
         for one in self.variants.varied:
             aim = self.targets[one.name]
@@ -203,14 +179,18 @@ class Plan:
 
     def _part(self) -> None:
         """Axes that touch the same words act together after all."""
-        owner = dict[int, str]()
+        owner = dict[int, Axis]()
         both = set[str]()
         for axis in self.axes:
             for word in axis.place.tolist():
-                both |= {axis.name, owner[word]} if word in owner else set()
-                owner[word] = axis.name
+                both |= {*axis.names, *owner[word].names} if word in owner else set()
+                owner[word] = axis
         self.bound += [one for one in self.variants.varied if one.name in both]
-        self.axes = [axis for axis in self.axes if axis.name not in both]
+        self.axes = [axis for axis in self.axes if both.isdisjoint(axis.names)]
+
+    def _named(self) -> set[str]:
+        """Names that axes give."""
+        return {name for axis in self.axes for name in axis.names}
 
     # --------------------------------------------------------------------------------------------------------- batches
 
@@ -225,7 +205,7 @@ class Plan:
         """Whether the axes, or as many of another layout, give all that varies beside this System."""
         if not self.axes or self.key(system) == self.key(self.base):
             return True
-        return {axis.name for axis in self.axes_on(system)} == {axis.name for axis in self.axes}
+        return {name for axis in self.axes_on(system) for name in axis.names} == self._named()
 
     def _made_whole(
         self, found: list[System], which: Codes, odd: Sequence[int], first: int
@@ -249,7 +229,7 @@ class Plan:
 
     def axes_on(self, system: System) -> list[Axis]:
         """The axes for a System of another layout."""
-        named = {axis.name for axis in self.axes}
+        named = self._named()
         varied = tuple(one for one in self.variants.varied if one.name in named)
         return Plan.of(system, replace(self.variants, varied=varied, shape=None)).axes
 
@@ -280,10 +260,17 @@ def systems_of(base: System, varied: Sequence[Varied], first: int, last: int) ->
     return made, np.array([number[line] for line in lines], dtype=np.int64)
 
 
-def combinations(varied: Sequence[Varied]) -> Iterable[tuple[Any, ...]]:
+def combinations(varied: Sequence[Varied]) -> list[tuple[Any, ...]]:
     """Values of names that variants have together, each combination once."""
-    lines = dict.fromkeys(zip(*(one.codes.tolist() for one in varied), strict=True))
-    return [tuple(one.values[code] for one, code in zip(varied, line, strict=True)) for line in lines]
+    return combined(varied)[0]
+
+
+def combined(varied: Sequence[Varied]) -> tuple[list[tuple[Any, ...]], Codes]:
+    """Values of names that variants have together, each combination once, and which of them each variant has."""
+    lines = list(zip(*(one.codes.tolist() for one in varied), strict=True))
+    number = {line: place for place, line in enumerate(dict.fromkeys(lines))}
+    values = [tuple(one.values[code] for one, code in zip(varied, line, strict=True)) for line in number]
+    return values, np.array([number[line] for line in lines], dtype=np.int64)
 
 
 def _alone(aim: Target, others: Sequence[Target], base: System) -> bool:
@@ -298,8 +285,6 @@ def _alone(aim: Target, others: Sequence[Target], base: System) -> bool:
     if not others:
         return True
     if any(getattr(type(owner), hook) is not getattr(Component, hook) for hook in ("initial_states", "state_scales")):
-        return False
-    if any(_slot(other) == _slot(aim) for other in others):
         return False
     return not (_entangled(aim) and any(map(_entangled, others)))
 
@@ -353,8 +338,3 @@ def _has_rules(aim: Target) -> bool:
     if isinstance(law, Law) and aim.path[0] == "friction":
         return law.sticks or type(law).problems is not Law.problems
     return type(owner).problems is not Component.problems
-
-
-def _differs(array: NDArray[Any], patch: Patch) -> bool:
-    part = array.reshape(-1)[patch.start : patch.start + len(patch.values)]
-    return part.tobytes() != np.array(patch.values, dtype=part.dtype).tobytes()

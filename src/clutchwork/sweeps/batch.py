@@ -17,7 +17,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.status import DONE, INTERRUPTED
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import LOCKED
-from clutchwork.sweeps.axes import Axis, Plan, systems_of
+from clutchwork.sweeps.axes import Plan, systems_of
 from clutchwork.sweeps.columns import all_needed, fixed, moved
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
 from clutchwork.sweeps.parts import PARTS, squared_jerk_of
@@ -25,6 +25,7 @@ from clutchwork.sweeps.parts import PARTS, squared_jerk_of
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
+    from clutchwork.sweeps.words import Axis
 
 Array = NDArray[Any]
 Progress = Callable[[int], None]
@@ -215,7 +216,7 @@ class Batch:
 
     def _native(self, call: Call, forms: Forms, parts: int, progress: Progress | None) -> Native:
         axes = [(axis.place, axis.words) for axis in call.axes]
-        codes = [forms.codes[axis.name][call.who] for axis in call.axes]
+        codes = [axis.codes[forms.first + call.who] for axis in call.axes]
         choice = np.ascontiguousarray(np.stack([call.base, *codes], axis=1), dtype=np.int64)
         options = list(self.way.options.core_options().items())
         grid = np.zeros(0) if parts else self.wanted.grid
@@ -269,7 +270,7 @@ class Forms:
     def __init__(
         self, plan: Plan, wanted: Wanted, first: int, last: int, systems: Sequence[System], base: NDArray[np.int64]
     ) -> None:
-        self.wanted, self.codes = wanted, {one.name: one.codes[first:last] for one in plan.variants.varied}
+        self.wanted, self.first = wanted, first
         made = dict[tuple[str, ...], tuple[list[Channels], NDArray[np.int64]]]()
         bound = tuple(one.name for one in plan.bound)
         whole = dict[str, tuple[list[Any], NDArray[np.int64]]]()
