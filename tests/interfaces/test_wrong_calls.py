@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
@@ -22,8 +23,16 @@ def held() -> list[Any]:
     lin = cw.linearise(d)
     return [
         d, d.assemble(), run, run.events, run.energy, sweep, sim, sim.save(), lin, lin.modes, d.hints(), d.draw(),
-        cw.Options(), disc,
+        cw.Options(), disc, *studied(d),
     ]  # fmt: skip
+
+
+def studied(d: cw.Driveline) -> list[Any]:
+    """A design, a study and its indices."""
+    vary = cw.design({"b.normal_force": (10.0, 50.0)}, 2, method="saltelli")
+    with TemporaryDirectory() as folder:
+        study = cw.study(d, 0.1, vary=vary, outputs="disc.speed", folder=folder)
+        return [vary, study, cw.sobol_indices(study, "disc.speed")]
 
 
 def ours(function: Any) -> bool:
@@ -33,8 +42,9 @@ def ours(function: Any) -> bool:
 
 # what calls return, and what declarations are made of: nobody calls these
 MADE_HERE = {
-    cw.Domain, cw.Element, cw.EnergyBalance, cw.Event, cw.Events, cw.Hint, cw.Hints, cw.Law, cw.Linear, cw.Loss,
-    cw.Losses, cw.Moment, cw.Problem, cw.Signal, cw.State, cw.Sweep, cw.System, cw.Trajectory,
+    cw.Design, cw.Domain, cw.Element, cw.EnergyBalance, cw.Event, cw.Events, cw.Hint, cw.Hints, cw.Law, cw.Linear,
+    cw.Loss, cw.Losses, cw.Moment, cw.Problem, cw.Signal, cw.SobolIndices, cw.State, cw.Study, cw.Sweep, cw.System,
+    cw.Trajectory,
 }  # fmt: skip
 
 

@@ -103,7 +103,7 @@ def patches(where: Numbered, old: Any, new: Any) -> list[Patch]:
         raise Unpatched
     # first, because it sees whether the friction law is of another kind
     found = list(_parameters(where, old, new))
-    found += [patch for name, signal in changed_signals(old, new) for patch in _signal(where, name, signal)]
+    found += [patch for name, signal in changed_signals(old, new) for patch in signal_patches(where, name, signal)]
     return [*found, *_start(where, old, new)]
 
 
@@ -112,7 +112,7 @@ def _thermal(where: Numbered, old: ThermalNode, new: ThermalNode) -> Iterator[Pa
     if number is None or (old.capacity is None) != (new.capacity is None):
         raise Unpatched
     if new.capacity is None:
-        yield from _signal(where, f"{old.name}.temperature", plain_signal(new.temperature))
+        yield from signal_patches(where, f"{old.name}.temperature", plain_signal(new.temperature))
         return
     yield Patch("shared_scale", number, [1.0 / new.capacity])
     yield Patch("shared_offset", number, [float(new.temperature)])  # type: ignore[arg-type]
@@ -178,7 +178,7 @@ def _given(names: tuple[str, ...], thing: Any) -> str:
     return next((name for name in names if getattr(thing, name) is not None), names[0])
 
 
-def _signal(where: Numbered, name: str, signal: Signal) -> Iterator[Patch]:
+def signal_patches(where: Numbered, name: str, signal: Signal) -> Iterator[Patch]:
     """The pieces of a signal, which keeps its number of pieces and its period."""
     number, arrays = where.inputs.get(name, -1), where.arrays
     if number < 0:

@@ -27,9 +27,9 @@ from clutchwork.run.effort import refuse_endless
 from clutchwork.run.settings import merged
 from clutchwork.run.simulation import Assembles, model_of
 from clutchwork.sweeps.batch import Wanted
+from clutchwork.sweeps.order import threads_of
 from clutchwork.sweeps.outputs import Asked, AtTimes, Computed, Output, asked
 from clutchwork.sweeps.result import unit_of
-from clutchwork.sweeps.sweep import threads_of
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System

@@ -142,7 +142,8 @@ def _shown(value: Any) -> str:
     return shown(value.name if isinstance(value, Node | Component) else value)
 
 
-def _signal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+def signal_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """Mistakes of what drives an input: a number, a signal or a reference."""
     if isinstance(value, Signal):
         found = list(object_problems(value, at._replace(units=spec.units)))
         yield from found
@@ -252,8 +253,8 @@ CHECKS: dict[str, Callable[[Any, Spec, At], Iterator[Problem]]] = {
     "thermal": _thermal,
     "curve": curve_problems,
     "numbers": list_problems,
-    "signal": _signal,
-    "alternative": _signal,
+    "signal": signal_problems,
+    "alternative": signal_problems,
     "law": _law,
     "text": _text,
     "function": _function,

@@ -32,8 +32,9 @@ from clutchwork.model.fields import law_problems
 from clutchwork.model.numbers import At, is_right, number_problems
 from clutchwork.model.parts import role
 from clutchwork.model.thermal import thermal_problems
+from clutchwork.sweeps.driven import Driven
 from clutchwork.sweeps.variants import Codes, Variants, Varied
-from clutchwork.sweeps.words import Axis, Layout
+from clutchwork.sweeps.words import Axis, Layout, Line
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -57,9 +58,7 @@ class Plan:
     def of(cls, base: System, variants: Variants) -> Plan:
         """Look at every value; ModelError names all that are wrong."""
         plan = cls(base, variants)
-        if base.source is None:
-            raise ModelError([UNKNOWN_SOURCE])
-        plan.targets, problems = targets_of(base.source, [one.name for one in variants.varied])
+        problems = plan.find()
         if problems:
             raise ModelError(problems, base.name)
         for group in plan._groups():
@@ -75,6 +74,21 @@ class Plan:
             raise ModelError(problems, base.name)
         plan._part()
         return plan
+
+    def find(self) -> list[Problem]:
+        """Find what the names lead to; those that lead nowhere."""
+        if self.base.source is None:
+            raise ModelError([UNKNOWN_SOURCE])
+        self.targets, problems = targets_of(self.base.source, [one.name for one in self.variants.varied])
+        return problems
+
+    def wrong_alone(self, one: Varied) -> list[Problem]:
+        """What is wrong with the values of a name, whatever other names have."""
+        aim = self.targets[one.name]
+        spec = _plain_number(aim) if isinstance(aim.owner, Component) else None
+        if spec is None:
+            return list(self._wrong(one))
+        return [found for value in one.values for found in _number_problems(value, spec, aim)]
 
     def _wrong(self, one: Varied) -> Iterable[Problem]:
         """What is wrong with the values of a name, each alone."""
@@ -115,19 +129,22 @@ class Plan:
             if self._nothing_follows(one, aim, place):
                 words = np.array(one.values, dtype=float).view(np.uint64).reshape(-1, 1)
                 return Axis((one.name,), place, words, one.codes)
-        made = self._all_renewed(aim.owner, [[(aim.path, value)] for value in one.values])
-        return self._of_owners([one], aim.owner, made, one.codes)
+        return self._of_lines([one], aim.owner, [[(aim.path, value)] for value in one.values], one.codes)
 
     def _joint(self, group: Sequence[Varied], aims: Sequence[Target]) -> Axis:
         """One axis for names of one signal."""
         lines, codes = combined(group)
-        paths, owner = [aim.path for aim in aims], aims[0].owner
-        made = self._all_renewed(owner, [list(zip(paths, values, strict=True)) for values in lines])
-        return self._of_owners(group, owner, made, codes)
+        paths = [aim.path for aim in aims]
+        return self._of_lines(group, aims[0].owner, [list(zip(paths, line, strict=True)) for line in lines], codes)
 
-    def _of_owners(self, group: Sequence[Varied], owner: Any, made: Sequence[Any], codes: Codes) -> Axis:
-        """The axis that puts other owners into the place of one."""
-        place, words = self._layout.words([patches(self.base.numbered, owner, new) for new in made])
+    def _of_lines(self, group: Sequence[Varied], owner: Any, changes: Sequence[Line], codes: Codes) -> Axis:
+        """The axis that gives an element other values."""
+        driven, where = Driven.of(owner, changes[0][0][0][0]), self.base.numbered
+        if driven is not None and driven.fits(changes):
+            found = driven.patches(where, changes, MOST_PROBLEMS)
+        else:
+            found = [patches(where, owner, new) for new in self._all_renewed(owner, changes)]
+        place, words = self._layout.words(found)
         return Axis(tuple(one.name for one in group), place, words, codes)
 
     def _nothing_follows(self, one: Varied, aim: Target, place: NDArray[np.int64]) -> bool:
@@ -137,7 +154,7 @@ class Plan:
         touched, _ = self._layout.words([patches(self.base.numbered, aim.owner, new) for new in made])
         return bool(np.isin(touched, place).all())
 
-    def _all_renewed(self, owner: Any, changes: Sequence[Any]) -> list[Any]:
+    def _all_renewed(self, owner: Any, changes: Sequence[Line]) -> list[Any]:
         """The owner with each set of values at its paths; ModelError names all that are wrong."""
         made, problems = list[Any](), list[Problem]()
         for values in changes:

@@ -20,8 +20,9 @@ from clutchwork.declare.units import split
 from clutchwork.face.driveline import Driveline
 from clutchwork.run.flags import add_options, given_options
 from clutchwork.sweeps import outputs as made
+from clutchwork.sweeps.order import ROWS
 from clutchwork.sweeps.result import Sweep, SweepInterrupted
-from clutchwork.sweeps.sweep import ROWS, sweep
+from clutchwork.sweeps.sweep import sweep
 from clutchwork.sweeps.table import without_values
 
 if TYPE_CHECKING:

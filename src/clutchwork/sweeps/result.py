@@ -347,6 +347,8 @@ class SweepInterrupted(KeyboardInterrupt):
 def empty_like(values: Array, count: int) -> Array:
     """Lines of the same kind without values."""
     shape = (count, *values.shape[1:])
+    if values.dtype.kind == "O":
+        return np.full(shape, None, dtype=object)
     return np.full(shape, np.nan) if values.dtype.kind == "f" else np.full(shape, "", dtype=values.dtype)
 
 

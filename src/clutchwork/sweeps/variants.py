@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import prod
-from typing import Any
+from typing import Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,12 @@ class Varied:
         labels = np.array(self.labels) if plain else np.array([str(label) for label in self.labels])
         return labels[self.codes] if len(labels) else labels
 
+    def part(self, first: int, last: int) -> Varied:
+        """What variants from first to last have, without the values of others."""
+        used, codes = np.unique(self.codes[first:last], return_inverse=True)
+        values, labels = ([given[code] for code in used.tolist()] for given in (self.values, self.labels))
+        return replace(self, values=tuple(values), labels=tuple(labels), codes=codes.astype(np.int64))
+
 
 @dataclass(frozen=True, eq=False)
 class Variants:
@@ -47,6 +53,7 @@ class Variants:
     varied: tuple[Varied, ...]
     count: int
     shape: tuple[int, ...] | None = None
+    design: Any = None  # what they were drawn from
 
     def __len__(self) -> int:
         return self.count
@@ -55,6 +62,29 @@ class Variants:
         """The values of one variant by name."""
         place = range(self.count)[number]
         return {one.name: one.values[one.codes[place]] for one in self.varied}
+
+    def part(self, first: int, last: int) -> Variants:
+        """Variants from first to last; the whole with its shape where these are all."""
+        if (first, last) == (0, self.count):
+            return self
+        return Variants(tuple(one.part(first, last) for one in self.varied), last - first)
+
+    def in_si(self, model: Model) -> Variants:
+        """The same with values of SI where they have units that fit; others stay, to be refused with all mistakes."""
+        owners = named(model)
+        return replace(self, varied=tuple(_in_si(one, target(owners, one.name)) for one in self.varied))
+
+
+class Source(Protocol):
+    """Where variants come from, as many at a time as are asked for."""
+
+    def __len__(self) -> int: ...
+
+    def part(self, first: int, last: int) -> Variants:
+        """Variants from first to last."""
+
+    def in_si(self, model: Model) -> Source:
+        """The same with values of SI where they have units that fit."""
 
 
 def grid(vary: Mapping[str, Any]) -> Variants:
@@ -88,10 +118,10 @@ def variants(columns: Mapping[str, Any]) -> Variants:
     return Variants(tuple(_column(name, values) for name, values in listed.items()), next(iter(lengths.values())))
 
 
-def given(vary: Any) -> Variants:
-    """The variants that a call means: a grid, a table, or a list with the values of each."""
-    if isinstance(vary, Variants):
-        return vary
+def given(vary: Any) -> Source:
+    """The variants that a call means: a design, a grid, a table, or a list with the values of each."""
+    if isinstance(vary, Variants) or hasattr(vary, "part"):
+        return cast("Source", vary)
     if hasattr(vary, "columns") and hasattr(vary, "iloc"):
         # a DataFrame of pandas, or what looks like one
         return variants({str(name): vary[name].tolist() for name in vary.columns})
@@ -99,14 +129,8 @@ def given(vary: Any) -> Variants:
         return grid(vary)
     if isinstance(vary, Sequence) and not isinstance(vary, str) and all(isinstance(one, Mapping) for one in vary):
         return _of_list(vary)
-    remedy = "give values by name, a list of variants, cw.variants({...}) or a DataFrame"
+    remedy = "give values by name, a list of variants, cw.variants({...}), cw.design({...}, 1000) or a DataFrame"
     raise UseError("sweep", [f"vary is {shown(vary)}: {remedy}"])
-
-
-def in_si(variants: Variants, model: Model) -> Variants:
-    """The variants with values of SI where they have units that fit; others stay, to be refused with all mistakes."""
-    owners = named(model)
-    return replace(variants, varied=tuple(_in_si(one, target(owners, one.name)) for one in variants.varied))
 
 
 def _in_si(one: Varied, aim: Target | None) -> Varied:

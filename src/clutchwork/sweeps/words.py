@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 Words = NDArray[np.uint64]
 Places = NDArray[np.int64]
+# values at paths of fields of one element
+Line = Sequence[tuple[tuple[str, ...], Any]]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,204 @@
+"""A study on disk: columns, tables and queries over its parts, whatever of them is there."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.system import System, SystemFormatError
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UnknownName, UseError, near
+from clutchwork.base.extras import need
+from clutchwork.base.paths import path_of
+from clutchwork.base.shown import shown
+from clutchwork.declare.calls import explained, explained_methods
+from clutchwork.declare.options import Options
+from clutchwork.results.selection import chosen
+from clutchwork.studies.manifest import MODEL, Manifest, StudyError
+from clutchwork.studies.parts import Written, file_of, there
+from clutchwork.sweeps.single import single
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from clutchwork.results.trajectory import Trajectory
+
+STATUS = "status"
+
+
+@explained_methods("study")
+@dataclass(frozen=True, eq=False)
+class Study:
+    """The data set of a study: a folder with Parquet files, of which only what is asked for is read.
+
+    `found["lock(c1)"]` is a column, one value for each variant that is there, in their order; `found.names` lists the
+    outputs, `found.varied` what varies. All columns are `variant`, those, and `status`. The files below `data` are for
+    any other program too.
+    """
+
+    folder: Path
+    manifest: Manifest
+    parts: dict[int, Written]
+
+    @classmethod
+    @explained("cw.Study.load", folder="'out/study'")
+    def load(cls, folder: str | Path) -> Study:
+        """The study of a folder, as far as it is done; StudyError where there is none."""
+        where = path_of("cw.Study.load", folder, "out/study")
+        manifest = Manifest.read(where)
+        return cls(where, manifest, there(where, manifest.sizes))
+
+    # ------------------------------------------------------------------------------------------------------ what it has
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all outputs, those at several instants by instant."""
+        given = {"variant", STATUS, *self.varied}
+        return tuple(one.name for one in self.manifest.columns if one.name not in given)
+
+    @property
+    def varied(self) -> tuple[str, ...]:
+        """Names of the values that vary."""
+        known = tuple(one.name for one in self.manifest.columns)
+        # they stand behind the number of the variant
+        return known[1 : 1 + self.manifest.varied]
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every column that has one, of SI."""
+        return {one.name: one.unit for one in self.manifest.columns if one.unit}
+
+    @property
+    def count(self) -> int:
+        """Variants that the study is to have."""
+        return self.manifest.count
+
+    def __len__(self) -> int:
+        """Variants that are there."""
+        return sum(part.variants for part in self.parts.values())
+
+    @property
+    def complete(self) -> bool:
+        """Whether all variants are there."""
+        return len(self) == self.count
+
+    @property
+    def files(self) -> list[Path]:
+        """The Parquet files that are there, in the order of the variants."""
+        return [file_of(self.folder, number) for number in sorted(self.parts)]
+
+    @property
+    def workers(self) -> dict[str, tuple[int, float]]:
+        """Who ran it: variants and seconds of each worker, which is a machine and a process."""
+        made = dict[str, tuple[int, float]]()
+        for part in self.parts.values():
+            count, seconds = made.get(part.worker, (0, 0.0))
+            made[part.worker] = count + part.variants, seconds + part.seconds
+        return made
+
+    @property
+    def ends(self) -> dict[str, int]:
+        """How many variants ended in which way: done, or why they stopped early."""
+        return dict(Counter(self[STATUS].tolist()).most_common())
+
+    # ---------------------------------------------------------------------------------------------------------- columns
+
+    def __contains__(self, name: object) -> bool:
+        return name in {one.name for one in self.manifest.columns}
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """A column of the variants that are there; KeyError with near names when there is none."""
+        if name not in self:
+            raise UnknownName(self._unknown(name))
+        if not self.parts:
+            return np.zeros(0)
+        return np.asarray(self.dataset().to_table(columns=[name])[name].to_numpy())
+
+    def dataset(self) -> Any:
+        """The data set of pyarrow, for programs that read it in pieces."""
+        return need("pyarrow.dataset", "study", "a study").dataset([str(file) for file in self.files])
+
+    def to_pandas(self, names: Any = None) -> Any:
+        """A pandas DataFrame with one line for each variant that is there; `attrs["units"]` holds the units.
+
+        Parameters: names, columns by name, or wildcards such as `*.heat`, all by default.
+        """
+        known = [one.name for one in self.manifest.columns]
+        picked = list(chosen(names, known, self._unknown))
+        frame = self.dataset().to_table(columns=picked).to_pandas()
+        frame.attrs["units"] = {name: self.units[name] for name in picked if name in self.units}
+        return frame
+
+    @explained("study.query", sql="'SELECT count(*) FROM study'")
+    def query(self, sql: str) -> Any:
+        """What DuckDB finds; the columns are those of the table `study`, in double quotes: "lock(c1)".
+
+        `.df()` of the result is a DataFrame, `.fetchall()` a list. Only the columns that a query names are read. Needs
+        duckdb.
+        """
+        if not isinstance(sql, str):
+            raise UseError("study.query", [f"sql is {shown(sql)}: give a query as a string"])
+        duckdb = need("duckdb", "study", "a query")
+        connection = duckdb.connect()
+        connection.from_parquet([str(file) for file in self.files]).create_view("study")
+        return connection.sql(sql)
+
+    def run(self, number: int) -> Trajectory:
+        """The run of one variant, as `simulate` gives it, where no Python function sets a signal."""
+        line = self._line(number)
+        try:
+            system = System.load(self.folder / MODEL)
+        except SystemFormatError as error:
+            raise StudyError(f"{self.folder}: its model cannot be run again: {error}") from None
+        options = {name: value for name, value in self.manifest.asked["options"].items() if name != "t_end"}
+        end = self.manifest.asked["options"]["t_end"]
+        return single(system, line, end, Options(**options))
+
+    def _line(self, number: object) -> dict[str, Any]:
+        """The values of one variant by name."""
+        if not isinstance(number, int | np.integer) or isinstance(number, bool) or not 0 <= number < self.count:
+            remedy = f"give a whole number from 0 to {self.count - 1}"
+            raise UseError("study", [f"there is no variant {shown(number)}; {remedy}"])
+        part = int(number) // self.manifest.chunk
+        if part not in self.parts:
+            raise UseError("study", [f"variant {number} is not there yet; let the study go on first"])
+        names = list(self.varied)
+        table = need("pyarrow.parquet", "study").read_table(str(file_of(self.folder, part)), columns=names)
+        line = table.slice(int(number) % self.manifest.chunk, 1).to_pylist()[0]
+        return {name.removesuffix(" given"): value for name, value in line.items()}
+
+    def _unknown(self, name: str) -> str:
+        known = [one.name for one in self.manifest.columns]
+        return f"no column {shown(name)}{near(name, known, '`study.names` lists all outputs')}"
+
+    # --------------------------------------------------------------------------------------------------- text, pictures
+
+    def __repr__(self) -> str:
+        from clutchwork.studies.table import head
+
+        return f"<{head(self)}; {', '.join(self.names)}>"
+
+    def __str__(self) -> str:
+        """What `print` shows: how much is there, and the distribution of each output."""
+        from clutchwork.studies.table import text
+
+        return text(self)
+
+    def _repr_html_(self) -> str:
+        from clutchwork.studies.table import page
+
+        return page(self)
+
+    @explained("study.plot", path="'study.png'")
+    def plot(self, path: str | Path | None = None, names: Any = None) -> Figure:
+        """The distribution of each output, written to `path` when given. Needs matplotlib.
+
+        Parameters: names, outputs by name, or wildcards such as `*.heat`, all by default.
+        """
+        from clutchwork.studies.picture import distributions
+
+        return distributions(self, chosen(names, self.names, self._unknown), path)
