@@ -41,7 +41,7 @@ PUBLIC = [
         "peak",
     ),
     *("sweep", "variants"),
-    *("Differentiable", "Gradient", "NoGradient", "differentiable", "squared_jerk"),
+    *("Differentiable", "Gradient", "NoGradient", "differentiable", "squared_jerk", "to_jax", "to_torch"),
     *("Calibration", "CalibrationError", "CalibrationInterrupted", "calibrate", "limit", "together"),
     *("jerk", "rms_jerk", "slope", "squared_slope"),
     *("Design", "design", "discrete", "log_uniform", "lognormal", "normal", "triangular", "truncated_normal"),

@@ -56,6 +56,8 @@ NAMES = {
     "jerk": "calibration.terms",
     "limit": "calibration.limits",
     "rms_jerk": "calibration.terms",
+    "to_jax": "frameworks.jax",
+    "to_torch": "frameworks.torch",
     "slope": "calibration.terms",
     "squared_slope": "calibration.terms",
     "together": "calibration.together",

@@ -1,0 +1,80 @@
+"""What a driveline gives as a function of JAX."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from clutchwork.base.errors import UseError
+from clutchwork.base.extras import need
+from clutchwork.base.shown import shown
+from clutchwork.frameworks.lines import no_second, refuse, values, values_and_matrix
+from clutchwork.gradients.differentiable import Differentiable
+
+CALL = "cw.to_jax"
+BITS = 'jax.config.update("jax_enable_x64", True)'
+
+
+def to_jax(f: Differentiable) -> Callable[[Any], Any]:
+    """A function of JAX: values of a driveline at an array x of its numbers, with exact derivatives.
+
+    Parameters: f, what `cw.differentiable` gives.
+
+    Use it where a driveline is a part of a larger computation in JAX. It works under `jit`, `grad`, `value_and_grad`,
+    `jacfwd`, `jacrev`, `jvp`, `vjp` and `vmap`, which runs on threads; runs stay on the CPU. x (..., by) is float64 in
+    SI, in the order of `f.by`; the values (..., of) are in the order of `f.of`. ImportError without JAX; UseError for
+    float32, another shape and second derivatives; `NoGradient` where a derivative does not exist, inside `jit` with
+    its message in a JaxRuntimeError, and NaN for one line of many. docs/guide/frameworks.md
+    """
+    jax = need("jax", "jax", CALL)
+    if not isinstance(f, Differentiable):
+        raise UseError(CALL, [f"f is {shown(f)}: give what cw.differentiable gives"])
+    function = _differentiated(jax, f)
+
+    def of_driveline(x: Any) -> Any:
+        if not jax.config.jax_enable_x64:
+            raise UseError(CALL, [f"JAX computes in float32, too coarse for the derivatives of a run; call {BITS}"])
+        given = jax.numpy.asarray(x)
+        refuse(CALL, f, given.shape, str(given.dtype), "give x.astype(float)")
+        return function(given)
+
+    return of_driveline
+
+
+def _differentiated(jax: Any, f: Differentiable) -> Callable[[Any], Any]:
+    """The function with its rule: tangents are linear in those of x, and JAX turns the rule round for reverse mode."""
+
+    def primal(x: Any) -> Any:
+        return _on_host(jax, partial(values, f), [(len(f.of),)], x)[0]
+
+    def local(x: Any) -> Any:
+        return _on_host(jax, partial(values_and_matrix, f), [(len(f.of),), (len(f.of), len(f.by))], x)
+
+    def rule(primals: Any, tangents: Any) -> tuple[Any, Any]:
+        found, matrix = derived(*primals)
+        return found, jax.numpy.einsum("...ij,...j->...i", matrix, *tangents)
+
+    def refused(_primals: Any, _tangents: Any) -> Any:
+        raise no_second(CALL)
+
+    function, derived = jax.custom_jvp(primal), jax.custom_jvp(local)
+    function.defjvp(rule)
+    derived.defjvp(refused)
+    return function  # type: ignore[no-any-return]
+
+
+def _on_host(jax: Any, work: Callable[[Any], Any], shapes: Sequence[tuple[int, ...]], x: Any) -> list[Any]:
+    """Arrays of shapes for each line of x, computed by NumPy."""
+
+    def arrays(x: Any) -> list[Any]:
+        made = work(np.asarray(x))
+        return list(made) if isinstance(made, tuple) else [made]
+
+    # outside of jit and vmap, errors keep their class
+    if not isinstance(x, jax.core.Tracer):
+        return [jax.numpy.asarray(one) for one in arrays(x)]
+    wanted = [jax.ShapeDtypeStruct((*x.shape[:-1], *shape), "float64") for shape in shapes]
+    return list(jax.pure_callback(arrays, wanted, x, vmap_method="expand_dims"))
