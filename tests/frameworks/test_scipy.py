@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from support.two_discs import two_discs
+from support.two_discs_by_numbers import two_discs
 
 F = two_discs()
 

@@ -7,7 +7,7 @@ import pytest
 
 import clutchwork as cw
 from support.pages import page
-from support.two_discs import SLOW, two_discs
+from support.two_discs_by_numbers import SLOW, two_discs
 
 torch = pytest.importorskip("torch")
 # PyTorch warns of its own functions

@@ -1,19 +1,24 @@
-"""Two discs and a clutch, as a function of two of its numbers; and a point at which the clutch does not lock."""
+"""A model file of two discs and a clutch, for tests of what reads one."""
 
 from __future__ import annotations
 
-import numpy as np
-
-import clutchwork as cw
-
-SLOW = np.array([0.2, 1e-6])
-
-
-def two_discs() -> cw.Differentiable:
-    """When the clutch locks, the speed after it and the heat."""
-    d = cw.Driveline("two discs")
-    engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)
-    pressure = cw.Table([(0.0, 0.0), (0.2, 2e5), (1.0, 2e5)])
-    lining = cw.Coulomb(static=0.125, kinetic=0.1)
-    d.add(cw.Clutch("c1", base=engine, follower=load, friction=lining, gain=5e-4, pressure=pressure))
-    return cw.differentiable(d, 2.5, of=[cw.lock("c1"), "load.speed", "c1.heat"], by=["engine.inertia", "c1.gain"])
+MODEL = """
+name = "two discs"
+[[shaft]]
+name = "engine"
+inertia = 0.2
+speed = 100.0
+[[shaft]]
+name = "load"
+inertia = 0.8
+[[element]]
+name = "c1"
+type = "clutch"
+base = "engine"
+follower = "load"
+gain = 1.0
+normal_force = 100.0
+friction = {type = "coulomb", static = 0.1, kinetic = 0.1}
+[simulation]
+t_end = 2.0
+"""
