@@ -85,7 +85,8 @@ def system() -> Iterator[str]:
     yield "};"
     yield "template <class G> struct SystemOf : SystemCounts {"
     for name, kind, shape, doc in FIELDS:
-        yield f"  const {TYPES[kind] if name == 'points' else NUMBERS[kind]}* {name};  ///< {shape} {doc}".replace("'", "")
+        kinds = TYPES if name == "points" else NUMBERS
+        yield f"  const {kinds[kind]}* {name};  ///< {shape} {doc}".replace("'", "")
     yield "};"
     yield "using System = SystemOf<double>;"
     yield "/// Calls f(field of one System, field of the other, number of its entries) for all fields, in order."

@@ -64,6 +64,11 @@ CLUTCHWORK_INLINE auto value(const Dual<T, N>& x) {
 }
 
 template <class T, int N>
+CLUTCHWORK_INLINE Dual<T, N> plain_of(const Dual<T, N>& x) {
+  return Dual<T, N>(x.v);
+}
+
+template <class T, int N>
 struct NumberOf<Dual<T, N>> : NumberOf<T> {};
 
 /// Lane by lane, for scalars with lanes.

@@ -45,13 +45,13 @@ struct ElasticContact {
 /// the piece.
 template <class S>
 struct LeastGuard {
-  double least = 1e300;
+  S least = S(1e300);
   S change = S(0);  ///< zero, with that derivative
   int who = -1;
 
   void watch(const S& guard, int number) {
     if constexpr (requires { guard.d[0]; }) change.d[0] += abs(guard.d[0]);
-    if (value(guard) < least) least = value(guard), who = number;
+    if (value(guard) < value(least)) least = plain_of(guard), who = number;
   }
 };
 

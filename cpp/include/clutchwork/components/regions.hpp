@@ -10,7 +10,7 @@ inline constexpr double border_slack = 1e-10;
 /// The least of several guards, and whose it is. Its time derivative is as large as those of all, for each may be next.
 template <class S>
 struct Least {
-  double least = 1e300;
+  S least = S(1e300);
   S change = S(0);
   int& who;
 
@@ -25,9 +25,9 @@ struct Least {
     }
     // one that rests on its border does not end the piece
     if (value(guard) == 0 && !moves) return;
-    if (value(guard) < least) least = value(guard), who = number;
+    if (value(guard) < value(least)) least = plain_of(guard), who = number;
   }
-  S margin() const { return S(least) + change; }
+  S margin() const { return least + change; }
 };
 
 /// The interval of x among n borders, the present one as long as x is not clearly beyond its ends.

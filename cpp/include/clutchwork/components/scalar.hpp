@@ -56,6 +56,12 @@ CLUTCHWORK_INLINE bool none(bool x) { return !x; }
 CLUTCHWORK_INLINE bool is_zero(double x) { return x == 0; }
 CLUTCHWORK_INLINE bool is_zero(float x) { return x == 0; }
 
+/// A number without the derivatives of a dual one.
+template <class T>
+CLUTCHWORK_INLINE const T& plain_of(const T& x) {
+  return x;
+}
+
 /// While it lives, what is computed leaves no trace in derivatives that are kept apart from their numbers.
 template <class T>
 struct Untracked {

@@ -4,40 +4,63 @@
 /// A number with derivatives of the whole run by some numbers of its model. docs/theory/gradients.md
 namespace clutchwork {
 
-/// A value and its derivatives in N directions, which are a vector of the processor.
-template <int N>
+/// A value and its derivatives in N directions, R of which are in one register of the processor.
+template <int N, int R = 2>
 struct Tangent {
-  typedef double Vector __attribute__((vector_size(8 * N)));
+  typedef double Part __attribute__((vector_size(8 * R)));
+  static constexpr int kept = N, parts = N / R;
+  alignas(8 * R) Part part[parts]{};
   double v = 0;
-  Vector d{};
 
   Tangent() = default;
   CLUTCHWORK_INLINE Tangent(double x) : v(x) {}
-  CLUTCHWORK_INLINE Tangent(double x, const Vector& slope) : v(x), d(slope) {}
 
-  CLUTCHWORK_INLINE Tangent& operator+=(const Tangent& b) { return v += b.v, d += b.d, *this; }
-  CLUTCHWORK_INLINE Tangent& operator-=(const Tangent& b) { return v -= b.v, d -= b.d, *this; }
+  /// The number v whose derivatives are those that f makes of the parts.
+  template <class F>
+  static CLUTCHWORK_INLINE Tangent each(double v, F&& f) {
+    Tangent r;
+    r.v = v;
+    for (int i = 0; i < parts; ++i) r.part[i] = f(i);
+    return r;
+  }
+  /// f(x) with derivative slope.
+  static CLUTCHWORK_INLINE Tangent chain(const Tangent& x, double f, double slope) {
+    return each(f, [&](int i) { return x.part[i] * slope; });
+  }
+
+  CLUTCHWORK_INLINE Tangent& operator+=(const Tangent& b) {
+    v += b.v;
+    for (int i = 0; i < parts; ++i) part[i] += b.part[i];
+    return *this;
+  }
+  CLUTCHWORK_INLINE Tangent& operator-=(const Tangent& b) {
+    v -= b.v;
+    for (int i = 0; i < parts; ++i) part[i] -= b.part[i];
+    return *this;
+  }
   CLUTCHWORK_INLINE Tangent& operator*=(const Tangent& b) { return *this = *this * b; }
   CLUTCHWORK_INLINE Tangent& operator/=(const Tangent& b) { return *this = *this / b; }
 
-  friend CLUTCHWORK_INLINE Tangent operator-(const Tangent& a) { return {-a.v, -a.d}; }
-  friend CLUTCHWORK_INLINE Tangent operator+(const Tangent& a, const Tangent& b) { return {a.v + b.v, a.d + b.d}; }
-  friend CLUTCHWORK_INLINE Tangent operator-(const Tangent& a, const Tangent& b) { return {a.v - b.v, a.d - b.d}; }
+  friend CLUTCHWORK_INLINE Tangent operator-(const Tangent& a) {
+    return each(-a.v, [&](int i) { return -a.part[i]; });
+  }
+  friend CLUTCHWORK_INLINE Tangent operator+(const Tangent& a, const Tangent& b) {
+    return each(a.v + b.v, [&](int i) { return a.part[i] + b.part[i]; });
+  }
+  friend CLUTCHWORK_INLINE Tangent operator-(const Tangent& a, const Tangent& b) {
+    return each(a.v - b.v, [&](int i) { return a.part[i] - b.part[i]; });
+  }
   friend CLUTCHWORK_INLINE Tangent operator*(const Tangent& a, const Tangent& b) {
-    return {a.v * b.v, a.d * b.v + b.d * a.v};
+    return each(a.v * b.v, [&](int i) { return a.part[i] * b.v + b.part[i] * a.v; });
   }
   friend CLUTCHWORK_INLINE Tangent operator/(const Tangent& a, const Tangent& b) {
-    const double q = a.v / b.v;
-    return {q, (a.d - b.d * q) * (1 / b.v)};
+    const double q = a.v / b.v, inverse = 1 / b.v;
+    return each(q, [&](int i) { return (a.part[i] - b.part[i] * q) * inverse; });
   }
   // a plain factor has no derivatives
-  friend CLUTCHWORK_INLINE Tangent operator*(double a, const Tangent& b) { return {a * b.v, b.d * a}; }
-  friend CLUTCHWORK_INLINE Tangent operator*(const Tangent& a, double b) { return {a.v * b, a.d * b}; }
-  friend CLUTCHWORK_INLINE Tangent operator/(const Tangent& a, double b) { return {a.v / b, a.d * (1 / b)}; }
-  friend CLUTCHWORK_INLINE Tangent operator+(double a, const Tangent& b) { return {a + b.v, b.d}; }
-  friend CLUTCHWORK_INLINE Tangent operator+(const Tangent& a, double b) { return {a.v + b, a.d}; }
-  friend CLUTCHWORK_INLINE Tangent operator-(double a, const Tangent& b) { return {a - b.v, -b.d}; }
-  friend CLUTCHWORK_INLINE Tangent operator-(const Tangent& a, double b) { return {a.v - b, a.d}; }
+  friend CLUTCHWORK_INLINE Tangent operator*(double a, const Tangent& b) { return chain(b, a * b.v, a); }
+  friend CLUTCHWORK_INLINE Tangent operator*(const Tangent& a, double b) { return chain(a, a.v * b, b); }
+  friend CLUTCHWORK_INLINE Tangent operator/(const Tangent& a, double b) { return chain(a, a.v / b, 1 / b); }
 
   friend CLUTCHWORK_INLINE bool operator<(const Tangent& a, const Tangent& b) { return a.v < b.v; }
   friend CLUTCHWORK_INLINE bool operator>(const Tangent& a, const Tangent& b) { return a.v > b.v; }
@@ -47,44 +70,42 @@ struct Tangent {
   friend CLUTCHWORK_INLINE bool operator!=(const Tangent& a, const Tangent& b) { return a.v != b.v; }
 
   friend CLUTCHWORK_INLINE double value(const Tangent& x) { return x.v; }
-  /// f(x) with derivative slope.
-  static CLUTCHWORK_INLINE Tangent chain(const Tangent& x, double f, double slope) { return {f, x.d * slope}; }
   /// What is left of it where its value is zero.
-  friend CLUTCHWORK_INLINE Tangent without_value(const Tangent& x) { return {0.0, x.d}; }
+  friend CLUTCHWORK_INLINE Tangent without_value(const Tangent& x) { return chain(x, 0.0, 1.0); }
+  /// One derivative.
+  double& slope(int i) { return reinterpret_cast<double*>(part)[i]; }
+  double slope(int i) const { return reinterpret_cast<const double*>(part)[i]; }
   /// What a row keeps of the derivatives.
-  static constexpr int kept = N;
   friend CLUTCHWORK_INLINE void keep(const Tangent& x, double* to) {
-    const auto* d = reinterpret_cast<const double*>(&x.d);
-    for (int i = 0; i < N; ++i) to[i] = d[i];
+    for (int i = 0; i < N; ++i) to[i] = x.slope(i);
   }
   /// Largest size of what differs between two derivatives.
   friend double largest_difference(const Tangent& a, const Tangent& b) {
-    const Vector apart = a.d - b.d;
-    const auto* d = reinterpret_cast<const double*>(&apart);
     double most = 0;
-    for (int i = 0; i < N; ++i) most = larger(most, abs(d[i]));
+    for (int i = 0; i < N; ++i) most = larger(most, abs(a.slope(i) - b.slope(i)));
     return most;
   }
   friend CLUTCHWORK_INLINE bool is_zero(const Tangent& x) {
-    bool none = x.v == 0;
-    const auto* d = reinterpret_cast<const double*>(&x.d);
-    for (int i = 0; i < N; ++i) none = none && d[i] == 0;
-    return none;
+    if (x.v != 0) return false;
+    for (int i = 0; i < N; ++i) {
+      if (x.slope(i) != 0) return false;
+    }
+    return true;
   }
 };
 
-template <int N>
-struct NumberOf<Tangent<N>> : NumberOf<double> {
+template <int N, int R>
+struct NumberOf<Tangent<N, R>> : NumberOf<double> {
   static constexpr bool tangents = true;
-  using Given = Tangent<N>;
+  using Given = Tangent<N, R>;
   using Point = double;
 };
 
-#define CLUTCHWORK_CHAIN(NAME, F, SLOPE)                   \
-  template <int N>                                         \
-  CLUTCHWORK_INLINE Tangent<N> NAME(const Tangent<N>& x) { \
-    const double f = F;                                    \
-    return Tangent<N>::chain(x, f, SLOPE);                 \
+#define CLUTCHWORK_CHAIN(NAME, F, SLOPE)                         \
+  template <int N, int R>                                        \
+  CLUTCHWORK_INLINE Tangent<N, R> NAME(const Tangent<N, R>& x) { \
+    const double f = F;                                          \
+    return Tangent<N, R>::chain(x, f, SLOPE);                    \
   }
 CLUTCHWORK_CHAIN(exp, exp(x.v), f)
 CLUTCHWORK_CHAIN(log, log(x.v), 1 / x.v)
@@ -95,19 +116,19 @@ CLUTCHWORK_CHAIN(atan, atan(x.v), 1 / (1 + x.v * x.v))
 CLUTCHWORK_CHAIN(tanh, tanh(x.v), 1 - f * f)
 #undef CLUTCHWORK_CHAIN
 
-template <int N>
-CLUTCHWORK_INLINE Tangent<N> abs(const Tangent<N>& x) {
+template <int N, int R>
+CLUTCHWORK_INLINE Tangent<N, R> abs(const Tangent<N, R>& x) {
   return x.v < 0 ? -x : x;
 }
 /// Power of a positive base.
-template <int N>
-CLUTCHWORK_INLINE Tangent<N> pow(const Tangent<N>& a, const Tangent<N>& b) {
+template <int N, int R>
+CLUTCHWORK_INLINE Tangent<N, R> pow(const Tangent<N, R>& a, const Tangent<N, R>& b) {
   const double p = pow(a.v, b.v);
   const double by_base = b.v * pow(a.v, b.v - 1), by_power = a.v > 0 ? p * log(a.v) : 0.0;
-  return {p, a.d * by_base + b.d * by_power};
+  return Tangent<N, R>::each(p, [&](int i) { return a.part[i] * by_base + b.part[i] * by_power; });
 }
-template <int N>
-CLUTCHWORK_INLINE void add_times(Tangent<N> a, const Tangent<N>& x, Tangent<N>& y) {
+template <int N, int R>
+CLUTCHWORK_INLINE void add_times(Tangent<N, R> a, const Tangent<N, R>& x, Tangent<N, R>& y) {
   y += a * x;
 }
 

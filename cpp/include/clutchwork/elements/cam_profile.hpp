@@ -34,7 +34,7 @@ struct CamProfile : declared::CamProfile {
     const S scale = S(curve_width(p.lift, at.points));
     guards.watch((S(x[3]) - at.state[angle]) / scale, next), guards.watch((at.state[angle] - S(x[0])) / scale, last);
     who = guards.who;
-    return S(guards.least) + guards.change;
+    return guards.least + guards.change;
   }
   /// Where the table ends the next revolution starts.
   template <class T>

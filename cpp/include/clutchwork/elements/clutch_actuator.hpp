@@ -81,18 +81,18 @@ struct ClutchActuator : declared::ClutchActuator {
 
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
-    double least = 1e300;
+    S least = S(1e300);
     S change = S(0);
     auto watch = [&](const S& guard, int number) {
-      change += guard - S(value(guard));
-      if (value(guard) < least) least = value(guard), who = number;
+      change += guard - plain_of(guard);
+      if (value(guard) < value(least)) least = plain_of(guard), who = number;
     };
     const Motion now = motion(at.piece);
     const S way = stroke(p, at) / p.kiss_stroke, supply = at.input[Input::supply_pressure];
     const bool rubs = value(p.seal_friction) > 0;
     const T unit = T(1e5);
     // at the start it may be anywhere
-    if (now == stopped && value(way) > 1e-9) return watch(S(1e-9) - way, leaves), S(least) + change;
+    if (now == stopped && value(way) > 1e-9) return watch(S(1e-9) - way, leaves), least + change;
     if (now == stopped || now == stuck) watch((lifting(p, at) - resting_pressure(p, at)) / unit, lifts);
     if (now == stuck) watch((resting_pressure(p, at) - falling(p, at)) / unit, falls);
     if (now == out && rubs) watch((supply - lifting(p, at)) / unit, sticks);
@@ -100,7 +100,7 @@ struct ClutchActuator : declared::ClutchActuator {
     if (now == back || (now == out && !rubs)) watch(way, stops);
     if (now != stopped)
       watch((kissed(at.piece) ? at.state[force] : -at.state[force]) / (p.contact_rate * p.kiss_stroke), kisses);
-    return S(least) + change;
+    return least + change;
   }
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {

@@ -81,11 +81,11 @@ struct DogClutch : declared::DogClutch {
   /// The least of what keeps the piece. Its time derivative is that of all of them, for each may be the next to end it.
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
-    double least = 1e300;
+    S least = S(1e300);
     S change = S(0);
     auto watch = [&](const S& guard, int number) {
-      change += guard - S(value(guard));
-      if (value(guard) < least) least = value(guard), who = number;
+      change += guard - plain_of(guard);
+      if (value(guard) < value(least)) least = plain_of(guard), who = number;
     };
     const S reach = S(p.reach);
     if (at.piece == apart) {
@@ -102,7 +102,7 @@ struct DogClutch : declared::DogClutch {
       watch(at.piece == loose ? S(1) - abs(off_centre(p, at)) * T(2) / p.gap : depth(p, at) * T(2) / p.gap, meets);
       watch(at.state[sleeve] - reach, leaves);
     }
-    return S(least) + change;
+    return least + change;
   }
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {

@@ -37,11 +37,11 @@ struct Driver : declared::Driver {
 
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
-    double least = 1e300;
+    S least = S(1e300);
     S change = S(0);
     auto watch = [&](const S& guard, int number) {
-      change += guard - S(value(guard));
-      if (value(guard) < least) least = value(guard), who = number;
+      change += guard - plain_of(guard);
+      if (value(guard) < value(least)) least = plain_of(guard), who = number;
     };
     const int foot = at.piece & 3;
     const S u = wanted(p, at), sum = at.state[integral];
@@ -59,7 +59,7 @@ struct Driver : declared::Driver {
     } else {
       watch(at.piece < lower ? error<T>(at) : -error<T>(at), leaves);
     }
-    return S(least) + change;
+    return least + change;
   }
   template <class T>
   static int cross(const Params<T>&, const At<T>& at, int who, T* state) {

@@ -60,7 +60,7 @@ struct ElasticBacklash : declared::ElasticBacklash {
                                    [&](const S& guard, Touch next) { guards.watch(guard, piece_of(s, next)); });
     }
     who = guards.who;
-    return S(guards.least) + guards.change;
+    return guards.least + guards.change;
   }
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T*) {

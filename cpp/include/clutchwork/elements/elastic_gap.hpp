@@ -46,7 +46,7 @@ struct ElasticGap : declared::ElasticGap {
                                 [&](const S& guard, Touch next) { guards.watch(guard, pressed + int(next)); });
     }
     who = guards.who;
-    return S(guards.least) + guards.change;
+    return guards.least + guards.change;
   }
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T*) {

@@ -81,7 +81,7 @@ struct JenkinsElement : declared::JenkinsElement {
       guards.watch(lead(p, at), piece_of(k, sticks));
     }
     who = guards.who;
-    return S(guards.least) + guards.change;
+    return guards.least + guards.change;
   }
   /// Sliding ends where the limit grows faster than the spring: where the slip turns, behind a knot, with the speed.
   template <class T>
@@ -117,8 +117,8 @@ struct JenkinsElement : declared::JenkinsElement {
   template <class T, class S>
   static S lead(const Params<T>& p, const At<S>& at) {
     const S v = at.input[Input::speed];
-    const double faster = side(at.piece) * value(p.stiffness) - piece_slope(p.limit, at.points, segment(at.piece));
-    S found = T(faster) * at.rate / p.stiffness;
+    const T faster = T(side(at.piece)) * p.stiffness - T(piece_slope(p.limit, at.points, segment(at.piece)));
+    S found = faster * at.rate / p.stiffness;
     if constexpr (requires { v.d[0]; }) found -= T(2) * p.speed_friction * v.v * v.d[0] / p.stiffness;
     return found;
   }

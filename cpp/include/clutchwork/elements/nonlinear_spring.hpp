@@ -31,7 +31,7 @@ struct NonlinearSpring : declared::NonlinearSpring {
     LeastGuard<S> guards;
     each_end(p.torque, at.points, at.state[twist], at.piece, [&](const S& g, int next) { guards.watch(g, next); });
     who = guards.who;
-    return S(guards.least) + guards.change;
+    return guards.least + guards.change;
   }
   template <class T>
   static int cross(const Params<T>&, const At<T>& at, int who, T*) {

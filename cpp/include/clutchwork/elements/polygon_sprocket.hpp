@@ -33,7 +33,7 @@ struct PolygonSprocket : declared::PolygonSprocket {
     const S share = at.state[angle] / S(half(p));
     guards.watch(S(T(1)) - share, next), guards.watch(S(T(1)) + share, last);
     who = guards.who;
-    return S(guards.least) + guards.change;
+    return guards.least + guards.change;
   }
   /// The next link takes over where this one ends.
   template <class T>

@@ -67,7 +67,7 @@ void fit_power(Form& form, Step<Form>& step, double s_end) {
       observe(form, t, step.point(), step.slope());
     }
     auto add = [&](int i, const T& power) {
-      for (int j = 0; j < 4; ++j) ws.out.power[j * n + i] += power * T(gauss.coef[g][j]);
+      for (int j = 0; j < 4; ++j) ws.out.power[j * n + i] += power * Real<T>(gauss.coef[g][j]);
     };
     for (int k = 0; k < ws.n_branches; ++k) add(ws.branch[k].direction, ws.seen.torque[k] * ws.seen.rate[k]);
     for (int p = 0; p < np; ++p) add(nd + p, source_torque(ws, shot, p) * ws.in.prescribed[p]);
@@ -82,8 +82,9 @@ template <class T>
 T fitted_work(const Workspace<T>& ws, int i, double x, double h) {
   const int n = fitted_powers(ws);
   const T* c = ws.out.power + i;
-  const T r = T(x);
-  return T(h) * r * (c[0] + r * (c[n] / T(2) + r * (c[2 * n] / T(3) + r * c[3 * n] / T(4))));
+  using R = Real<T>;
+  const R r = R(x);
+  return R(h) * r * (c[0] + r * (c[n] / R(2) + r * (c[2 * n] / R(3) + r * c[3 * n] / R(4))));
 }
 
 }  // namespace clutchwork

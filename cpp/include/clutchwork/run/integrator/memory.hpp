@@ -50,7 +50,7 @@ struct Step {
 /// The state at t + s h into `out`.
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void interpolate(Form& form, Step<Form>& step, double s, T* out) {
-  const T x = T(s), r = T(1 - s);
+  const Real<T> x = Real<T>(s), r = Real<T>(1 - s);
   const int n = form.n();
   const T *a = step.y0(), *b = step.y1(), *p0 = step.p(0), *p1 = step.p(1), *p2 = step.p(2);
   for (int i = 0; i < n; ++i) out[i] = r * a[i] + x * (b[i] + r * (p0[i] + x * (p1[i] + x * p2[i])));
@@ -60,20 +60,22 @@ CLUTCHWORK_INLINE void interpolate(Form& form, Step<Form>& step, double s, T* ou
 template <class Form, class T = typename Form::Scalar>
 void interpolate_slope(Form& form, Step<Form>& step, double s, T* out) {
   const int n = form.n();
-  const T x = T(s), ih = T(1 / step.h);
+  const Real<T> x = Real<T>(s), ih = 1 / step.h;
   for (int i = 0; i < n; ++i) {
     const T p0 = step.p(0)[i], p1 = step.p(1)[i], p2 = step.p(2)[i];
     const T a1 = step.y1()[i] - step.y0()[i] + p0, a2 = p1 - p0, a3 = p2 - p1, a4 = -p2;
-    out[i] = (a1 + x * (T(2) * a2 + x * (T(3) * a3 + x * T(4) * a4))) * ih;
+    out[i] = (a1 + x * (Real<T>(2) * a2 + x * (Real<T>(3) * a3 + x * Real<T>(4) * a4))) * ih;
   }
 }
 
 /// Integral of the interpolant of component i from the start of the step to s.
 template <class Form, class T = typename Form::Scalar>
 T interpolant_integral(Step<Form>& step, int i, double s) {
-  const T x = T(s), p0 = step.p(0)[i], p1 = step.p(1)[i], p2 = step.p(2)[i], y0 = step.y0()[i];
+  const Real<T> x = Real<T>(s);
+  const T p0 = step.p(0)[i], p1 = step.p(1)[i], p2 = step.p(2)[i], y0 = step.y0()[i];
   const T a1 = step.y1()[i] - y0 + p0, a2 = p1 - p0, a3 = p2 - p1, a4 = -p2;
-  return T(step.h) * x * (y0 + x * (a1 / T(2) + x * (a2 / T(3) + x * (a3 / T(4) + x * a4 / T(5)))));
+  using R = Real<T>;
+  return R(step.h) * x * (y0 + x * (a1 / R(2) + x * (a2 / R(3) + x * (a3 / R(4) + x * a4 / R(5)))));
 }
 
 }  // namespace clutchwork

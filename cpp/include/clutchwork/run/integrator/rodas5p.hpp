@@ -143,7 +143,7 @@ struct Rodas5P {
     }
     for (int i = 0; i < n; ++i) {
       T x = step.y0()[i];
-      for (int j = 0; j < s; ++j) x += T(a[s][j]) * step.k(j)[i];
+      for (int j = 0; j < s; ++j) x += Real<T>(a[s][j]) * step.k(j)[i];
       u[i] = x;
     }
   }
@@ -152,14 +152,14 @@ struct Rodas5P {
   template <class Form, class T = typename Form::Scalar>
   static CLUTCHWORK_INLINE void stage_slope(Form& form, Step<Form>& step, int s, const T* u, T* mix, T* k) {
     const int n = form.n(), nz = form.nz(), ns = form.ns();
-    const T ih = T(Real<T>(1) / step.h);
+    const Real<T> ih = Real<T>(1) / step.h;
     evaluate(form, step.t + Real<T>(node[s]) * step.h, u, k);
     for (int i = 0; i < n; ++i) {
       T x = T(0);
-      for (int j = 0; j < s; ++j) x += T(c[s][j]) * step.k(j)[i];
+      for (int j = 0; j < s; ++j) x += Real<T>(c[s][j]) * step.k(j)[i];
       mix[i] = x;
     }
-    form.add_mass_times(ih, mix, k);
+    form.add_mass_times(T(ih), mix, k);
     for (int i = nz; i < nz + ns; ++i) k[i] += ih * mix[i];
   }
 
@@ -184,7 +184,7 @@ struct Rodas5P {
         stage_slope(form, step, s, u, mix, k);
       }
       if (s < 5) {
-        const T hd = T(h * Real<T>(d[s]));
+        const Real<T> hd = h * Real<T>(d[s]);
         for (int i = 0; i < n; ++i) k[i] += hd * step.dt0()[i];
       }
       solve(form, k);
@@ -201,7 +201,7 @@ struct Rodas5P {
     for (int q = 0; q < 3; ++q) {
       for (int i = 0; i < n; ++i) {
         T x = T(0);
-        for (int s = 0; s < 8; ++s) x += T(dense[q][s]) * step.k(s)[i];
+        for (int s = 0; s < 8; ++s) x += Real<T>(dense[q][s]) * step.k(s)[i];
         step.p(q)[i] = x;
       }
     }

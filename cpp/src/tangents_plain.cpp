@@ -1,0 +1,5 @@
+#include <clutchwork/c_api.h>
+
+#include "tangent_run.hpp"
+
+const cw_tangent_calls clutchwork_tangents_plain = clutchwork::TangentCalls<CW_DIRECTIONS, 2>::table();
