@@ -8,6 +8,7 @@
 #include <clutchwork/layout.gen.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 #include <new>
 #include <vector>
@@ -123,9 +124,104 @@ nb::tuple tangents(const nb::bytes& system, const Words& words, const Seeds& see
       array(std::move(found.grazes), {g, std::size_t(CW_GRAZE)}), nb::make_tuple(found.component, found.value));
 }
 
+/// A run whose tape is kept, to be followed back for as many weights as are wanted.
+class Adjoint {
+ public:
+  Adjoint(const nb::bytes& system, const Words& words, const Times& times, double t_end, const Options& options,
+          std::int64_t row, std::int64_t tape_bytes)
+      : row_(row), k_(std::int64_t(times.shape(0))) {
+    const std::int64_t bytes = std::int64_t(system.size()), size = cw_adjoint_size(system.c_str(), bytes);
+    if (size < 0) throw nb::value_error("the bytes are not a system of this core");
+    memory_.reset(new double[std::size_t(size / 8 + 2)]);
+    // what is not written is never touched, and costs no memory
+    tape_.reset(static_cast<double*>(std::malloc(std::size_t(tape_bytes))));
+    auto* at = reinterpret_cast<void*>((reinterpret_cast<std::uintptr_t>(memory_.get()) + 15) / 16 * 16);
+    run_ = cw_adjoint_load(system.c_str(), bytes, at, size, tape_.get(), tape_bytes);
+    if (run_ == nullptr) throw std::bad_alloc();
+    for (const auto& [name, setting] : options) cw_adjoint_set_option(run_, name.c_str(), setting);
+    for (std::size_t i = 0; i < words.shape(0); ++i) {
+      seeds_.push_back(cw_adjoint_seed(run_, words.data()[i]));
+      if (seeds_.back() < 0) throw nb::value_error("a word is not a number of the motion");
+    }
+    nb::gil_scoped_release release;
+    go(times, t_end);
+  }
+
+  /// Derivatives of the weighted sum of rows and times of events by the words.
+  nb::object back(const Seeds& row_weights, const Times& event_weights) const {
+    if (row_weights.shape(0) * row_weights.shape(1) != row_numbers_.size() ||
+        event_weights.shape(0) != event_numbers_.size())
+      throw nb::value_error("one weight for each number of the rows and each event");
+    std::vector<double> found(seeds_.size());
+    bool good = true;
+    {
+      nb::gil_scoped_release release;
+      std::vector<double> adjoint(std::size_t(cw_adjoint_numbers(run_)));
+      for (std::size_t i = 0; i < row_numbers_.size(); ++i)
+        adjoint[std::size_t(row_numbers_[i])] += row_weights.data()[i];
+      for (std::size_t i = 0; i < event_numbers_.size(); ++i)
+        adjoint[std::size_t(event_numbers_[i])] += event_weights.data()[i];
+      good = cw_adjoint_back(run_, adjoint.data()) != 0;
+      for (std::size_t i = 0; i < seeds_.size(); ++i) found[i] = adjoint[std::size_t(seeds_[i])];
+    }
+    if (!good) throw nb::value_error("the tape is full");
+    return array(std::move(found), {seeds_.size()});
+  }
+
+  nb::tuple found() const {
+    const std::size_t e = event_numbers_.size(), g = found_.grazes.size() / CW_GRAZE;
+    auto copy = [](const std::vector<double>& x) { return std::vector<double>(x); };
+    return nb::make_tuple(found_.status, found_.filled, array(copy(found_.rows), {std::size_t(k_), std::size_t(row_)}),
+                          array(copy(found_.events), {e, std::size_t(event_columns)}),
+                          array(copy(found_.grazes), {g, std::size_t(CW_GRAZE)}),
+                          nb::make_tuple(found_.component, found_.value));
+  }
+  std::int64_t size() const { return cw_adjoint_numbers(run_); }
+
+ private:
+  void go(const Times& times, double t_end) {
+    found_.rows.resize(std::size_t(k_ * row_)), row_numbers_.resize(std::size_t(k_ * row_));
+    std::vector<double> events = std::vector<double>(std::size_t(events_at_once * event_columns));
+    std::vector<double> numbers = std::vector<double>(std::size_t(events_at_once));
+    do {
+      std::int64_t filled = 0;
+      const std::int64_t at = found_.filled;
+      found_.status = cw_adjoint_advance(run_, t_end, times.data() + at, found_.rows.data() + at * row_,
+                                         row_numbers_.data() + at * row_, k_ - at, &filled);
+      found_.filled += filled;
+      for (std::int64_t taken = events_at_once; taken == events_at_once;) {
+        taken = cw_adjoint_events(run_, events.data(), numbers.data(), events_at_once);
+        found_.events.insert(found_.events.end(), events.begin(), events.begin() + taken * event_columns);
+        event_numbers_.insert(event_numbers_.end(), numbers.begin(), numbers.begin() + taken);
+      }
+    } while (found_.status == int(clutchwork::Status::events_full));
+    found_.grazes.resize(std::size_t(most_grazes * CW_GRAZE));
+    found_.grazes.resize(std::size_t(cw_adjoint_grazes(run_, found_.grazes.data(), most_grazes) * CW_GRAZE));
+    found_.component = cw_adjoint_fault(run_, &found_.value);
+  }
+
+  struct Free {
+    void operator()(double* p) const { std::free(p); }
+  };
+  std::int64_t row_, k_;
+  std::unique_ptr<double[]> memory_;
+  std::unique_ptr<double[], Free> tape_;
+  cw_adjoint* run_ = nullptr;
+  std::vector<std::int64_t> seeds_;
+  std::vector<double> row_numbers_, event_numbers_;
+  Found found_;
+};
+
 }  // namespace
 
 void bind_gradient(nb::module_& m) {
+  nb::class_<Adjoint>(m, "Adjoint")
+      .def(nb::init<const nb::bytes&, const Words&, const Times&, double, const Options&, std::int64_t, std::int64_t>(),
+           nb::arg("system"), nb::arg("words"), nb::arg("times"), nb::arg("t_end"), nb::arg("options"),
+           nb::arg("row_size"), nb::arg("tape_bytes"))
+      .def("found", &Adjoint::found)
+      .def("back", &Adjoint::back, nb::arg("row_weights"), nb::arg("event_weights"))
+      .def_prop_ro("size", &Adjoint::size);
   m.def("tangents", &tangents, nb::arg("system"), nb::arg("words"), nb::arg("seeds"), nb::arg("times"),
         nb::arg("t_end"), nb::arg("options"), nb::arg("row_size"),
         "Rows on a grid and events of one run, with derivatives in directions that change words of the system.");

@@ -177,6 +177,44 @@ int cw_tangents_fault(const cw_tangents* run, double* value);
 /* Accepted steps. */
 int64_t cw_tangents_steps(const cw_tangents* run);
 
+/* Runs that note how their numbers came about, for derivatives of one result by any number of words of the system. */
+typedef struct cw_adjoint cw_adjoint;
+
+/* Bytes of memory that such a run needs without its tape; -1 when the bytes do not fit this core. */
+int64_t cw_adjoint_size(const void* system, int64_t bytes);
+
+/* Start a run in `memory` (aligned to 16 bytes) that writes on `tape`, 24 bytes for each operation of the motion; NULL
+   when system or memory do not fit. */
+cw_adjoint* cw_adjoint_load(const void* system, int64_t bytes, void* memory, int64_t memory_bytes, void* tape,
+                            int64_t tape_bytes);
+
+/* As cw_tangents_set_option. */
+int cw_adjoint_set_option(cw_adjoint* run, const char* name, double value);
+
+/* Derivatives by this word of the system are wanted; before the start. Its number on the tape, -1: it has none. */
+int64_t cw_adjoint_seed(cw_adjoint* run, int64_t word);
+
+/* As cw_tangents_advance, with the number on the tape of each number of the rows, 0: a constant, into `numbers`. Status
+   interrupted: the tape is full. */
+int cw_adjoint_advance(cw_adjoint* run, double t_end, const double* times, double* rows, double* numbers, int64_t n,
+                       int64_t* filled);
+
+/* As cw_tangents_events, with the numbers on the tape of their times. */
+int64_t cw_adjoint_events(cw_adjoint* run, double* events, double* numbers, int64_t most);
+
+/* As cw_tangents_grazes, without what two events at one instant differ by. */
+int64_t cw_adjoint_grazes(cw_adjoint* run, double* grazes, int64_t most);
+
+/* Numbers on the tape. */
+int64_t cw_adjoint_numbers(const cw_adjoint* run);
+
+/* Weights of results, at their numbers on the tape, become derivatives of their sum by all numbers. 1: done; 0: the tape
+   is full. */
+int cw_adjoint_back(const cw_adjoint* run, double* adjoint);
+
+/* As cw_tangents_fault. */
+int cw_adjoint_fault(const cw_adjoint* run, double* value);
+
 #ifdef __cplusplus
 }
 #endif

@@ -62,13 +62,6 @@ CLUTCHWORK_INLINE const T& plain_of(const T& x) {
   return x;
 }
 
-/// While it lives, what is computed leaves no trace in derivatives that are kept apart from their numbers.
-template <class T>
-struct Untracked {
-  Untracked() {}
-  ~Untracked() {}
-};
-
 /// n where it is true, else zero.
 CLUTCHWORK_INLINE int count_where(bool which, int n) { return which ? n : 0; }
 

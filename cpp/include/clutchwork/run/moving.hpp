@@ -274,7 +274,6 @@ T hit_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
   T* probe = step.k(1);
   const double reach = 0.01 * larger(step.h, 1e-12);
   auto plain = [&](double along) {
-    const Untracked<T> untracked;
     for (int i = 0; i < form.n(); ++i) probe[i] = T(value(step.y0()[i]) + along * reach * value(velocity[i]));
     return value(guard_at(form, step, hit, ws.time + along * reach, probe));
   };

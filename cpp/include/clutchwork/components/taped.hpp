@@ -1,0 +1,148 @@
+#pragma once
+#include <clutchwork/components/dual.hpp>
+
+#include <cstdint>
+
+/// A number that notes how it came about, for derivatives of one result by all numbers of its model.
+/// docs/theory/gradients.md (9)
+namespace clutchwork {
+
+/// What numbers have come from: of each the two before it and its derivatives by them, in memory of the caller. Where
+/// that is full the run has to stop.
+class Tape {
+ public:
+  struct Node {
+    std::int32_t first, second;
+    double by_first, by_second;
+  };
+
+  Tape() = default;
+  Tape(void* memory, std::int64_t bytes)
+      : node_(static_cast<Node*>(memory)), room_(std::int32_t(smaller(bytes / std::int64_t(sizeof(Node)), most))) {}
+
+  /// The number of a new result.
+  CLUTCHWORK_INLINE std::int32_t note(std::int32_t a, double by_a, std::int32_t b, double by_b) {
+    if (n_ >= room_) return full_ = true, 0;
+    node_[n_] = {a, b, by_a, by_b};
+    return n_++;
+  }
+  bool is_full() const { return full_; }
+  std::int32_t size() const { return n_; }
+
+  /// Derivatives of what has been seeded by all numbers, in place.
+  void back(double* adjoint) const {
+    for (std::int32_t i = n_ - 1; i > 0; --i) {
+      const double x = adjoint[i];
+      if (x == 0) continue;
+      const Node& node = node_[i];
+      // what a constant gets is not looked at
+      adjoint[node.first] += x * node.by_first;
+      adjoint[node.second] += x * node.by_second;
+    }
+  }
+
+  /// The tape on which this thread writes, null: none.
+  static Tape*& current() {
+    static thread_local Tape* tape = nullptr;
+    return tape;
+  }
+
+ private:
+  static constexpr std::int64_t most = (1ll << 31) - 2;
+  Node* node_ = nullptr;
+  std::int32_t room_ = 0, n_ = 1;  // number 0 stands for constants
+  bool full_ = false;
+};
+
+/// A value and its number on the tape, 0: a constant.
+struct Taped {
+  double v = 0;
+  std::int32_t id = 0;
+  static constexpr int kept = 1;
+
+  Taped() = default;
+  CLUTCHWORK_INLINE Taped(double x) : v(x) {}
+
+  /// f with derivatives by one number, and by two.
+  static CLUTCHWORK_INLINE Taped chain(const Taped& a, double f, double by_a) {
+    Taped r(f);
+    if (a.id != 0 && by_a != 0) r.id = Tape::current()->note(a.id, by_a, 0, 0);
+    return r;
+  }
+  static CLUTCHWORK_INLINE Taped chain(const Taped& a, double by_a, const Taped& b, double by_b, double f) {
+    Taped r(f);
+    const std::int32_t first = by_a != 0 ? a.id : 0, second = by_b != 0 ? b.id : 0;
+    if ((first | second) != 0) r.id = Tape::current()->note(first, by_a, second, by_b);
+    return r;
+  }
+
+  CLUTCHWORK_INLINE Taped& operator+=(const Taped& b) { return *this = *this + b; }
+  CLUTCHWORK_INLINE Taped& operator-=(const Taped& b) { return *this = *this - b; }
+  CLUTCHWORK_INLINE Taped& operator*=(const Taped& b) { return *this = *this * b; }
+  CLUTCHWORK_INLINE Taped& operator/=(const Taped& b) { return *this = *this / b; }
+
+  friend CLUTCHWORK_INLINE Taped operator-(const Taped& a) { return chain(a, -a.v, -1); }
+  // a sum with a constant zero is the other number
+  friend CLUTCHWORK_INLINE Taped operator+(const Taped& a, const Taped& b) {
+    if (b.id == 0 && b.v == 0) return a;
+    if (a.id == 0 && a.v == 0) return b;
+    return chain(a, 1, b, 1, a.v + b.v);
+  }
+  friend CLUTCHWORK_INLINE Taped operator-(const Taped& a, const Taped& b) {
+    if (b.id == 0 && b.v == 0) return a;
+    return chain(a, 1, b, -1, a.v - b.v);
+  }
+  friend CLUTCHWORK_INLINE Taped operator*(const Taped& a, const Taped& b) { return chain(a, b.v, b, a.v, a.v * b.v); }
+  friend CLUTCHWORK_INLINE Taped operator/(const Taped& a, const Taped& b) {
+    const double q = a.v / b.v, inverse = 1 / b.v;
+    return chain(a, inverse, b, -q * inverse, q);
+  }
+  friend CLUTCHWORK_INLINE Taped operator*(double a, const Taped& b) { return chain(b, a * b.v, a); }
+  friend CLUTCHWORK_INLINE Taped operator*(const Taped& a, double b) { return chain(a, a.v * b, b); }
+  friend CLUTCHWORK_INLINE Taped operator/(const Taped& a, double b) { return chain(a, a.v / b, 1 / b); }
+
+  friend CLUTCHWORK_INLINE bool operator<(const Taped& a, const Taped& b) { return a.v < b.v; }
+  friend CLUTCHWORK_INLINE bool operator>(const Taped& a, const Taped& b) { return a.v > b.v; }
+  friend CLUTCHWORK_INLINE bool operator<=(const Taped& a, const Taped& b) { return a.v <= b.v; }
+  friend CLUTCHWORK_INLINE bool operator>=(const Taped& a, const Taped& b) { return a.v >= b.v; }
+  friend CLUTCHWORK_INLINE bool operator==(const Taped& a, const Taped& b) { return a.v == b.v; }
+  friend CLUTCHWORK_INLINE bool operator!=(const Taped& a, const Taped& b) { return a.v != b.v; }
+
+  friend CLUTCHWORK_INLINE double value(const Taped& x) { return x.v; }
+  friend CLUTCHWORK_INLINE Taped without_value(const Taped& x) { return chain(x, 0, 1); }
+  friend CLUTCHWORK_INLINE bool is_zero(const Taped& x) { return x.v == 0 && x.id == 0; }
+  /// A row keeps the number on the tape.
+  friend CLUTCHWORK_INLINE void keep(const Taped& x, double* to) { to[0] = x.id; }
+  /// Not known before the tape is followed back.
+  friend double largest_difference(const Taped&, const Taped&) { return 0; }
+};
+
+template <>
+struct NumberOf<Taped> : NumberOf<double> {
+  static constexpr bool tangents = true;
+  using Given = Taped;
+  using Point = double;
+};
+
+#define CLUTCHWORK_CHAIN(NAME, F, SLOPE)            \
+  CLUTCHWORK_INLINE Taped NAME(const Taped& x) {    \
+    const double f = F;                             \
+    return Taped::chain(x, f, SLOPE);               \
+  }
+CLUTCHWORK_CHAIN(exp, exp(x.v), f)
+CLUTCHWORK_CHAIN(log, log(x.v), 1 / x.v)
+CLUTCHWORK_CHAIN(sqrt, sqrt(x.v), f > 0 ? 0.5 / f : 0.0)
+CLUTCHWORK_CHAIN(sin, sin(x.v), cos(x.v))
+CLUTCHWORK_CHAIN(cos, cos(x.v), -sin(x.v))
+CLUTCHWORK_CHAIN(atan, atan(x.v), 1 / (1 + x.v * x.v))
+CLUTCHWORK_CHAIN(tanh, tanh(x.v), 1 - f * f)
+#undef CLUTCHWORK_CHAIN
+
+CLUTCHWORK_INLINE Taped abs(const Taped& x) { return x.v < 0 ? -x : x; }
+/// Power of a positive base.
+CLUTCHWORK_INLINE Taped pow(const Taped& a, const Taped& b) {
+  const double p = pow(a.v, b.v);
+  return Taped::chain(a, b.v * pow(a.v, b.v - 1), b, a.v > 0 ? p * log(a.v) : 0.0, p);
+}
+
+}  // namespace clutchwork
