@@ -124,6 +124,30 @@ nb::tuple tangents(const nb::bytes& system, const Words& words, const Seeds& see
       array(std::move(found.grazes), {g, std::size_t(CW_GRAZE)}), nb::make_tuple(found.component, found.value));
 }
 
+/// Memory for tapes. What is not written is never touched and costs nothing; the last one of each thread is kept, as
+/// memory that has been touched is much faster than new one.
+struct Tapes {
+  struct Free {
+    void operator()(double* p) const { std::free(p); }
+  };
+  struct Kept {
+    std::unique_ptr<double[], Free> memory;
+    std::int64_t bytes = 0;
+  };
+  static Kept& last() {
+    static thread_local Kept kept;
+    return kept;
+  }
+  static Kept take(std::int64_t bytes) {
+    if (last().bytes == bytes) {
+      last().bytes = 0;
+      return {std::move(last().memory), bytes};
+    }
+    return {std::unique_ptr<double[], Free>(static_cast<double*>(std::malloc(std::size_t(bytes)))), bytes};
+  }
+  static void give(Kept&& tape) { last() = std::move(tape); }
+};
+
 /// A run whose tape is kept, to be followed back for as many weights as are wanted.
 class Adjoint {
  public:
@@ -133,10 +157,10 @@ class Adjoint {
     const std::int64_t bytes = std::int64_t(system.size()), size = cw_adjoint_size(system.c_str(), bytes);
     if (size < 0) throw nb::value_error("the bytes are not a system of this core");
     memory_.reset(new double[std::size_t(size / 8 + 2)]);
-    // what is not written is never touched, and costs no memory
-    tape_.reset(static_cast<double*>(std::malloc(std::size_t(tape_bytes))));
+    tape_ = Tapes::take(tape_bytes);
+    if (tape_.memory == nullptr) throw std::bad_alloc();
     auto* at = reinterpret_cast<void*>((reinterpret_cast<std::uintptr_t>(memory_.get()) + 15) / 16 * 16);
-    run_ = cw_adjoint_load(system.c_str(), bytes, at, size, tape_.get(), tape_bytes);
+    run_ = cw_adjoint_load(system.c_str(), bytes, at, size, tape_.memory.get(), tape_bytes);
     if (run_ == nullptr) throw std::bad_alloc();
     for (const auto& [name, setting] : options) cw_adjoint_set_option(run_, name.c_str(), setting);
     for (std::size_t i = 0; i < words.shape(0); ++i) {
@@ -146,6 +170,9 @@ class Adjoint {
     nb::gil_scoped_release release;
     go(times, t_end);
   }
+  ~Adjoint() { Tapes::give(std::move(tape_)); }
+  Adjoint(const Adjoint&) = delete;
+  Adjoint& operator=(const Adjoint&) = delete;
 
   /// Derivatives of the weighted sum of rows and times of events by the words.
   nb::object back(const Seeds& row_weights, const Times& event_weights) const {
@@ -200,12 +227,9 @@ class Adjoint {
     found_.component = cw_adjoint_fault(run_, &found_.value);
   }
 
-  struct Free {
-    void operator()(double* p) const { std::free(p); }
-  };
   std::int64_t row_, k_;
   std::unique_ptr<double[]> memory_;
-  std::unique_ptr<double[], Free> tape_;
+  Tapes::Kept tape_;
   cw_adjoint* run_ = nullptr;
   std::vector<std::int64_t> seeds_;
   std::vector<double> row_numbers_, event_numbers_;

@@ -7,6 +7,13 @@
 /// docs/theory/gradients.md (9)
 namespace clutchwork {
 
+// found without a call where the format of the program knows such places
+#if defined(__ELF__)
+#define CLUTCHWORK_NEAR __attribute__((tls_model("initial-exec")))
+#else
+#define CLUTCHWORK_NEAR
+#endif
+
 /// What numbers have come from: of each the two before it and its derivatives by them, in memory of the caller. Where
 /// that is full the run has to stop.
 class Tape {
@@ -42,13 +49,11 @@ class Tape {
   }
 
   /// The tape on which this thread writes, null: none.
-  static Tape*& current() {
-    static thread_local Tape* tape = nullptr;
-    return tape;
-  }
+  static CLUTCHWORK_INLINE Tape*& current() { return at_work; }
 
  private:
   static constexpr std::int64_t most = (1ll << 31) - 2;
+  static inline thread_local constinit Tape* at_work CLUTCHWORK_NEAR = nullptr;
   Node* node_ = nullptr;
   std::int32_t room_ = 0, n_ = 1;  // number 0 stands for constants
   bool full_ = false;
@@ -124,10 +129,10 @@ struct NumberOf<Taped> : NumberOf<double> {
   using Point = double;
 };
 
-#define CLUTCHWORK_CHAIN(NAME, F, SLOPE)            \
-  CLUTCHWORK_INLINE Taped NAME(const Taped& x) {    \
-    const double f = F;                             \
-    return Taped::chain(x, f, SLOPE);               \
+#define CLUTCHWORK_CHAIN(NAME, F, SLOPE)         \
+  CLUTCHWORK_INLINE Taped NAME(const Taped& x) { \
+    const double f = F;                          \
+    return Taped::chain(x, f, SLOPE);            \
   }
 CLUTCHWORK_CHAIN(exp, exp(x.v), f)
 CLUTCHWORK_CHAIN(log, log(x.v), 1 / x.v)

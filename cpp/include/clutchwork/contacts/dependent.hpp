@@ -197,6 +197,13 @@ struct Shares {
     }
   }
 
+  /// One whole step where nothing is missing any more: what is left to do are the derivatives.
+  void follow() {
+    miss(deflection);
+    if (!newton_step()) return;
+    for (int r = 0; r < set.rank; ++r) deflection[r] += without_value(step[r]);
+  }
+
   void solve() {
     double scale = 0;
     free_stiffness = T(0);
@@ -210,6 +217,7 @@ struct Shares {
       if (!newton_step()) break;
       search();
     }
+    if constexpr (has_tangents<T>) follow();
     for (int i = 0; i < set.n; ++i) set.x[i] = torque(i, use(i, deflection));
   }
 };
