@@ -24,7 +24,7 @@ constexpr std::int64_t head = (std::int64_t(sizeof(cw_adjoint)) + 63) / 64 * 64;
 /// Lay out the numbers of the model and the arrays of the run; the size of both.
 std::int64_t lay_out_run(cw_adjoint& run, unsigned char* memory) {
   Arena numbers(memory);
-  lift(run.ws.sys, run.plain, numbers);
+  lift(run.ws, run.plain, numbers);
   run.ws.row = RowLayout(run.plain);
   const std::int64_t size = (numbers.size() + 63) / 64 * 64;
   return size + carve(run.ws, memory == nullptr ? nullptr : memory + size);
@@ -75,7 +75,7 @@ int cw_adjoint_set_option(cw_adjoint* run, const char* name, double value) {
 
 std::int64_t cw_adjoint_seed(cw_adjoint* run, std::int64_t word) {
   if (run == nullptr || run->ws.started) return -1;
-  Taped* number = number_at(run->ws.sys, run->plain, run->system, word);
+  Taped* number = number_at(run->ws, run->plain, run->system, word);
   if (number == nullptr) return -1;
   if (number->id == 0) number->id = run->tape.note(0, 0, 0, 0);
   return number->id;

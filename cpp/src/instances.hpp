@@ -25,7 +25,8 @@
   KEYWORD template Dual<double, 1> law_margin(const Workspace<double>&, const Branch<double>&, const double*,          \
                                               const double*, const double*, const double*, int&);                      \
   KEYWORD template int law_cross(const Workspace<double>&, const Branch<double>&, const double*, int, double*);        \
-  KEYWORD template double contact_limit(const System&, int, const double*, const double*, const double*, int);         \
+  KEYWORD template double contact_limit(const System&, const double*, int, const double*, const double*,               \
+                                        const double*, int);                                                           \
   KEYWORD template double table_room(const Workspace<double>&, int, double, double&);                                  \
   KEYWORD template double edge_at(const Workspace<double>&, int, int);                                                 \
   KEYWORD template int edge_count(const Workspace<double>&, int);                                                      \

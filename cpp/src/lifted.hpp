@@ -5,35 +5,42 @@
 /// A run over numbers with derivatives: the numbers of its model in such a form. docs/theory/gradients.md
 namespace clutchwork {
 
-/// Makes the numbers of a model T. Arena: counts, or hands out memory.
-template <class T, class Arena_>
-void lift(SystemOf<T>& to, const System& from, Arena_& arena) {
+/// Makes the numbers of a model T.
+template <class T>
+void lift(Workspace<T>& ws, const System& from, Arena& arena) {
+  auto copied = [&](const double* source, std::int64_t n) {
+    T* copy = nullptr;
+    arena.take(copy, n);
+    for (std::int64_t i = 0; copy != nullptr && i < n; ++i) copy[i] = T(source[i]);
+    return copy;
+  };
+  SystemOf<T>& to = ws.sys;
   static_cast<SystemCounts&>(to) = from;
   visit_fields(to, from, [&](auto& field, const auto* source, std::int64_t n) {
     using Entry = std::remove_cvref_t<decltype(*field)>;
     if constexpr (std::is_same_v<Entry, T>) {
-      T* copy = nullptr;
-      arena.take(copy, n);
-      for (std::int64_t i = 0; copy != nullptr && i < n; ++i) copy[i] = T(source[i]);
-      field = copy;
+      field = copied(source, n);
     } else {
       field = source;
     }
   });
+  ws.moved.points = copied(from.points, 3 * from.n_points);
 }
 
 /// The number of a lifted model at a word of the bytes of the plain one, null where none is.
 template <class T>
-T* number_at(SystemOf<T>& lifted, const System& plain, const unsigned char* bytes, std::int64_t word) {
+T* number_at(Workspace<T>& ws, const System& plain, const unsigned char* bytes, std::int64_t word) {
   T* found = nullptr;
   const auto at = bytes + 8 * word;
-  visit_fields(lifted, plain, [&](auto& field, const auto* source, std::int64_t n) {
+  auto entry = [&](const T* copy, const double* source, std::int64_t n) {
+    const auto* first = reinterpret_cast<const unsigned char*>(source);
+    if (at >= first && at < first + 8 * n) found = const_cast<T*>(copy) + (at - first) / 8;
+  };
+  visit_fields(ws.sys, plain, [&](auto& field, const auto* source, std::int64_t n) {
     using Entry = std::remove_cvref_t<decltype(*field)>;
-    if constexpr (std::is_same_v<Entry, T>) {
-      const auto* first = reinterpret_cast<const unsigned char*>(source);
-      if (at >= first && at < first + 8 * n) found = const_cast<T*>(field) + (at - first) / 8;
-    }
+    if constexpr (std::is_same_v<Entry, T>) entry(field, source, n);
   });
+  entry(ws.moved.points, plain.points, 3 * plain.n_points);
   return found;
 }
 

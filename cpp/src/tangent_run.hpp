@@ -29,7 +29,7 @@ struct TangentCalls {
   /// Lay out the numbers of the model and the arrays of the run; the size of both.
   static std::int64_t lay_out(Run& run, unsigned char* memory) {
     Arena numbers(memory);
-    lift(run.ws.sys, run.plain, numbers);
+    lift(run.ws, run.plain, numbers);
     run.ws.row = RowLayout(run.plain);
     const std::int64_t size = (numbers.size() + 63) / 64 * 64;
     return size + carve(run.ws, memory == nullptr ? nullptr : memory + size);
@@ -65,7 +65,7 @@ struct TangentCalls {
 
   static int seed(void* at, std::int64_t word, int direction, double slope) {
     Run& run = run_at(at);
-    auto* number = number_at(run.ws.sys, run.plain, run.system, word);
+    auto* number = number_at(run.ws, run.plain, run.system, word);
     if (number == nullptr || run.ws.started) return 0;
     number->slope(direction) += slope;
     return 1;

@@ -60,6 +60,15 @@ struct Workspace {
   Poll poll;
 };
 
+/// The points of the curves that components read.
+template <class T>
+CLUTCHWORK_INLINE const Point<T>* points_of(const Workspace<T>& ws) {
+  if constexpr (has_tangents<T>)
+    return ws.moved.points;
+  else
+    return ws.sys.points;
+}
+
 /// The arrays of a workspace, for the memory and for saved states: numbers that are taken are saved, indices are made
 /// anew from the modes; what is kept are integers that a saved state holds too, within bounds; scratch is never saved.
 template <class W, class A>

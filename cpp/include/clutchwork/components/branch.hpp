@@ -26,12 +26,12 @@ template <class T, class S>
 CLUTCHWORK_INLINE S sliding_torque(const Workspace<T>& ws, const Branch<T>& b, const S& rate, const S* input,
                                    const S* law_input) {
   // beyond its zero, at which the step will end, the load goes on as it falls
-  const S load = b.pressed ? contact_load<T, S>(b.kind, b.params, input, ws.sys.points) : S(0);
+  const S load = b.pressed ? contact_load<T, S>(b.kind, b.params, input, points_of(ws)) : S(0);
   S coefficient = visit_law(b.law, [&](auto tag) {
     using L = typename decltype(tag)::type;
     if constexpr (StickingLaw<L> && computes_with<L, T>) {
       const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(b.law_params);
-      return L::slide(p, At<S>{T(b.sign) * rate, nullptr, law_input, b.piece, ws.sys.points});
+      return L::slide(p, At<S>{T(b.sign) * rate, nullptr, law_input, b.piece, points_of(ws)});
     }
     return S(0);
   });
@@ -45,12 +45,12 @@ template <int Room, class T, class S>
 CLUTCHWORK_INLINE S bending_torque(const Workspace<T>& ws, const Branch<T>& b, const S& rate, const S* own,
                                    const S* input, const S* law_input, S* rates) {
   // beyond its zero, at which the step will end, the load goes on as it falls
-  const S load = b.pressed ? contact_load<T, S>(b.kind, b.params, input, ws.sys.points) : S(0);
+  const S load = b.pressed ? contact_load<T, S>(b.kind, b.params, input, points_of(ws)) : S(0);
   S coefficient = visit_law(b.law, [&](auto tag) {
     using L = typename decltype(tag)::type;
     if constexpr (CompliantLaw<L> && L::states <= Room) {
       const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(b.law_params);
-      const At<S> at{rate, own, law_input, b.piece, ws.sys.points};
+      const At<S> at{rate, own, law_input, b.piece, points_of(ws)};
       if constexpr (L::states > 0) L::state_rates(p, at, rates);
       return L::coefficient(p, at);
     }
@@ -82,7 +82,7 @@ CLUTCHWORK_INLINE T contact_torque(const Workspace<T>& ws, const Branch<T>& b, T
 template <class E, class T>
 CLUTCHWORK_INLINE T torque_of(const Workspace<T>& ws, const Branch<T>& b, T rate, const T* state, T* rates) {
   const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-  const At<T> at{rate, state + b.state, b.input, b.piece, ws.sys.points};
+  const At<T> at{rate, state + b.state, b.input, b.piece, points_of(ws)};
   if constexpr (E::states > 0) E::state_rates(p, at, rates + b.state);
   return E::torque(p, at);
 }
@@ -177,7 +177,7 @@ CLUTCHWORK_INLINE Partial<T> partial_of(const Workspace<T>& ws, const Branch<T>&
   for (int i = 0; i < used; ++i) own[i] = S::variable(state[b.state + i], 1 + i);
   S x = S::variable(rate, 0);
   x.d[N - 1] = rate_slope;
-  const At<S> at{x, own, input, b.piece, ws.sys.points};
+  const At<S> at{x, own, input, b.piece, points_of(ws)};
   const S f = E::torque(p, at);
   if constexpr (n > 0) E::state_rates(p, at, own_rates);
   return take_partials(b, f, own_rates, used, rates, out);
@@ -238,7 +238,7 @@ template <class T>
       using E = typename decltype(tag)::type;
       if constexpr (TorqueElement<E>) {
         const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-        return E::torque(p, At<S>{S(rate), own, input, b.piece, ws.sys.points});
+        return E::torque(p, At<S>{S(rate), own, input, b.piece, points_of(ws)});
       }
       return S(0);
     });
@@ -263,7 +263,7 @@ Dual<T, 1> branch_heat(const Workspace<T>& ws, const Branch<T>& b, T rate, const
       S own[E::states > 0 ? E::states : 1], input[E::inputs > 0 ? E::inputs : 1];
       for (int i = 0; i < b.states; ++i) own[i] = S(state[b.state + i]);
       for (int i = 0; i < E::inputs; ++i) input[i] = S(b.input[i]);
-      return E::heat(p, At<S>{x, own, input, b.piece, ws.sys.points});
+      return E::heat(p, At<S>{x, own, input, b.piece, points_of(ws)});
     }
     return -torque * x;
   });
@@ -276,7 +276,7 @@ CLUTCHWORK_INLINE void element_torques(const Workspace<T>& ws, const Branch<T>& 
   visit_torque(b.kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-    const At<S> at{rate[0], own, input, b.piece, ws.sys.points, rate};
+    const At<S> at{rate[0], own, input, b.piece, points_of(ws), rate};
     if constexpr (E::states > 0) E::state_rates(p, at, rates);
     if constexpr (CoupledElement<E>) {
       E::torques(p, at, OwnTorques<S>(torque));
@@ -297,7 +297,7 @@ CLUTCHWORK_INLINE S element_heat(const Workspace<T>& ws, const Branch<T>& b, con
     using E = typename decltype(tag)::type;
     if constexpr (HeatingElement<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-      return E::heat(p, At<S>{rate[0], own, input, b.piece, ws.sys.points, rate});
+      return E::heat(p, At<S>{rate[0], own, input, b.piece, points_of(ws), rate});
     }
     S heat = -torque[0] * rate[0];
     for (int i = 1; i < E::ways; ++i) heat -= torque[i] * rate[i];

@@ -91,8 +91,8 @@ CLUTCHWORK_INLINE int curve_edges(const Curve<T>& c) {
 }
 
 /// Abscissa of kink number i.
-template <class T>
-CLUTCHWORK_INLINE double curve_edge(const Curve<T>& c, const double* points, int i) {
+template <class T, class G>
+CLUTCHWORK_INLINE G curve_edge(const Curve<T>& c, const G* points, int i) {
   return points[3 * (int(common(c.first)) + i + 1)];
 }
 

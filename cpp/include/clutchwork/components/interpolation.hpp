@@ -26,22 +26,23 @@ struct Manner {
 };
 
 /// Points of one row of a table, inside the pool.
+template <class G>
 struct Axis {
-  const double* x;
+  const G* x;
   int count;
 
-  double operator[](int i) const { return x[3 * i]; }
-  double width(int i) const { return x[3 * (i + 1)] - x[3 * i]; }
-  double last() const { return x[3 * (count - 1)]; }
+  G operator[](int i) const { return x[3 * i]; }
+  G width(int i) const { return x[3 * (i + 1)] - x[3 * i]; }
+  G last() const { return x[3 * (count - 1)]; }
 };
 
-template <class T>
-CLUTCHWORK_INLINE Axis axis_of(const Curve<T>& c, const double* points) {
+template <class T, class G>
+CLUTCHWORK_INLINE Axis<G> axis_of(const Curve<T>& c, const G* points) {
   return {points + 3 * int(value(c.first)), int(value(c.count))};
 }
 
 /// Number of the interval that holds x, the outer ones for what lies beyond.
-CLUTCHWORK_INLINE int interval_of(const Axis& axis, double x) {
+CLUTCHWORK_INLINE int interval_of(const auto& axis, double x) {
   int low = 0, high = axis.count - 2;
   while (low < high) {
     const int middle = (low + high + 1) / 2;
@@ -56,22 +57,22 @@ CLUTCHWORK_INLINE int interval_of(const Axis& axis, double x) {
 
 /// x, taken to the nearest end where a table keeps its end values.
 template <class S>
-CLUTCHWORK_INLINE S within(const Axis& axis, const Manner& manner, S x) {
+CLUTCHWORK_INLINE S within(const auto& axis, const Manner& manner, S x) {
   if (!manner.kept()) return x;
   return larger(smaller(x, S(axis.last())), S(axis[0]));
 }
 
 /// Slope at a point inside: harmonic mean of the secants beside it, weighted by their widths; zero at a peak.
 template <class S>
-CLUTCHWORK_INLINE S inner_slope(S before, S after, double width_before, double width_after) {
+CLUTCHWORK_INLINE S inner_slope(S before, S after, auto width_before, auto width_after) {
   if (value(before * after) <= 0) return S(0);
-  const double a = 2 * width_after + width_before, b = width_after + 2 * width_before;
+  const auto a = 2 * width_after + width_before, b = width_after + 2 * width_before;
   return S(a + b) * before * after / (S(a) * after + S(b) * before);
 }
 
 /// Slope at an end: of the parabola through three points, kept monotone.
 template <class S>
-CLUTCHWORK_INLINE S end_slope(S near, S next, double width, double width_next) {
+CLUTCHWORK_INLINE S end_slope(S near, S next, auto width, auto width_next) {
   const S slope = (S(2 * width + width_next) * near - S(width) * next) / S(width + width_next);
   if (value(slope * near) <= 0) return S(0);
   if (value(near * next) <= 0 && abs(slope) > abs(S(3) * near)) return S(3) * near;
@@ -80,7 +81,7 @@ CLUTCHWORK_INLINE S end_slope(S near, S next, double width, double width_next) {
 
 /// Slope at point i of a smooth table of at least three points; `at(i)` gives their values.
 template <class S, class At_>
-CLUTCHWORK_INLINE S smooth_slope(const Axis& axis, At_&& at, int i) {
+CLUTCHWORK_INLINE S smooth_slope(const auto& axis, At_&& at, int i) {
   auto secant = [&](int k) { return (at(k + 1) - at(k)) / S(axis.width(k)); };
   const int last = axis.count - 1;
   if (i == 0) return end_slope<S>(secant(0), secant(1), axis.width(0), axis.width(1));
@@ -99,7 +100,7 @@ CLUTCHWORK_INLINE S cubic(S low, S high, S slope_low, S slope_high, S s) {
 
 /// Value at x of a table whose point i has the value at(i); `k` is the interval that counts.
 template <class S, class At_>
-CLUTCHWORK_INLINE S table_value(const Axis& axis, const Manner& manner, At_&& at, S x, int k) {
+CLUTCHWORK_INLINE S table_value(const auto& axis, const Manner& manner, At_&& at, S x, int k) {
   if (axis.count == 1) return at(0);
   const S low = at(k), high = at(k + 1), h = S(axis.width(k));
   const S s = (x - S(axis[k])) / h;
@@ -109,36 +110,41 @@ CLUTCHWORK_INLINE S table_value(const Axis& axis, const Manner& manner, At_&& at
 
 /// Value of a table over any quantity but the slip.
 template <class S, class At_>
-CLUTCHWORK_INLINE S value_over(const Axis& axis, const Manner& manner, At_&& at, S x) {
+CLUTCHWORK_INLINE S value_over(const auto& axis, const Manner& manner, At_&& at, S x) {
   const S inside = within(axis, manner, x);
   return table_value<S>(axis, manner, at, inside, interval_of(axis, value(inside)));
 }
 
 /// How far x is inside the ends of an axis, round-off conceded; below zero outside.
-CLUTCHWORK_INLINE double room_inside(const Axis& axis, double x) {
-  return smaller(x - axis[0], axis.last() - x) + 1e-9 * (axis.last() - axis[0]);
+CLUTCHWORK_INLINE double room_inside(const auto& axis, double x) {
+  const double first = value(axis[0]), last = value(axis.last());
+  return smaller(x - first, last - x) + 1e-9 * (last - first);
 }
 
 /// The same for a slip, which passes zero: its table starts there.
-CLUTCHWORK_INLINE double room_for_slip(const Axis& axis, double slip) { return (1 + 1e-9) * axis.last() - abs(slip); }
+CLUTCHWORK_INLINE double room_for_slip(const auto& axis, double slip) {
+  return (1 + 1e-9) * value(axis.last()) - abs(slip);
+}
 
 /// No kink there.
 inline constexpr double nowhere = 1e300;
 
 /// Slip at which a table that is continued linearly beyond its end falls to zero.
 template <class At_>
-CLUTCHWORK_INLINE double vanishing_slip(const Axis& axis, const Manner& manner, At_&& at) {
+CLUTCHWORK_INLINE double vanishing_slip(const auto& axis, const Manner& manner, At_&& at) {
   const int last = axis.count - 1;
   if (last < 1) return nowhere;
-  const double secant = (at(last) - at(last - 1)) / axis.width(last - 1);
-  const double slope = manner.smooth() ? smooth_slope<double>(axis, at, last) : secant;
-  return slope < 0 ? axis.last() - at(last) / slope : nowhere;
+  const double secant = value((at(last) - at(last - 1)) / axis.width(last - 1));
+  const double slope =
+      manner.smooth() ? value(smooth_slope<std::remove_cvref_t<decltype(at(0))>>(axis, at, last)) : secant;
+  return slope < 0 ? value(axis.last()) - value(at(last)) / slope : nowhere;
 }
 
 /// Kinks of a table over the slip: its inner points, where a smooth one changes its curvature and no step may run over
 /// what lies between them, its ends where it keeps their values, and where its continuation falls to zero.
+template <class G>
 struct Kinks {
-  Axis axis;
+  Axis<G> axis;
   Manner manner;
   bool falls = false;  ///< whether the table ends at zero, once there
   double zero = nowhere;
@@ -149,17 +155,17 @@ struct Kinks {
   int count() const { return inner() + 2 * ends() + zeros(); }
   double at(int i) const {
     // an end at zero is no kink, for slips are not below
-    if (ends() > 0 && i == 0) return axis[0] > 0 ? axis[0] : -nowhere;
+    if (ends() > 0 && i == 0) return value(axis[0]) > 0 ? value(axis[0]) : -nowhere;
     i -= ends();
-    if (i < inner()) return axis[i + 1];
-    return ends() > 0 ? axis.last() : zero;
+    if (i < inner()) return value(axis[i + 1]);
+    return ends() > 0 ? value(axis.last()) : zero;
   }
 };
 
 /// Value over a slip on one of the pieces between the kinks.
 template <class S, class At_>
-CLUTCHWORK_INLINE S slip_value(const Kinks& kinks, At_&& at, S slip, int piece) {
-  const Axis& axis = kinks.axis;
+CLUTCHWORK_INLINE S slip_value(const auto& kinks, At_&& at, S slip, int piece) {
+  const auto& axis = kinks.axis;
   if (kinks.ends() > 0 && piece == 0) return at(0);
   if (kinks.ends() > 0 && piece == kinks.count()) return at(axis.count - 1);
   if (kinks.zeros() > 0 && piece == kinks.count()) return S(0);
@@ -169,15 +175,16 @@ CLUTCHWORK_INLINE S slip_value(const Kinks& kinks, At_&& at, S slip, int piece) 
 /// Law with one table of the kinetic coefficient over the slip, `kinetic` of its parameters.
 template <class Law>
 struct SlipTable {
-  template <class P>
-  static Kinks kinks(const P& p, const double* points) {
-    const Axis axis = axis_of(p.kinetic, points);
+  template <class P, class G>
+  static Kinks<G> kinks(const P& p, const G* points) {
+    const auto axis = axis_of(p.kinetic, points);
     return {axis, Law::manner(p), true, vanishing_slip(axis, Law::manner(p), [&](int i) { return axis.x[3 * i + 1]; })};
   }
   template <class P, class S>
   static S slide(const P& p, const At<S>& at) {
-    const Axis axis = axis_of(p.kinetic, at.points);
-    return slip_value<S>({axis, Law::manner(p), true}, [&](int i) { return S(axis.x[3 * i + 1]); }, at.rate, at.piece);
+    const auto axis = axis_of(p.kinetic, at.points);
+    return slip_value<S>(
+        Kinks{axis, Law::manner(p), true}, [&](int i) { return S(axis.x[3 * i + 1]); }, at.rate, at.piece);
   }
   template <class P, class T>
   static T hold(const P& p, const At<T>&) {
@@ -192,10 +199,10 @@ struct SlipTable {
   }
   template <class P>
   static int edges(const P& p) {
-    return Kinks{Axis{nullptr, int(value(p.kinetic.count))}, Law::manner(p), true}.count();
+    return Kinks<double>{Axis<double>{nullptr, int(value(p.kinetic.count))}, Law::manner(p), true}.count();
   }
   template <class P>
-  static double edge(const P& p, const double* points, int i) {
+  static double edge(const P& p, const auto* points, int i) {
     return kinks(p, points).at(i);
   }
 };

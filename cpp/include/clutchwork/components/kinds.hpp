@@ -113,13 +113,14 @@ CLUTCHWORK_INLINE T law_hold(int law, const T* params, const T* input, const Poi
 
 /// Static torque of a contact that resists slip in a direction, not negative.
 template <class T, class Sys>
-T contact_limit(const Sys& sys, int c, const T* params, const T* input, const T* law_input, int direction) {
+T contact_limit(const Sys& sys, const Point<T>* points, int c, const T* params, const T* input, const T* law_input,
+                int direction) {
   const T* own = params + sys.contact_param[c];
-  const T hold = law_hold(sys.contact_law[c], params + sys.contact_law_param[c], law_input, sys.points);
+  const T hold = law_hold(sys.contact_law[c], params + sys.contact_law_param[c], law_input, points);
   return visit_contact(sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(own);
-    const At<T> at{T(0), nullptr, input, 0, sys.points};
+    const At<T> at{T(0), nullptr, input, 0, points};
     if constexpr (!computes_with<E, T>) {
       return T(0);
     } else if constexpr (LimitedContact<E>) {

@@ -27,7 +27,8 @@ struct LossTable {
   static constexpr int columns = 5;
 
   int rows() const { return int(common(list.count)) / columns; }
-  double at(const double* points, int row, int column) const {
+  template <class G>
+  G at(const G* points, int row, int column) const {
     return points[3 * (int(common(list.first)) + row * columns + column)];
   }
   bool fits() const {
@@ -36,17 +37,17 @@ struct LossTable {
   }
   /// Speeds at which one line follows another.
   int edges() const { return rows() > 2 ? rows() - 2 : 0; }
-  double edge(const double* points, int i) const { return at(points, i + 1, 0); }
+  double edge(const auto* points, int i) const { return value(at(points, i + 1, 0)); }
 
   template <class S>
-  Losses<S> on(const double* points, int piece, const S& speed) const {
+  Losses<S> on(const auto* points, int piece, const S& speed) const {
     if (rows() == 1) {
       auto same = [&](int column) { return S(at(points, 0, column)); };
       return {same(1), same(2), same(3), same(4)};
     }
-    const double start = at(points, piece, 0), length = at(points, piece + 1, 0) - start;
+    const auto start = at(points, piece, 0), length = at(points, piece + 1, 0) - start;
     auto line = [&](int column) {
-      const double first = at(points, piece, column), rise = (at(points, piece + 1, column) - first) / length;
+      const auto first = at(points, piece, column), rise = (at(points, piece + 1, column) - first) / length;
       return S(first) + (speed - S(start)) * S(rise);
     };
     return {line(1), line(2), line(3), line(4)};

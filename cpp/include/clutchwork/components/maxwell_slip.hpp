@@ -14,13 +14,13 @@ CLUTCHWORK_INLINE int element_count(const Curve<T>& c) {
   return n < most_elements ? n : most_elements;
 }
 
-template <class T>
-CLUTCHWORK_INLINE double element_deflection(const Curve<T>& c, const double* points, int i) {
+template <class T, class G>
+CLUTCHWORK_INLINE G element_deflection(const Curve<T>& c, const G* points, int i) {
   return points[3 * (int(value(c.first)) + i)];
 }
 
-template <class T>
-CLUTCHWORK_INLINE double element_share(const Curve<T>& c, const double* points, int i) {
+template <class T, class G>
+CLUTCHWORK_INLINE G element_share(const Curve<T>& c, const G* points, int i) {
   return points[3 * (int(value(c.first)) + i) + 1];
 }
 

@@ -28,7 +28,7 @@ Dual<T, 1> law_margin(const Workspace<T>& ws, const Branch<T>& b, const T* rate,
       for (int i = 0; i < b.ways; ++i) x[i] = S(rate[i]), x[i].d[0] = slope[i];
       for (int i = 0; i < b.states; ++i) own[i] = S(state[b.state + i]), own[i].d[0] = rates[b.state + i];
       dual_inputs<1>(n, inputs, input_slopes, input);
-      return L::margin(p, At<S>{x[0], own, input, b.piece, ws.sys.points, x}, who);
+      return L::margin(p, At<S>{x[0], own, input, b.piece, points_of(ws), x}, who);
     }
     return S(1);
   });
@@ -41,7 +41,7 @@ int law_cross(const Workspace<T>& ws, const Branch<T>& b, const T* rate, int who
     using L = typename decltype(tag)::type;
     if constexpr (SwitchingLaw<L>) {
       const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
-      const At<T> at{rate[0], state + b.state, inputs, b.piece, ws.sys.points, rate};
+      const At<T> at{rate[0], state + b.state, inputs, b.piece, points_of(ws), rate};
       return L::cross(p, at, who, state + b.state);
     }
     return b.piece;
@@ -55,7 +55,7 @@ int settled_piece(const Workspace<T>& ws, const Branch<T>& b, const T* rate) {
     using E = typename decltype(tag)::type;
     if constexpr (Settling<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-      return E::settle(p, At<T>{rate[0], ws.state + b.state, b.input, b.piece, ws.sys.points, rate});
+      return E::settle(p, At<T>{rate[0], ws.state + b.state, b.input, b.piece, points_of(ws), rate});
     }
     return b.piece;
   });
@@ -67,7 +67,7 @@ double own_pace(const Workspace<T>& ws, const Branch<T>& b, T rate) {
     using E = typename decltype(tag)::type;
     if constexpr (Paced<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-      return value(E::pace(p, At<T>{rate, ws.state + b.state, b.input, b.piece, ws.sys.points}));
+      return value(E::pace(p, At<T>{rate, ws.state + b.state, b.input, b.piece, points_of(ws)}));
     }
     return 0.0;
   });
@@ -116,7 +116,7 @@ T table_room(const Workspace<T>& ws, int c, T slip, T& seen) {
     if constexpr (BoundedLaw<L>) {
       const T* params = ws.params + sys.contact_law_param[c];
       const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(params);
-      return L::outside(p, At<T>{abs(slip), nullptr, ws.in.u + sys.contact_law_input[c], 0, sys.points}, seen);
+      return L::outside(p, At<T>{abs(slip), nullptr, ws.in.u + sys.contact_law_input[c], 0, points_of(ws)}, seen);
     }
     return T(1);
   });

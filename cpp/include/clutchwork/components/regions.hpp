@@ -40,14 +40,14 @@ int settled_interval(double x, int n, int present, double slack, Border&& border
 }
 
 /// NumberList of a list, `numbers(...)` of the declaration.
+template <class G>
 struct NumberList {
-  const double* at;
+  const G* at;
   int count;
 
   template <class T>
-  NumberList(const Curve<T>& c, const double* points)
-      : at(points + 3 * int(common(c.first))), count(int(common(c.count))) {}
-  double operator[](int i) const { return at[3 * i]; }
+  NumberList(const Curve<T>& c, const G* points) : at(points + 3 * int(common(c.first))), count(int(common(c.count))) {}
+  G operator[](int i) const { return at[3 * i]; }
 };
 
 /// A grid that starts at zero and holds for both signs of a quantity: borders at plus and minus each of its other
@@ -57,9 +57,9 @@ struct Mirrored {
 
   int borders() const { return 2 * points - 1; }
   int intervals() const { return 2 * points; }
-  double border(const NumberList& grid, int i) const {
+  double border(const auto& grid, int i) const {
     const int middle = points - 1;
-    return i == middle ? 0.0 : i < middle ? -grid[middle - i] : grid[i - middle];
+    return i == middle ? 0.0 : i < middle ? -value(grid[middle - i]) : value(grid[i - middle]);
   }
   int side(int interval) const { return interval < points ? -1 : 1; }
   /// Number of the cell from point to point; the last one lies beyond the grid.
@@ -68,7 +68,7 @@ struct Mirrored {
 
 /// Share of the way through a cell of a grid; zero beyond the last point.
 template <class S>
-CLUTCHWORK_INLINE S share_of_cell(const NumberList& grid, int cell, const S& x) {
+CLUTCHWORK_INLINE S share_of_cell(const auto& grid, int cell, const S& x) {
   if (cell + 1 >= grid.count) return S(0);
   return (x - S(grid[cell])) / S(grid[cell + 1] - grid[cell]);
 }
@@ -82,7 +82,7 @@ CLUTCHWORK_INLINE S value_in_cell(int count, int cell, const S& share, At_&& at)
 
 /// Value of a curve that is held outside, on one of its intervals: 0 before the first point, then between points.
 template <class T, class S>
-CLUTCHWORK_INLINE S held_value(const Curve<T>& c, const double* points, const S& x, int interval) {
+CLUTCHWORK_INLINE S held_value(const Curve<T>& c, const auto* points, const S& x, int interval) {
   const int n = int(common(c.count)), first = int(common(c.first));
   if (interval == 0) return S(points[3 * first + 1]);
   if (interval >= n) return S(points[3 * (first + n - 1) + 1]);

@@ -5,19 +5,20 @@
 namespace clutchwork {
 
 /// A list of numbers in the pool.
+template <class G>
 struct List {
-  const double* x;
+  const G* x;
   int count;
 
-  double operator[](int i) const { return x[3 * i]; }
+  G operator[](int i) const { return x[3 * i]; }
 };
-template <class T>
-CLUTCHWORK_INLINE List list_of(const Curve<T>& c, const double* points) {
+template <class T, class G>
+CLUTCHWORK_INLINE List<G> list_of(const Curve<T>& c, const G* points) {
   return {points + 3 * int(common(c.first)), int(common(c.count))};
 }
 
 /// Number of the piece that holds a ratio: 0 below the first point, then the interval that ends at that point.
-inline int ratio_piece(const List& ratios, double x) {
+CLUTCHWORK_INLINE int ratio_piece(const auto& ratios, double x) {
   int piece = 0;
   while (piece + 1 < ratios.count && x >= ratios[piece]) ++piece;
   return piece;
@@ -26,7 +27,7 @@ inline int ratio_piece(const List& ratios, double x) {
 /// A quantity over the ratio on one piece; `at(i)` is its value at a point, `above` the ratio less 1, which is exact
 /// where both speeds are the same.
 template <class S, class At_>
-CLUTCHWORK_INLINE S over_ratio(const List& ratios, int piece, const S& above, At_&& at) {
+CLUTCHWORK_INLINE S over_ratio(const auto& ratios, int piece, const S& above, At_&& at) {
   if (piece == 0) return S(at(0));
   const auto slope = (at(piece) - at(piece - 1)) / (ratios[piece] - ratios[piece - 1]);
   return above * slope + (at(piece) + slope * (1.0 - ratios[piece]));

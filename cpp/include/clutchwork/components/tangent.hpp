@@ -98,7 +98,7 @@ template <int N, int R>
 struct NumberOf<Tangent<N, R>> : NumberOf<double> {
   static constexpr bool tangents = true;
   using Given = Tangent<N, R>;
-  using Point = double;
+  using Point = Tangent<N, R>;
 };
 
 #define CLUTCHWORK_CHAIN(NAME, F, SLOPE)                         \

@@ -126,7 +126,7 @@ template <>
 struct NumberOf<Taped> : NumberOf<double> {
   static constexpr bool tangents = true;
   using Given = Taped;
-  using Point = double;
+  using Point = Taped;
 };
 
 #define CLUTCHWORK_CHAIN(NAME, F, SLOPE)         \

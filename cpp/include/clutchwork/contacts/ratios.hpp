@@ -51,7 +51,7 @@ T slope_of_input(Workspace<T>& ws, int ref) {
         if (d >= 0 && d < ws.n_directions) ws.in.u[own] = rate_of(ws, d);
       }
       T rates[E::states];
-      E::state_rates(p, At<T>{T(0), ws.state + first, ws.in.u + sys.process_input[i], 0, sys.points}, rates);
+      E::state_rates(p, At<T>{T(0), ws.state + first, ws.in.u + sys.process_input[i], 0, points_of(ws)}, rates);
       slope = rates[state - first];
     });
   }
@@ -75,10 +75,10 @@ Dual<T, 1> ratio_now(Workspace<T>& ws, int a) {
       input[i].d[0] = slope_of_input(ws, ref + i);
     }
     if constexpr (E::states > 0) {
-      E::state_rates(p, At<T>{rate[0], ws.state + first, ws.in.u + ref, ws.piece[d], ws.sys.points, rate}, rates);
+      E::state_rates(p, At<T>{rate[0], ws.state + first, ws.in.u + ref, ws.piece[d], points_of(ws), rate}, rates);
       for (int i = 0; i < E::states; ++i) own[i].d[0] = rates[i];
     }
-    out = E::ratio(p, At<S>{S(T(0)), own, input, ws.piece[d], ws.sys.points});
+    out = E::ratio(p, At<S>{S(T(0)), own, input, ws.piece[d], points_of(ws)});
   });
   return out;
 }

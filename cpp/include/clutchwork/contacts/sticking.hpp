@@ -11,7 +11,7 @@ T load_of(const Workspace<T>& ws, int c) {
   const auto& sys = ws.sys;
   if (ws.contact.fault[c] == cannot_transmit) return T(-1);
   return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], ws.in.u + sys.contact_input[c],
-                      sys.points);
+                      points_of(ws));
 }
 
 /// What holds a contact that follows a load against slip in a direction, at a size of slip.
@@ -19,7 +19,7 @@ template <class T>
 Bound<T> bound_of(const Workspace<T>& ws, int c, int direction, T slip, int piece) {
   const auto& sys = ws.sys;
   return contact_bound<T, T>(sys.contact_kind[c], ws.params + sys.contact_param[c], slip,
-                             ws.in.u + sys.contact_input[c], piece, sys.points, direction);
+                             ws.in.u + sys.contact_input[c], piece, points_of(ws), direction);
 }
 
 /// Static torque of a contact now that resists slip in a direction [N m].
@@ -29,9 +29,10 @@ T static_torque(const Workspace<T>& ws, int c, int direction) {
     if (ws.loads.of[c] >= 0) [[unlikely]]
       return bound_of(ws, c, direction, T(0), 0).at(ws.loads.now[ws.loads.of[c]]);
   }
-  return ws.contact.fault[c] == cannot_transmit ? T(0)
-                                                : contact_limit(ws.sys, c, ws.params, ws.in.u + ws.sys.contact_input[c],
-                                                                ws.in.u + ws.sys.contact_law_input[c], direction);
+  return ws.contact.fault[c] == cannot_transmit
+             ? T(0)
+             : contact_limit(ws.sys, points_of(ws), c, ws.params, ws.in.u + ws.sys.contact_input[c],
+                             ws.in.u + ws.sys.contact_law_input[c], direction);
 }
 
 /// What a contact can hold now against slip in a direction [N m]: nothing where its law never sticks.
@@ -56,7 +57,7 @@ T fault_margin(const Workspace<T>& ws, int c) {
     using E = typename decltype(tag)::type;
     if constexpr (FaultyContact<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + ws.sys.contact_param[c]);
-      return E::fault(p, At<T>{T(0), nullptr, ws.in.u + ws.sys.contact_input[c], 0, ws.sys.points});
+      return E::fault(p, At<T>{T(0), nullptr, ws.in.u + ws.sys.contact_input[c], 0, points_of(ws)});
     }
     return T(-1);
   });
@@ -97,7 +98,7 @@ T load_slope(const Workspace<T>& ws, int c) {
       input[i] = Dual<T, 1>(ws.in.u[ref]);
       input[i].d[0] = ws.in.du[ref] + ws.in.shared_slope[ref];
     }
-    return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0], sys.points).d[0];
+    return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0], points_of(ws)).d[0];
   });
 }
 
@@ -136,7 +137,7 @@ T usable_capacity(const Workspace<T>& ws, int c, int direction) {
     return capacity_of(ws, c, direction);
   const T rising = larger(load_slope(ws, c), T(0)) * T(1e-9);
   return rising * law_hold(sys.contact_law[c], ws.params + sys.contact_law_param[c], ws.in.u + sys.contact_law_input[c],
-                           sys.points);
+                           points_of(ws));
 }
 
 /// Tolerance under which a slip counts as zero. docs/theory/contacts.md (14)

@@ -18,7 +18,7 @@ struct CamProfile : declared::CamProfile {
   static S ratio(const Params<T>& p, const At<S>& at) {
     const Point<S>* x = at.points + 3 * (int(common(p.lift.first)) + at.piece);
     const Point<S>* bend = at.points + 3 * (int(common(p.curvature.first)) + at.piece);
-    const Real<S> width = x[3] - x[0], start = x[2] - width * (2 * bend[0] + bend[3]) / 6;
+    const Point<S> width = x[3] - x[0], start = x[2] - width * (2 * bend[0] + bend[3]) / 6;
     const S u = at.state[angle] - S(x[0]);
     return S(start) + u * (S(bend[0]) + u * S((bend[3] - bend[0]) / (2 * width)));
   }

@@ -18,7 +18,7 @@ struct Convection : declared::Convection {
 
  private:
   template <class T, class S>
-  static S over(const Params<T>& p, const double* points, S speed) {
+  static S over(const Params<T>& p, const auto* points, S speed) {
     const int first = int(value(p.conductance.first)), last = first + int(value(p.conductance.count)) - 1;
     if (value(speed) <= points[3 * first]) return S(points[3 * first + 1]);
     if (value(speed) >= points[3 * last]) return S(points[3 * last + 1]);

@@ -18,7 +18,7 @@ struct DiaphragmSpring : declared::DiaphragmSpring {
   /// Force at the present travel [N]; wear takes the fingers towards the bearing.
   template <class T, class S>
   static S wanted(const Params<T>& p, const At<S>& at) {
-    const Axis axis = axis_of(p.force, at.points);
+    const auto axis = axis_of(p.force, at.points);
     const Manner manner{p.interpolation, choice::Extrapolation::nearest};
     const S pressed =
         larger(p.ratio * at.input[Input::travel] - p.free_travel, S(0)) + p.wear_ratio * at.input[Input::wear];

@@ -40,7 +40,7 @@ struct EngineTorque : declared::EngineTorque {
     const Row<T, S> row(p, at, x);
     // what the drag is at rest a contact has
     const S drag = S(x.side) * (row.at(0) - S(row.torques[0]));
-    if (x.side < 0 || row.grid[x.cell] < value(p.stall_speed)) return drag;
+    if (x.side < 0 || value(row.grid[x.cell]) < value(p.stall_speed)) return drag;
     const S u = reached(p, at, x);
     S burning = row.between(x.column, u) - row.at(0);
     if (value(p.charged) != 0) burning -= (S(1) - own(p, at, boost)) * u * row.deficit();
@@ -68,7 +68,7 @@ struct EngineTorque : declared::EngineTorque {
     return Mirrored{count_of(p.speeds)}.borders();
   }
   template <class T>
-  static double edge(const Params<T>& p, const double* points, int i) {
+  static double edge(const Params<T>& p, const auto* points, int i) {
     return Mirrored{count_of(p.speeds)}.border(NumberList(p.speeds, points), i);
   }
   template <class T>
@@ -189,8 +189,8 @@ struct EngineTorque : declared::EngineTorque {
   template <class T, class S>
   struct Row {
     const Params<T>& p;
-    const double* points;
-    const NumberList grid, columns, torques;
+    const Point<S>* points;
+    const NumberList<Point<S>> grid, columns, torques;
     int cell;
     S share;
 
@@ -244,7 +244,7 @@ struct EngineTorque : declared::EngineTorque {
   static S most(const Params<T>& p, const At<S>& at, const Place& x) {
     if (p.limiter == choice::Limiter::cut) return S(1 - x.cut);
     const NumberList grid(p.speeds, at.points);
-    const double start = grid[x.cell];
+    const double start = value(grid[x.cell]);
     if (x.side < 0 || start < value(p.max_speed) - value(p.limit_band)) return S(1);
     return start < value(p.max_speed) ? (S(p.max_speed) - at.rate) / p.limit_band : S(0);
   }

@@ -77,7 +77,7 @@ struct FluidCoupling : declared::FluidCoupling {
  private:
   /// k at point i.
   template <class T>
-  static T factor(const Params<T>& p, const double* points, int i) {
+  static T factor(const Params<T>& p, const auto* points, int i) {
     if (common(p.capacity.count) > 1) return T(list_of(p.capacity, points)[i]);
     const T d = p.diameter;
     return T(list_of(p.performance_number, points)[i]) * p.density * d * d * d * d * d;

@@ -109,7 +109,8 @@ struct JenkinsElement : declared::JenkinsElement {
   template <class T>
   static int kept(const Params<T>& p, const At<T>& at, int piece) {
     if (mode(piece) == sticks || follows_speed(p)) return piece;
-    const double faster = side(piece) * value(p.stiffness) - piece_slope(p.limit, at.points, segment(piece));
+    const double slope = value(piece_slope(p.limit, at.points, segment(piece)));
+    const double faster = side(piece) * value(p.stiffness) - slope;
     return faster * value(at.rate) >= 0 ? piece : piece_of(segment(piece), sticks);
   }
   /// How much faster the spring would grow than the limit, over its stiffness; the drift of the input is that of the
@@ -124,10 +125,10 @@ struct JenkinsElement : declared::JenkinsElement {
   }
   /// The largest limit of the table: what counts as far from it.
   template <class T>
-  static double largest(const Params<T>& p, const double* points) {
+  static double largest(const Params<T>& p, const auto* points) {
     double most = 0;
     for (int i = 0; i < int(value(p.limit.count)); ++i)
-      most = larger(most, points[3 * (int(value(p.limit.first)) + i) + 1]);
+      most = larger(most, value(points[3 * (int(value(p.limit.first)) + i) + 1]));
     return most > 0 ? most : 1.0;
   }
 };

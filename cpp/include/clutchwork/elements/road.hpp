@@ -12,9 +12,9 @@ struct Road : declared::Road {
 
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
-    const double up = slope_on(p, at.points, at.piece);
+    const auto up = slope_on(p, at.points, at.piece);
     rates[slope] = S(0);
-    rates[position] = at.input[Input::speed] / T(sqrt(1 + up * up));
+    rates[position] = at.input[Input::speed] / T(sqrt(Point<S>(1) + up * up));
   }
 
   /// Way to the nearer end of the piece.
@@ -31,11 +31,11 @@ struct Road : declared::Road {
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
     const int n = int(common(p.elevation.count));
     const Point<T>* points = at.points + 3 * int(common(p.elevation.first));
-    auto x = [&](int i) { return points[3 * i]; };
+    auto x = [&](int i) { return value(points[3 * i]); };
     int piece = at.piece < n ? at.piece : n;
     // the point itself, so that round-off does not lead back over it
-    const double passed = x(who == forward ? piece : piece - 1);
-    if (abs(value(state[position]) - passed) < 1e-9 * (1 + abs(passed))) state[position] = T(passed);
+    const T passed = T(points[3 * (who == forward ? piece : piece - 1)]);
+    if (abs(value(state[position] - passed)) < 1e-9 * (1 + abs(value(passed)))) state[position] = passed;
     if (who == forward) {
       for (++piece; piece < n && value(state[position]) > x(piece);) ++piece;
     } else {
@@ -47,10 +47,10 @@ struct Road : declared::Road {
 
  private:
   /// Slope of a piece; the road is level outside of its points.
-  template <class T>
-  static double slope_on(const Params<T>& p, const double* points, int piece) {
+  template <class T, class G>
+  static G slope_on(const Params<T>& p, const G* points, int piece) {
     const int n = int(common(p.elevation.count));
-    return piece > 0 && piece < n ? points[3 * (int(common(p.elevation.first)) + piece) - 1] : 0.0;
+    return piece > 0 && piece < n ? points[3 * (int(common(p.elevation.first)) + piece) - 1] : G(0);
   }
   enum Who : int { forward, backward };
 };

@@ -115,7 +115,7 @@ struct TorqueConverter : declared::TorqueConverter {
   }
   /// The piece that holds the ratio while the impeller drives.
   template <class S>
-  static int drives(const List& ratios, const At<S>& at) {
+  static int drives(const auto& ratios, const At<S>& at) {
     const double w = value(at.rates[Way::impeller]), t = value(at.rates[Way::turbine]);
     if (value(at.rates[Way::slip]) == 0) return ratios.count - 1;
     return w > 0 ? ratio_piece(ratios, t / w) : 0;
@@ -135,14 +135,14 @@ struct TorqueConverter : declared::TorqueConverter {
     return over_ratio(ratios, at.piece, at.rates[Way::slip] / w, [&](int k) { return m[k]; });
   }
   /// k at point i.
-  template <class T>
-  static double driving(const Params<T>& p, const double* points, int i) {
+  template <class T, class G>
+  static G driving(const Params<T>& p, const G* points, int i) {
     if (common(p.capacity.count) > 1) return list_of(p.capacity, points)[i];
     const List k = list_of(p.k_factor, points);
-    return i < k.count ? 1 / (k[i] * k[i]) : 0.0;
+    return i < k.count ? G(1) / (k[i] * k[i]) : G(0);
   }
-  template <class T>
-  static double coasting(const Params<T>& p, const double* points, int i) {
+  template <class T, class G>
+  static G coasting(const Params<T>& p, const G* points, int i) {
     return common(p.coast_capacity.count) > 1 ? list_of(p.coast_capacity, points)[i] : driving(p, points, i);
   }
 };

@@ -33,7 +33,7 @@ struct FrictionMap : declared::FrictionMap {
   /// Value over the temperature of what has the value row(i) at temperature i.
   template <class T, class S, class Row>
   static S over_temperature(const Params<T>& p, const At<S>& at, Row&& row) {
-    const Axis axis = axis_of(p.temperatures, at.points);
+    const auto axis = axis_of(p.temperatures, at.points);
     const S x = within(axis, manner(p), at.input[Input::temperature]);
     const int k = interval_of(axis, value(x));
     const S low = row(k), high = row(k + 1), s = (x - S(axis[k])) / S(axis.width(k));
@@ -46,17 +46,17 @@ struct FrictionMap : declared::FrictionMap {
   }
   template <class T, class S>
   static S slide(const Params<T>& p, const At<S>& at) {
-    const Axis speeds = axis_of(p.speeds, at.points), all = axis_of(p.kinetic, at.points);
+    const auto speeds = axis_of(p.speeds, at.points), all = axis_of(p.kinetic, at.points);
     return over_temperature(p, at, [&](int i) {
       auto kinetic = [&](int j) { return S(all[i * speeds.count + j]); };
-      return slip_value<S>({speeds, manner(p)}, kinetic, at.rate, at.piece);
+      return slip_value<S>(Kinks{speeds, manner(p)}, kinetic, at.rate, at.piece);
     });
   }
   /// The kinetic coefficient is a floor: continued far enough, the lines of a table may cross.
   template <class T>
   static T hold(const Params<T>& p, const At<T>& at) {
-    const Axis speeds = axis_of(p.speeds, at.points), all = axis_of(p.kinetic, at.points);
-    const Axis own = axis_of(p.static_, at.points);
+    const auto speeds = axis_of(p.speeds, at.points), all = axis_of(p.kinetic, at.points);
+    const auto own = axis_of(p.static_, at.points);
     const T still = over_temperature(p, at, [&](int i) { return T(own[i]); });
     const T sliding = over_temperature(p, at, [&](int i) {
       auto kinetic = [&](int j) { return T(all[i * speeds.count + j]); };
@@ -77,10 +77,10 @@ struct FrictionMap : declared::FrictionMap {
 
   template <class T>
   static int edges(const Params<T>& p) {
-    return Kinks{Axis{nullptr, int(value(p.speeds.count))}, manner(p)}.count();
+    return Kinks<double>{Axis<double>{nullptr, int(value(p.speeds.count))}, manner(p)}.count();
   }
   template <class T>
-  static double edge(const Params<T>& p, const double* points, int i) {
+  static double edge(const Params<T>& p, const auto* points, int i) {
     return Kinks{axis_of(p.speeds, points), manner(p)}.at(i);
   }
 };

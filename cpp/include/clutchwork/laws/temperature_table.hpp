@@ -13,7 +13,7 @@ struct TemperatureTable : declared::TemperatureTable {
 
   template <class T, class S>
   static S over(const Params<T>& p, const Curve<T>& curve, const At<S>& at) {
-    const Axis axis = axis_of(curve, at.points);
+    const auto axis = axis_of(curve, at.points);
     auto coefficient = [&](int i) { return S(axis.x[3 * i + 1]); };
     return not_negative(value_over<S>(axis, Manner(p), coefficient, at.input[Input::temperature]));
   }

@@ -168,7 +168,7 @@ void pose_loads(const FullForm<T>& form, const Whole<S>& e) {
     const Branch<T>& b = ws.branch[k];
     const T *by_branch = ws.loads.by_branch + l * nd, sign = T(b.sign);
     const Bound<S> bound = contact_bound<T, S>(b.kind, b.params, S(sign) * e.rate[k], e.input + (b.input - ws.in.u),
-                                               b.piece, ws.sys.points, b.sign);
+                                               b.piece, points_of(ws), b.sign);
     S given = S(T(0));
     for (int j = 0; j < ws.n_branches; ++j) add_times(by_branch[j], e.torque[j], given);
     for (int p = 0; p < np; ++p) given += S(ws.loads.by_prescribed[l * np + p] * ws.in.prescribed_slope[p]);
@@ -217,7 +217,7 @@ S whole_flow(const FullForm<T>& form, const Whole<S>& e, int f) {
   return visit_flow(sys.flow_kind[f], [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(form.ws.params + sys.flow_param[f]);
-    return E::flow(p, At<S>{S(T(0)), nullptr, e.input + sys.flow_input[f], 0, sys.points});
+    return E::flow(p, At<S>{S(T(0)), nullptr, e.input + sys.flow_input[f], 0, points_of(form.ws)});
   });
 }
 template <class T, class S>

@@ -146,7 +146,7 @@ class LocalDerivatives {
                              Point at;
                              place(at, b, rate);
                              const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-                             const At<S> here{at.rate[0], at.own, at.input, b.piece, ws_.sys.points, at.rate};
+                             const At<S> here{at.rate[0], at.own, at.input, b.piece, points_of(ws_), at.rate};
                              add(row, factor, E::heat(p, here), b);
                              return true;
                            }

@@ -106,7 +106,7 @@ void ratio_at(const Workspace<T>& ws, const Whole<S>& e, int nz, int a) {
       input[i] = D(e.input[ref + i]);
       input[i].d[0] = slope_of_reference(ws, e, n, ref + i);
     }
-    const D ratio = E::ratio(p, At<D>{D(S(T(0))), own, input, b.piece, ws.sys.points});
+    const D ratio = E::ratio(p, At<D>{D(S(T(0))), own, input, b.piece, points_of(ws)});
     w.ratio[a] = ratio.v, w.slope[a] = ratio.d[0];
   });
   w.pull[a] = w.slope[a] * e.rate[k + 1];

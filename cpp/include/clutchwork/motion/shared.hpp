@@ -80,7 +80,7 @@ void present_rates(Workspace<T>& ws) {
 /// Process i at its states and inputs, on the piece that it is on.
 template <class T, class S>
 CLUTCHWORK_INLINE At<S> process_at(const Workspace<T>& ws, int i, const S* own, const S* input) {
-  return At<S>{S(0), own, input, ws.shared.piece[i], ws.sys.points};
+  return At<S>{S(0), own, input, ws.shared.piece[i], points_of(ws)};
 }
 
 template <class T>
@@ -89,7 +89,7 @@ T flow_value(const Workspace<T>& ws, int f) {
   return visit_flow(sys.flow_kind[f], [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.flow_param[f]);
-    return E::flow(p, At<T>{T(0), nullptr, ws.in.u + sys.flow_input[f], 0, sys.points});
+    return E::flow(p, At<T>{T(0), nullptr, ws.in.u + sys.flow_input[f], 0, points_of(ws)});
   });
 }
 
@@ -229,7 +229,7 @@ void linearize_flow(Workspace<T>& ws, SharedRow<T>& row, int f) {
     S input[most_inputs];
     for (int i = 0; i < E::inputs; ++i) input[i] = S::variable(ws.in.u[sys.flow_input[f] + i], i);
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.flow_param[f]);
-    const S q = E::flow(p, At<S>{S(0), nullptr, input, 0, sys.points});
+    const S q = E::flow(p, At<S>{S(0), nullptr, input, 0, points_of(ws)});
     for (int i = 0; i < E::inputs; ++i) {
       if (sys.flow_from[f] >= 0) row.add_input(sys.flow_from[f], -q.d[i], sys.flow_input[f] + i);
       if (sys.flow_to[f] >= 0) row.add_input(sys.flow_to[f], q.d[i], sys.flow_input[f] + i);

@@ -24,7 +24,7 @@ bool visit_corners(const Workspace<T>& ws, int c, Range&& range, F&& f) {
     for (unsigned corner = 0; corner < 1u << E::inputs; ++corner) {
       T at[E::inputs > 0 ? E::inputs : 1];
       for (int i = 0; i < E::inputs; ++i) at[i] = T(corner >> i & 1 ? high[i] : low[i]);
-      f(contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &at[0], sys.points));
+      f(contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &at[0], points_of(ws)));
     }
     return true;
   });

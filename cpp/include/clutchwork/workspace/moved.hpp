@@ -26,7 +26,8 @@ struct Moved {
   double last_time = -infinity;     ///< [s] of the event before
   T* event = nullptr;               ///< of each event in the buffer
   Graze* graze = nullptr;
-  T* row = nullptr;  ///< one row of output
+  T* points = nullptr;  ///< of the curves
+  T* row = nullptr;     ///< one row of output
   int n = 0;
 
   template <class P, class A>
