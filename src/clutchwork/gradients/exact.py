@@ -27,9 +27,9 @@ from clutchwork.gradients.steps import Steps
 from clutchwork.gradients.words import Words
 from clutchwork.results.gradient import NoGradient
 from clutchwork.run.simulation import told
-from clutchwork.sweeps.axes import Layout
 from clutchwork.sweeps.batch import Wanted
 from clutchwork.sweeps.outputs import Integral
+from clutchwork.sweeps.words import Layout
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelWarning
 from clutchwork.declare.layout import FIELDS
 from clutchwork.gradients.parameters import Parameter, changes
-from clutchwork.sweeps.axes import Layout
+from clutchwork.sweeps.words import Layout
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
