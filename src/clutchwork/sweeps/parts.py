@@ -35,7 +35,8 @@ def steps_of(times: Array) -> NDArray[np.intp]:
 def squared_jerk_of(times: Array, acceleration: Array) -> float:
     """Integral of the square of the rate of an acceleration over the steps: docs/theory/gradients.md (5)."""
     begins = steps_of(times)
-    values = acceleration[begins[:, None] + np.arange(PARTS + 1)]
+    # from the first row on: slopes of short steps would drown in the rounding of large values
+    values = acceleration[begins[:, None] + np.arange(PARTS + 1)] - acceleration[begins, None]
     return float(np.sum(np.einsum("ki,ij,kj->k", values, form(), values) / (times[begins + PARTS] - times[begins])))
 
 
