@@ -146,9 +146,8 @@ def _round(size: float) -> float:
 def _effort(found: Told) -> str:
     runs = sum(one.runs for one in found.outcomes)
     said = [f"{found.effort}, {counted(len(found.outcomes), 'starts')}, {counted(runs, 'runs with gradient')}"]
-    said.append(
-        f"largest violation {found.certificate.violation:.1g} of a limit's size, residual {found.certificate.residual:.1g}"
-    )
+    violation, residual = found.certificate.violation, found.certificate.residual
+    said.append(f"largest violation {violation:.1g} of a limit's size, residual {residual:.1g}")
     if found.samples:
         said.append(f"limits hold in all samples of production, of which {len(found.samples)} decided")
     return "; ".join(said)
