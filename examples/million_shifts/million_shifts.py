@@ -97,20 +97,20 @@ def picture(found: cw.Study, path: Path) -> None:
     plt.close(figure)
 
 
-def measure(folder: Path, points: int, rounds: int = 2) -> None:
-    """Shifts a second with one and two workers, on threads and on Ray: the best of some rounds."""
+def measure(folder: Path, points: int) -> None:
+    """Runs a second with one and two workers, on threads and on Ray."""
     for on in (None, "ray"):
-        rates = dict.fromkeys((1, 2), 0.0)
-        for workers in rounds * tuple(rates):
+        one = 0.0
+        for workers in (1, 2):
             shutil.rmtree(folder, ignore_errors=True)
             found = study(folder, points, on=on, threads=workers)
             # from the first chunk that was begun to the last that was written
             parts = found.parts.values()
             taken = max(part.begun + part.seconds for part in parts) - min(part.begun for part in parts)
-            rates[workers] = max(rates[workers], len(found) / taken)
-        for workers, rate in rates.items():
+            rate = len(found) / taken
+            one = one or rate
             name = "threads" if on is None else "workers of Ray"
-            print(f"{workers} {name}: {rate:.0f} shifts a second, efficiency {rate / rates[1] / workers:.0%}")
+            print(f"{workers} {name}: {rate:.0f} shifts a second, efficiency {rate / one / workers:.0%}")
     shutil.rmtree(folder)
 
 

@@ -103,13 +103,3 @@ def test_verify_and_front_ask_for_what_they_need():
         found.front("lock(c2)", [1.0])
     with pytest.raises(cw.UseError, match="bounds are"):
         found.front("lock(c1)", ["soon"])
-
-
-def test_limits_that_cannot_hold_have_no_price():
-    call = {"free": {"c1.gain": (3e-4, 9e-4)}, "minimise": cw.squared_jerk("load")}
-    found = cw.calibrate(discs(), 5.0, **call, subject_to=cw.limit(cw.lock("c1"), upper=0.01))
-    assert not found.feasible
-    assert found.costs == ()
-    text = str(found)
-    assert "rad2/s5" in text
-    assert "outside of its bounds 0.01" in text

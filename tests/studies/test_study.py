@@ -179,14 +179,6 @@ def test_wrong_values_are_named_before_the_first_run(tmp_path: Path) -> None:
         cw.Study.load(tmp_path)
 
 
-def test_values_that_are_wrong_together_are_named_with_their_chunk(tmp_path: Path) -> None:
-    odd = {"c1.friction.static": [0.2] * 100, "c1.friction.kinetic": [0.1] * 99 + [0.25]}
-    with pytest.raises(cw.ModelError, match="is below the kinetic coefficient") as error:
-        run(tmp_path, vary=cw.variants(odd), threads=1)
-    assert error.value.__notes__ == ["in variants 80 to 99; what is written stays"]
-    assert len(cw.Study.load(tmp_path)) == 80
-
-
 def test_functions_that_raise_are_counted(tmp_path: Path) -> None:
     def odd(found: cw.Trajectory) -> float:
         speed = float(found["load.speed"][-1])

@@ -22,7 +22,6 @@ from clutchwork.calibration.together import VALUE, Together
 from clutchwork.gradients.parameters import changes
 from clutchwork.results.channels import channels
 from clutchwork.sweeps.outputs import Integral, When
-from clutchwork.sweeps.result import unit_of
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -93,8 +92,10 @@ class Units:
 
     def output(self, one: Any) -> str:
         """Of an output of a run."""
-        name = one.kept_as(self.channels) if isinstance(one, Integral) else getattr(one, "signal", "")
-        return unit_of(one, self.channels) if isinstance(one, When) or name in self.channels else ""
+        if isinstance(one, When):
+            return "s"
+        name = one.kept_as(self.channels) if isinstance(one, Integral) else one.signal
+        return str(self.channels[name].unit) if name in self.channels else ""
 
     def table(self, stem: str) -> str:
         """Of the values of a table."""

@@ -115,11 +115,8 @@ def _number(value: float) -> str:
 
 
 def costs(found: Told) -> Iterator[str]:
-    """What each active limit costs: "1000 J more of c1.heat allowed saves 0.3 m/s3 of rms_jerk(car)".
-
-    Nothing where limits do not hold: there is no least goal whose price could be told.
-    """
-    for one in found.limits if found.feasible else ():
+    """What each active limit costs: "1000 J more of c1.heat allowed saves 0.3 m/s3 of rms_jerk(car)"."""
+    for one in found.limits:
         if one.active and abs(one.multiplier) > 0.0:
             yield _cost(one, found)
 
@@ -146,8 +143,7 @@ def _round(size: float) -> float:
 def _effort(found: Told) -> str:
     runs = sum(one.runs for one in found.outcomes)
     said = [f"{found.effort}, {counted(len(found.outcomes), 'starts')}, {counted(runs, 'runs with gradient')}"]
-    violation, residual = found.certificate.violation, found.certificate.residual
-    said.append(f"largest violation {violation:.1g} of a limit's size, residual {residual:.1g}")
+    said.append(f"largest violation {found.certificate.violation:.1g}, residual {found.certificate.residual:.1g}")
     if found.samples:
         said.append(f"limits hold in all samples of production, of which {len(found.samples)} decided")
     return "; ".join(said)

@@ -9,6 +9,7 @@ from typing import Any
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.engines.engine import Engine
+from clutchwork.engines.threads import Threads
 
 WAYS = (
     "'ray' or 'dask' for processes on this machine, 'ray://host:10001' or 'host:6379' for a cluster of Ray, "
@@ -33,8 +34,6 @@ def engine(call: str, on: Any, threads: int, asked: int | None) -> Iterator[Engi
 
 def _engine(call: str, on: Any, threads: int, asked: int | None) -> Engine:
     if on is None:
-        from clutchwork.engines.threads import Threads
-
         return Threads(threads)
     if hasattr(on, "scheduler_info") and hasattr(on, "submit"):
         from clutchwork.engines.on_dask import OnDask

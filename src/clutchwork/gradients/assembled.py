@@ -105,9 +105,8 @@ class Assembled:
             size = max(abs(float(x[number])), one.scale if one.places else 0.0) or 1.0
             try:
                 found = slope(partial(_along, there, x, number), here, size, one.reach)
-            except Bent:
-                words = "words of the driveline jump or have a kink here"
-                problems.append(f"{one.name} = {x[number]:g} {one.unit}: {words}; move it, or sweep over it")
+            except Bent as bent:
+                problems.append(f"{one.name} = {x[number]:g} {one.unit}: {bent}")
                 continue
             columns.append(found.value)
             straight = straight and found.straight
@@ -143,7 +142,12 @@ class Assembled:
         """The System at a point, with its independent speeds asked for, so that values beside do not choose others."""
         system = self._system(x)
         asked = replace(system, wanted=system.independent)
-        return asked if self.structure.is_that_of(words_of(made(asked, self.parameters, x))) else system
+        try:
+            words = words_of(made(asked, self.parameters, x))
+        except ModelError:
+            # such as those without inertia, which the package chooses
+            return system
+        return asked if self.structure.is_that_of(words) else system
 
 
 def _along(there: Callable[[Array], Array], x: Array, number: int, step: float) -> Array:

@@ -46,9 +46,9 @@ class Chart:
         signals = tuple(tables(system, structure, parameters))
         for written in (scalars, {}):
             chart = cls._with(system, structure, parameters, x, written, signals)
-            if chart.holds(together(system, parameters, x, [])) or chart.holds(
-                together(system, parameters, x, chart.bound)
-            ):
+            held = chart.holds(together(system, parameters, x, []))
+            # numbers that are assembled may make another structure
+            if chart.holds(together(system, parameters, x, chart.bound)) if held is None else held:
                 return chart
         return cls._with(system, structure, parameters, x, {}, ())
 
@@ -67,9 +67,11 @@ class Chart:
         chosen = tuple(parameters[number] for number in bound)
         return cls(scalars, signals, bound, Assembled(system, structure, chosen, x[bound]))
 
-    def holds(self, given: tuple[Array, Array]) -> bool:
-        """Whether the words at a point are those that are given."""
+    def holds(self, given: tuple[Array, Array]) -> bool | None:
+        """Whether the words at a point are those that are given; None where the structure is another one there."""
         there, words = given
+        if not len(words) or not self.assembled.structure.is_that_of(words):
+            return None
         own = self.words(there)
         return own is not None and own.tobytes() == words.tobytes()
 

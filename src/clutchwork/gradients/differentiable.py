@@ -20,8 +20,7 @@ from clutchwork.gradients.differences import Differences
 from clutchwork.gradients.engine import Engine, Found, Task
 from clutchwork.gradients.exact import Exact
 from clutchwork.gradients.parameters import parameters
-from clutchwork.results.channels import Channels, channels
-from clutchwork.results.forms import Mode
+from clutchwork.results.channels import channels
 from clutchwork.results.gradient import Gradient
 from clutchwork.run.control import controllers
 from clutchwork.run.effort import refuse_endless
@@ -209,10 +208,10 @@ def made(
     system: System, outputs: Mapping[str, Output], by: Any, t_end: float, options: Options, threads: int | None
 ) -> Differentiable:
     """The function for outputs by name."""
-    known = channels(system, options.angles, options.work)
-    _refuse(system, outputs, known)
+    _refuse(system, outputs)
     chosen = parameters(system, by)
     Wanted.of(system, options, outputs, t_end)
+    known = channels(system, options.angles, options.work)
     labels = [(label, unit_of(one, known)) for name, one in outputs.items() for label in _labels(name, one)]
     of, units = zip(*labels, strict=True)
     task = Task(system, outputs, chosen, t_end, options, threads_of(threads), of)
@@ -228,17 +227,12 @@ def _labels(name: str, one: Output) -> list[str]:
     return [f"{name} {time:.12g} s" for time in one.times]
 
 
-def _refuse(system: System, outputs: Mapping[str, Output], known: Channels) -> None:
+def _refuse(system: System, outputs: Mapping[str, Output]) -> None:
     """What has no derivative, whatever the numbers."""
     problems = [
         f"{name} is a Python function, which has no derivative; take signals, and differentiate what you make of them"
         for name, one in outputs.items()
         if isinstance(one, Computed)
-    ]
-    problems += [
-        f"{signal} is a mode, which jumps and has no derivative; take the times of its events: cw.lock, cw.break_away"
-        for signal in dict.fromkeys(getattr(one, "signal", "") for one in outputs.values())
-        if signal in known and isinstance(known[signal].evaluate, Mode)
     ]
     problems += [
         f"{one.name} is set by a Python function, which has no derivative; take a table of what it gives"

@@ -20,7 +20,7 @@ class Weights(NamedTuple):
 
 
 def weights(form: Form, rows: Array) -> Weights:
-    """The derivatives of a signal by the numbers of each row. docs/theory/gradients.md (3)."""
+    """The derivatives of a signal by the numbers of each row. docs/theory/gradients.md (8)."""
     match form:
         case Column(index):
             return _equal([index], [1.0], rows)

@@ -1,7 +1,7 @@
 """A value of a run to first order: how it follows from rows, from instants of events, and from the numbers themselves.
 
 Forward derivatives weigh the tangents of rows and events by it; an adjoint run takes it as it is.
-docs/theory/gradients.md (4)
+docs/theory/gradients.md (7)
 """
 
 from __future__ import annotations
@@ -56,9 +56,17 @@ class Functional:
             found = found + share * events[number]
         return found
 
-    def into(self, rows: Array, events: Array, share: float) -> None:
+    def into(self, rows: Array, events: Array) -> None:
         """Add it to the weights of all numbers of rows and of all events."""
         row, column, weight = self._flat()
-        np.add.at(rows, (row, column), share * weight)
+        np.add.at(rows, (row, column), weight)
         for number, own in self.events:
-            events[number] += share * own
+            events[number] += own
+
+    def include(self, other: Functional, share: float) -> None:
+        """Add a share of another one."""
+        self.direct = self.direct + share * other.direct
+        self.rows += other.rows
+        self.columns += other.columns
+        self.weights += [share * weight for weight in other.weights]
+        self.events += [(number, share * own) for number, own in other.events]

@@ -1,11 +1,11 @@
 """Where derivatives hardly exist: guards that are hardly passed, and events at one instant.
 
-docs/theory/gradients.md (9)
+docs/theory/gradients.md (6)
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import wiring
 from clutchwork.declare.layout import EVENT
+from clutchwork.results.forms import LOCKED
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -23,10 +24,22 @@ Array = NDArray[np.float64]
 WARNED, REFUSED = 0.1, 0.01
 # by so much the derivatives of two events at one instant may differ, of the time that a number takes to be all of it
 APART = 1e-9
+# events that are as close are at one instant [s]
+ONE_INSTANT = 1e-9
 TIME, KIND, COMPONENT, INDEX, DIFFERENCE = range(5)
+# pieces of laws and processes, and how slowly one is entered that is said [1/s]
+PIECES, TOUCHED = (6, 9), 1e-5
+# so many changes within so long [s] are refused
+CROWD, CROWDED = 6, 1e-4
 # kinds of guards that decide about contacts, by their numbers in the core: slips, capacities, sets, spares, loads
 DECIDED = (1, 2, 3, 4, 5)
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
+
+
+def together(grazes: Array) -> bool:
+    """Whether two guards that decide about contacts are hit at one instant."""
+    times = np.sort(grazes[np.isin(grazes[:, KIND], DECIDED), TIME])
+    return bool(np.any(np.diff(times) <= ONE_INSTANT * (1.0 + np.abs(times[1:]))))
 
 
 def decided(grazes: Array, events: Array) -> Array:
@@ -56,9 +69,24 @@ def refused(system: System, grazes: Array, until: float, sizes: float) -> Iterat
             yield f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"
 
 
-def noted(system: System, grazes: Array) -> Iterator[str]:
+def crowded(events: Array, contacts: Sequence[str], until: float) -> Iterator[str]:
+    """Contacts that lock and let go again and again within an instant, which no derivative survives."""
+    changed = events[(events[:, AT["from"]] == LOCKED) != (events[:, AT["to"]] == LOCKED)]
+    for number, name in enumerate(contacts):
+        times = np.sort(changed[(changed[:, AT["contact"]] == number) & (changed[:, AT["time"]] <= until), AT["time"]])
+        close = np.flatnonzero(times[CROWD - 1 :] - times[: max(0, len(times) - CROWD + 1)] < CROWDED)
+        if len(close):
+            why = f"locks and lets go {CROWD} times within {CROWDED:g} s at {times[close[0]]:.9g} s"
+            yield f"{name} {why}; give the parts beside it damping, or its law more static friction"
+
+
+def noted(system: System, grazes: Array, events: Array) -> Iterator[str]:
     """What is only just differentiable."""
-    for graze in grazes:
+    for graze in grazes[np.isin(grazes[:, KIND], PIECES) & (grazes[:, INDEX] < TOUCHED)]:
+        name = component(system, int(graze[COMPONENT]), int(graze[KIND]))
+        measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {TOUCHED:g} 1/s"
+        yield f"{name} at {graze[TIME]:.9g} s hardly enters another piece: {measure}; derivatives have few digits"
+    for graze in decided(grazes, events):
         if REFUSED <= graze[INDEX] < WARNED:
             name = component(system, int(graze[COMPONENT]), int(graze[KIND]))
             measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {WARNED:g} 1/s"

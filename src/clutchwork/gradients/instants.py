@@ -1,4 +1,4 @@
-"""How the instants between two steps move with the numbers: docs/theory/gradients.md (7)."""
+"""How the instants between two steps move with the numbers: docs/theory/gradients.md (14)."""
 
 from __future__ import annotations
 
@@ -32,9 +32,15 @@ def _add_kink(primal: Primal, step: int, share: float, into: Functional) -> None
     acceleration = primal.rows[:, primal.accelerations]
     jumps = steps.right[step - 1] @ acceleration[before], steps.left[step] @ acceleration[behind]
     bends = steps.right_slope[step - 1] @ acceleration[before], steps.left_slope[step] @ acceleration[behind]
-    for first, (left, right), least in ((primal.speeds, jumps, JUMP), (primal.accelerations, bends, BEND)):
-        rise, size = left - right, np.maximum(np.abs(left), np.abs(right))
-        relative = np.abs(rise) / np.maximum(size, 1e-12 * max(1.0, float(size.max(initial=0.0))))
+    both = np.concatenate([acceleration[before], acceleration[behind]])
+    # what is small beside it in the same steps is what polynomials miss
+    sizes = np.abs(both).max(axis=0), np.abs(both).max(axis=0) / float(steps.length[step - 1 : step + 1].max())
+    for first, (left, right), size, least in (
+        (primal.speeds, jumps, sizes[0], JUMP),
+        (primal.accelerations, bends, np.maximum(sizes[1], np.abs(bends).max(axis=0)), BEND),
+    ):
+        rise = left - right
+        relative = np.abs(rise) / np.maximum(size, 1e-9 * max(float(size.max(initial=0.0)), 1e-300))
         shaft = int(np.argmax(relative))
         if relative[shaft] > least:
             column = np.array([first.start + shaft])

@@ -1,4 +1,4 @@
-"""The integral of the square of the jerk, and how it changes: docs/theory/gradients.md (8)."""
+"""The integral of the square of the jerk, and how it changes: docs/theory/gradients.md (15)."""
 
 from __future__ import annotations
 
@@ -16,18 +16,12 @@ Array = NDArray[np.float64]
 
 def value(steps: Steps, acceleration: Array) -> float:
     """The integral over all steps, from the acceleration in the rows of each."""
-    risen = rise(acceleration)
-    return float(np.einsum("ni,nij,nj->", risen, steps.squared_slope, risen))
-
-
-def rise(rows: Array) -> Array:
-    """Rows above the first of their step: slopes of short steps would drown in the rounding of large values."""
-    return rows - rows[:, :1]
+    return float(np.einsum("ni,nij,nj->", acceleration, steps.squared_slope, acceleration))
 
 
 def add_jerk(primal: Primal, signal: str, acceleration: Array, into: Functional) -> None:
     """How it changes: inside of the steps, and by the instants between them, which move."""
-    steps, acceleration = primal.steps, rise(acceleration)
+    steps = primal.steps
     inside = 2.0 * np.einsum("nij,nj->ni", steps.squared_slope, acceleration)
     add_signal(primal, signal, steps.rows.ravel(), inside.ravel(), into)
     for step in np.flatnonzero(primal.between[0][1:] != SMOOTH) + 1:

@@ -28,6 +28,7 @@ class Measure(NamedTuple):
     changes: tuple[Functional, ...]  # more than one where there are equal extremes
     until: float  # s
     when: tuple[float, ...] = ()  # s, where the extremes are
+    at: float | None = None  # s, an instant that is asked for
 
 
 class Asked(NamedTuple):
@@ -62,7 +63,7 @@ def _measures(primal: Primal, one: Output, asked: Asked) -> Iterator[Measure]:
 def _at(primal: Primal, signal: str, time: float) -> Measure:
     into, row = primal.functional(), np.array([primal.row(time)])
     add_signal(primal, signal, row, np.ones(1), into)
-    return Measure(float(signal_at(primal, signal, row)[0]), (into,), time)
+    return Measure(float(signal_at(primal, signal, row)[0]), (into,), time, at=time)
 
 
 def _change(primal: Primal, signal: str, begin: float) -> Measure:

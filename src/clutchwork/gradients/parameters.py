@@ -99,6 +99,9 @@ def _number(aim: Target, name: str) -> Parameter:
     if not isinstance(value, Real):
         raise Unfit(f"{name} {_inside(value, name)}")
     start = float(value)
+    if spec.what == "option" and aim.path[-1] == "tolerance" and not start:
+        # contacts lock at the exact zero of their slip, which no value beside it does
+        raise Unfit(f"{name} is 0, the exact zero of the slip, beside which there is another rule; give it a value")
     return Parameter(name, name, (), unit_of(aim), start, abs(start) or 1.0, *_bounds(spec))
 
 

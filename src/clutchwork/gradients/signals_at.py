@@ -86,9 +86,8 @@ class SignalsAt:
             size = max(abs(float(x[number])), one.scale if one.places else 0.0) or 1.0
             try:
                 found = slope(partial(self._along, x, number, tuple(made), rows), here, size, one.reach).value
-            except Bent:
-                text = f"{one.name} = {x[number]:g} {one.unit}: signals jump or have a kink here; move it"
-                raise NoGradient([text]) from None
+            except Bent as bent:
+                raise NoGradient([f"{one.name} = {x[number]:g} {one.unit}: {bent}"]) from None
             for name, line in zip(made, found.reshape(len(made), -1), strict=True):
                 made[name][:, number] = line
         return made

@@ -1,4 +1,7 @@
-"""Derivatives of smooth functions by differences of high order, with a measure of their error."""
+"""Derivatives of smooth functions by differences of high order, with a measure of their error.
+
+docs/theory/gradients.md (11)
+"""
 
 from __future__ import annotations
 
@@ -54,7 +57,7 @@ def slope(function: Callable[[float], Array], here: Array, scale: float, reach: 
         if found is not None:
             return found
         width *= NARROWER
-    raise Bent
+    raise Bent(_why(function, width))
 
 
 def _is_defined(function: Callable[[float], Array], width: float) -> bool:
@@ -65,6 +68,19 @@ def _is_defined(function: Callable[[float], Array], width: float) -> bool:
         return False
     except Rebuilt:
         return True
+
+
+def _why(function: Callable[[float], Array], width: float) -> str:
+    """Why a function has no derivative: it is not defined beside, is another one there, or bends."""
+    remedy = "move it, or sweep over it"
+    try:
+        for side in (width, -width):
+            function(side)
+    except ModelError as error:
+        return f"there is no value beside it: {error.problems[0]}"
+    except Rebuilt:
+        return f"the driveline has another structure beside it; {remedy}"
+    return f"the driveline jumps or has a kink here; {remedy}"
 
 
 def _tried(function: Callable[[float], Array], places: tuple[int, ...], here: Array, width: float) -> Slope | None:

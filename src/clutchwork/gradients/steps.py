@@ -1,7 +1,7 @@
 """Steps of the solver as polynomials: signals from five rows in each, their slopes, and their limits at its ends.
 
 Rows of a plain run stand at equal parts of each step, its ends among them. Those of a run with derivatives stay inside,
-because the instants of its events differ in the last digits. docs/theory/gradients.md (5)
+because the instants of its events differ in the last digits. docs/theory/gradients.md (13)
 """
 
 from __future__ import annotations
@@ -48,6 +48,21 @@ class Steps:
         shares = np.tile(np.arange(PARTS + 1) / PARTS, (len(self.begin), 1))
         shares[:, 0], shares[:, -1] = away, 1.0 - away
         return Steps(self.begin, self.length, shares, self.rows)
+
+    @property
+    def room(self) -> Array:
+        """How far the rows around the begin of each step are from it [s]."""
+        behind = self.share[:, 0] * self.length
+        before = np.r_[np.inf, (1.0 - self.share[:-1, -1]) * self.length[:-1]]
+        found: Array = np.minimum(behind, before)
+        return found
+
+    def moved(self, before: Array, behind: Array) -> Steps:
+        """The same steps where some instants are others [s], with rows inside of them."""
+        ends = [self.begin[0], self.end[-1]]
+        known, there = np.r_[ends[0], before, ends[1]], np.r_[ends[0], behind, ends[1]]
+        begin, end = np.interp(self.begin, known, there), np.interp(self.end, known, there)
+        return Steps(begin, np.maximum(end - begin, LEAST), self.share, self.rows).inside()
 
     @property
     def times(self) -> Array:

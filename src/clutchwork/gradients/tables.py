@@ -28,7 +28,7 @@ class TableWords:
     """The knots of a table, which of them are free, and the words of the signal that it is.
 
     A knot (t, y) is a piece that starts at t with the value y and the slope to the next knot: docs/theory/gradients.md
-    (2). A table that begins after 0 has a constant piece before, two knots at one time have one piece.
+    (10). A table that begins after 0 has a constant piece before, two knots at one time have one piece.
     """
 
     points: Array  # knots as they are

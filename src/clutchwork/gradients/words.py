@@ -2,7 +2,7 @@
 
 A number that is a word by itself, such as a gain, and a table that is a signal are written into the bytes of one
 System. What goes into words together with other numbers, as inertias and ratios do, is assembled.
-docs/theory/gradients.md (1) and (2)
+docs/theory/gradients.md (10) and (11)
 """
 
 from __future__ import annotations

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,16 +115,16 @@ def sobol_indices(
         raise UseError("sobol_indices", [f"{shown(found)} is neither a study nor a sweep; give what cw.study returns"])
     names, base, second = _design(found)
     values = _complete(output, found[output], base * _step(len(names), second), missing)
-    made, widths = _estimated(values, len(names), second, level, seed)
+    made = _analysed(names, values, second, level, seed)
     return SobolIndices(
         output=output,
         names=names,
-        first=made.first,
-        total=made.total,
-        first_interval=widths.first,
-        total_interval=widths.total,
-        second=made.second if second else None,
-        second_interval=widths.second if second else None,
+        first=np.asarray(made["S1"]),
+        total=np.asarray(made["ST"]),
+        first_interval=np.asarray(made["S1_conf"]),
+        total_interval=np.asarray(made["ST_conf"]),
+        second=np.asarray(made["S2"]) if second else None,
+        second_interval=np.asarray(made["S2_conf"]) if second else None,
         variance=float(values.var()),
         level=level,
         points=base,
@@ -171,37 +172,20 @@ def _complete(output: str, values: NDArray[Any], count: int, missing: float | No
     return values
 
 
-class _Estimates(NamedTuple):
-    """Indices, or the half widths of their intervals."""
-
-    first: Array
-    total: Array
-    second: Array
-
-
-def _estimated(values: Array, names: int, second: bool, level: float, seed: int) -> tuple[_Estimates, _Estimates]:
-    """Indices by the formulas of SALib, and intervals from sets of points that are drawn anew, one after another."""
-    salib = need("SALib.analyze.sobol", "study", "Sobol indices")
-    scaled = (values - values.mean()) / values.std()
-    step = Saltelli(names, 1, 0, second).step
-    a, b, ab, ba = salib.separate_output_values(scaled, names, len(values) // step, second)
-    drawn, generator = list[_Estimates](), np.random.default_rng(seed)
-    for _ in range(RESAMPLED):
-        lines = generator.integers(len(a), size=len(a))
-        drawn.append(_indices(salib, a[lines], b[lines], ab[lines], ba[lines] if second else None))
-    factor = need("scipy.special", "study").ndtri(0.5 + level / 2.0)
-    widths = [factor * np.std(found, axis=0, ddof=1) for found in zip(*drawn, strict=True)]
-    return _indices(salib, a, b, ab, ba if second else None), _Estimates(*widths)
-
-
-def _indices(salib: Any, a: Array, b: Array, ab: Array, ba: Array | None) -> _Estimates:
-    names = ab.shape[1]
-    pairs = np.full((names, names), np.nan)
-    if ba is not None:
-        for one, other in zip(*np.triu_indices(names, 1), strict=True):
-            pairs[one, other] = salib.second_order(a, ab[:, one], ab[:, other], ba[:, one], b)
-    return _Estimates(
-        np.array([salib.first_order(a, column, b) for column in ab.T]),
-        np.array([salib.total_order(a, column, b) for column in ab.T]),
-        pairs,
-    )
+def _analysed(names: tuple[str, ...], values: Array, second: bool, level: float, seed: int) -> Any:
+    """What SALib makes of it."""
+    analyze = need("SALib.analyze.sobol", "study", "Sobol indices").analyze
+    problem = {"num_vars": len(names), "names": list(names), "bounds": [[0.0, 1.0]] * len(names)}
+    with warnings.catch_warnings():
+        # of pandas and numpy, inside of it
+        warnings.simplefilter("ignore")
+        return analyze(
+            problem,
+            values,
+            calc_second_order=second,
+            num_resamples=RESAMPLED,
+            conf_level=level,
+            print_to_console=False,
+            # it takes 0 for none
+            seed=seed + 1,
+        )

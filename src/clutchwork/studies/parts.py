@@ -107,7 +107,7 @@ def replaced(path: Path) -> Iterator[Path]:
     new = path.with_name(f".{path.stem}-{uuid4().hex}.new")
     try:
         yield new
-        with new.open("r+b") as file:
+        with new.open("rb") as file:
             os.fsync(file.fileno())
         new.replace(path)
     finally:

@@ -27,7 +27,7 @@ from clutchwork.studies.result import Study
 from clutchwork.studies.work import Chunk, Job, refuse_elsewhere, work
 from clutchwork.sweeps.order import Order, ordered, refuse_unfit, threads_of
 from clutchwork.sweeps.outputs import Asked, Computed
-from clutchwork.sweeps.result import OutputWarning, SweepInterrupted
+from clutchwork.sweeps.result import OutputWarning
 from clutchwork.sweeps.runs import in_python, run_all
 
 if TYPE_CHECKING:
@@ -131,11 +131,7 @@ class _Going:
 
     def _first(self, count: int) -> Sweep:
         part = self.order.source.part(0, min(count, len(self.order)))
-        try:
-            return run_all(self.order.of(part), 1, _silent)
-        except SweepInterrupted:
-            # nobody knows of this sweep
-            raise KeyboardInterrupt from None
+        return run_all(self.order.of(part), 1, _silent)
 
     def _begun(self, workers: Engine, wanted: Mapping[str, Any], first: Sweep) -> Manifest:
         """Everything that is known before the first chunk, written."""

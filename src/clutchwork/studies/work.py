@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clutchwork.base.errors import ModelError
 from clutchwork.engines.engine import EngineError
 from clutchwork.studies.parts import Column, Written, file_of, write
 from clutchwork.sweeps.runs import run_all
@@ -40,12 +39,7 @@ class Chunk:
 def work(job: Job, chunk: Chunk, alive: Alive) -> tuple[int, Written]:
     """Run and write a chunk; its number, and what is known of its part."""
     begun = time.time()
-    try:
-        made = run_all(job.order.of(chunk.variants), 1, lambda _: alive())
-    except ModelError as error:
-        # values that are right one by one, and not together
-        error.add_note(f"in variants {chunk.first} to {chunk.first + len(chunk.variants) - 1}; what is written stays")
-        raise
+    made = run_all(job.order.of(chunk.variants), 1, lambda _: alive())
     return chunk.number, write(job.folder, chunk.number, job.columns, made, chunk.first, begun)
 
 

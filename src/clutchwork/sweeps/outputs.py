@@ -231,7 +231,7 @@ def squared_jerk(shaft: str) -> SquaredJerk:
 
     Parameters: shaft, its name. The jerk is the rate of its acceleration within each step of the solver; where the
     acceleration jumps, as it does when a clutch locks, the jerk has no square, and the jump itself does not count: ask
-    for it by `cw.peak`, or soften what makes it. docs/theory/gradients.md (5)
+    for it by `cw.peak`, or soften what makes it. docs/theory/gradients.md (15)
     """
     return SquaredJerk(_named("squared_jerk", shaft))
 

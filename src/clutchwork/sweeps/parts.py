@@ -12,6 +12,8 @@ Array = NDArray[Any]
 
 # rows in every step of the solver, the last one at its end
 PARTS = 4
+# steps in which times of rows may coincide [s]
+SHORT = 1e-13
 
 
 def in_parts(times: Array) -> Array:
@@ -23,20 +25,39 @@ def in_parts(times: Array) -> Array:
 
 
 def steps_of(times: Array) -> NDArray[np.intp]:
-    """Numbers of the rows at which a step begins; the rows of it are this one and the next `PARTS`."""
+    """Numbers of the rows at which a step begins; the rows of it are this one and the next `PARTS`.
+
+    The start of a smooth phase has a row of its own, at the time of the row before.
+    """
     firsts = np.flatnonzero(np.r_[True, times[1:] <= times[:-1]])[: len(times)]
-    counts = (np.diff(np.r_[firsts, len(times)]) - 1) // PARTS
-    within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-    found = np.repeat(firsts, counts) + PARTS * within
+    lengths = np.diff(np.r_[firsts, len(times)]) - 1
+    if np.any(lengths % PARTS):
+        found = _one_by_one(times)
+    else:
+        counts = lengths // PARTS
+        within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+        found = np.repeat(firsts, counts) + PARTS * within
     long: NDArray[np.intp] = found[times[found + PARTS] > times[found]]
     return long
 
 
+def _one_by_one(times: Array) -> NDArray[np.intp]:
+    """The same where a step is so short that rows inside of it have one time."""
+    found, at, last = list[int](), 0, len(times) - 1
+    while at + PARTS <= last:
+        starts_anew = times[at + 1] <= times[at]
+        if starts_anew and times[at + PARTS] - times[at] > SHORT * (1.0 + abs(times[at])):
+            at += 1
+            continue
+        found.append(at)
+        at += PARTS
+    return np.array(found, dtype=np.intp)
+
+
 def squared_jerk_of(times: Array, acceleration: Array) -> float:
-    """Integral of the square of the rate of an acceleration over the steps: docs/theory/gradients.md (5)."""
+    """Integral of the square of the rate of an acceleration over the steps: docs/theory/gradients.md (15)."""
     begins = steps_of(times)
-    # from the first row on: slopes of short steps would drown in the rounding of large values
-    values = acceleration[begins[:, None] + np.arange(PARTS + 1)] - acceleration[begins, None]
+    values = acceleration[begins[:, None] + np.arange(PARTS + 1)]
     return float(np.sum(np.einsum("ki,ij,kj->k", values, form(), values) / (times[begins + PARTS] - times[begins])))
 
 

@@ -1,0 +1,188 @@
+"""Runs with derivatives by the core, forward and followed back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cached_property, partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.wiring import wiring
+from clutchwork.base.classes import dataclass
+from clutchwork.declare.core import core
+from clutchwork.declare.status import DONE, INTERRUPTED
+from clutchwork.gradients.chart import Slopes
+from clutchwork.gradients.engine import Task
+from clutchwork.gradients.functional import Functional
+from clutchwork.gradients.knots import knots
+from clutchwork.gradients.plain import Plain
+from clutchwork.gradients.pressing import at_rest
+from clutchwork.gradients.primal import Knots, Primal
+from clutchwork.gradients.signals_at import SignalsAt
+from clutchwork.gradients.steps import Steps
+from clutchwork.gradients.words import Words
+from clutchwork.results.gradient import NoGradient
+from clutchwork.run.simulation import told
+from clutchwork.sweeps.batch import Wanted
+
+Array = NDArray[np.float64]
+
+# memory of a run that is followed back: the first is asked for, what is not written costs nothing
+TAPES = (1 << 28, 1 << 31)
+
+
+class Point(NamedTuple):
+    """A point with what is known of its run before it is differentiated."""
+
+    x: Array
+    system: bytes
+    slopes: Slopes
+    knots: Knots
+    steps: Steps
+    events: Array  # s, of a run without derivatives
+    grid: Array  # s, instants of rows
+    notes: tuple[str, ...]  # on what is only just differentiable
+
+
+class Run(NamedTuple):
+    """A run, and the derivatives of what follows from it to first order."""
+
+    primal: Primal
+    slope: Callable[[Functional], Array]
+    is_forward: bool  # whether derivatives of the times of all events are known
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """Runs of a driveline with other numbers."""
+
+    task: Task
+
+    @cached_property
+    def words(self) -> Words:
+        """The words of the driveline as functions of the numbers."""
+        return Words(self.task.system, tuple(self.task.parameters))
+
+    @cached_property
+    def wanted(self) -> Wanted:
+        """What is asked of each run."""
+        return Wanted.of(self.task.system, self.task.options, self.task.outputs, self.task.t_end)
+
+    @cached_property
+    def signals(self) -> SignalsAt:
+        """The forms of its signals."""
+        return SignalsAt(self.words, self.wanted.all_signals)
+
+    @cached_property
+    def _options(self) -> Mapping[str, float]:
+        # the method that runs with derivatives have
+        return self.task.options.changed({"method": "rodas5p"}).core_options()
+
+    @cached_property
+    def plain(self) -> Plain:
+        """Runs without derivatives."""
+        return Plain(self.wanted, self._options, self.task.threads)
+
+    # ------------------------------------------------------------------------------------------------- with derivatives
+
+    def point(self, x: Array) -> Point:
+        """What a run with derivatives needs; NoGradient where a run stops early."""
+        chart, words = self.words.at(x)
+        system, slopes = words.tobytes(), chart.slopes(x)
+        moving = knots(chart, words, slopes, self.wanted.begin, self.wanted.t_end)
+        steps, events = Steps.of_parts(np.zeros(1)), np.zeros(0)
+        if self.plain.in_steps:
+            run = self.plain.runs([system], [], grid=False, steps=True)[0]
+            self._refuse_stopped(run.status, run.detail)
+            steps, events = Steps.of_parts(run.times).inside(), run.events[:, 0]
+        notes = tuple(at_rest(chart, words, slopes, [one.name for one in self.task.parameters], self.wanted.t_end))
+        return self._with_grid(Point(x, system, slopes, moving, steps, events, np.zeros(0), notes))
+
+    def forward(self, point: Point) -> Run:
+        """A run with derivatives by all numbers."""
+        places, seeds = point.slopes.places.astype(np.int64), point.slopes.matrix
+        status, _, rows, row_tangents, events, event_tangents, grazes, fault = core().tangents(
+            point.system, places, seeds, point.grid, self.wanted.t_end, list(self._options.items()), self._size
+        )
+        self._refuse_stopped(status, (fault[0], float("nan"), fault[1], -1))
+        moved = self._aligned(point, events[:, 0])
+        if moved is not None:
+            return self.forward(moved)
+        slope = partial(_forward, row_tangents, event_tangents)
+        return Run(self._primal(point, rows, events, grazes), slope, is_forward=True, notes=point.notes)
+
+    def taped(self, point: Point) -> Run:
+        """A run that is followed back from each result; forward where there is no memory for it."""
+        places = point.slopes.places.astype(np.int64)
+        for size in TAPES if hasattr(core(), "Adjoint") else ():
+            tape = core().Adjoint(
+                point.system, places, point.grid, self.wanted.t_end, list(self._options.items()), self._size, size
+            )
+            status, _, rows, events, grazes, fault = tape.found()
+            if status != INTERRUPTED:
+                break
+        else:
+            return self.forward(point)
+        self._refuse_stopped(status, (fault[0], float("nan"), fault[1], -1))
+        moved = self._aligned(point, events[:, 0])
+        if moved is not None:
+            return self.taped(moved)
+        primal = self._primal(point, rows, events, grazes)
+        slope = partial(_back, tape, point.slopes, primal.rows.shape, len(events))
+        return Run(primal, slope, is_forward=False, notes=point.notes)
+
+    @cached_property
+    def _size(self) -> int:
+        return wiring(self.task.system).row_size
+
+    def _with_grid(self, point: Point) -> Point:
+        return point._replace(grid=np.unique(np.concatenate([self.wanted.grid, point.steps.times.ravel()])))
+
+    def _aligned(self, point: Point, events: Array) -> Point | None:
+        """The point with other instants of events, where they are too far from those that were expected."""
+        if not len(point.steps) or len(events) != len(point.events):
+            return None
+        nearest = np.abs(point.steps.begin[:, None] - point.events).argmin(axis=0) if len(events) else np.zeros(0, int)
+        room = point.steps.room[nearest]
+        if np.all(np.abs(events - point.events) <= 0.5 * room):
+            return None
+        return self._with_grid(point._replace(steps=point.steps.moved(point.events, events), events=events))
+
+    def _primal(self, point: Point, rows: Array, events: Array, grazes: Array) -> Primal:
+        columns = wiring(self.task.system).columns
+        return Primal(
+            times=point.grid,
+            rows=rows,
+            events=events,
+            grazes=grazes,
+            knots=point.knots,
+            steps=point.steps.on(point.grid),
+            forms=self.signals.at(point.x),
+            bent=self.signals.bent(point.x, rows),
+            numbers=len(point.x),
+            speeds=columns["speed"],
+            accelerations=columns["acceleration"],
+            t_end=self.wanted.t_end,
+        )
+
+    def _refuse_stopped(self, status: int, detail: tuple[int, float, float, int]) -> None:
+        if status != DONE:
+            component, time, value, column = detail
+            why = told(self.task.system, status, component, time, value, column)
+            raise NoGradient([f"the run stopped early: {why}"])
+
+
+def _forward(rows: Array, events: Array, one: Functional) -> Array:
+    """Derivatives from those of all rows and events."""
+    return one.along(rows, events)
+
+
+def _back(tape: Any, slopes: Slopes, shape: tuple[int, int], events: int, one: Functional) -> Array:
+    """Derivatives by following a run back."""
+    by_rows, by_events = np.zeros(shape), np.zeros(events)
+    one.into(by_rows, by_events)
+    found: Array = tape.back(by_rows, by_events) @ slopes.matrix + one.direct
+    return found

@@ -1,0 +1,42 @@
+"""Gradients of random drivelines of all laws and elements against differences of runs at 1e-12."""
+
+from __future__ import annotations
+
+import warnings
+
+import pytest
+
+import clutchwork as cw
+from support import gradient_cases, samples
+from support.amount import amount
+
+pytestmark = pytest.mark.slow
+
+ELEMENTS = samples.declared(*samples.ELEMENT_ROLES)
+
+
+def report(case, seed, count):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cw.ModelWarning)
+        warnings.simplefilter("ignore", cw.FaultWarning)
+        warnings.simplefilter("ignore", cw.StoppedEarly)
+        return gradient_cases.checked(case, seed, count)
+
+
+@pytest.mark.parametrize("kind", gradient_cases.KINDS)
+def test_random_drivelines(kind):
+    compared, refused, wrong = 0, list[str](), list[str]()
+    for seed in range(amount(6)):
+        found = report(gradient_cases.KINDS[kind](seed), seed, 2)
+        compared, refused = compared + found.compared, [*refused, *found.refused]
+        wrong += [f"seed {seed}: {text}" for text in found.wrong]
+    assert not wrong, "\n".join(wrong)
+    assert compared > 5 * amount(6)
+
+
+@pytest.mark.parametrize("cls", ELEMENTS, ids=lambda cls: cls.kind)
+def test_every_element(cls):
+    found = report(gradient_cases.of_element(cls), 1, 3)
+    assert found.wrong == []
+    # a torque that grows with the speed it makes has no end
+    assert found.compared > 0 or "the run: not_finite" in found.refused
