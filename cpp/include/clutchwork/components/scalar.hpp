@@ -56,6 +56,15 @@ CLUTCHWORK_INLINE bool none(bool x) { return !x; }
 CLUTCHWORK_INLINE bool is_zero(double x) { return x == 0; }
 CLUTCHWORK_INLINE bool is_zero(float x) { return x == 0; }
 
+/// Whether a number counts: it is not zero, or what it is made of moves it.
+template <class T>
+CLUTCHWORK_INLINE bool counts(const T& x) {
+  if constexpr (has_tangents<T>)
+    return !is_zero(x);
+  else
+    return any(value(x) != 0);
+}
+
 /// A number without the derivatives of a dual one.
 template <class T>
 CLUTCHWORK_INLINE const T& plain_of(const T& x) {

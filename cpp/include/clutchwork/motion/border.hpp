@@ -13,7 +13,7 @@ T border_times(const Form& form, int i, const T* x) {
   T sum = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
     const T c = ws.shared.by_rate[i * ws.n_directions + k];
-    if (value(c) != 0) sum += c * form.rate(k, x);
+    if (counts(c)) sum += c * form.rate(k, x);
   }
   for (int s = 0; s < own; ++s) sum += ws.shared.by_state[i * ns + s] * x[nz + s];
   return sum;
@@ -31,7 +31,7 @@ bool factor_border(Form& form, T scale, Solve&& solve) {
     bool any = false;
     for (int k = 0; k < ws.n_branches; ++k) {
       const T c = ws.shared.torque_by[k * nx + j];
-      if (value(c) != 0) form.push(k, c, b), any = true;
+      if (counts(c)) form.push(k, c, b), any = true;
     }
     if (any) solve(b);
   }

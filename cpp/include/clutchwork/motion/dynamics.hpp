@@ -77,7 +77,7 @@ CLUTCHWORK_INLINE void linearize(Form& form, Real<T> t, const T* y, T* d, T* dt,
     ws.jacobian.partial[k] = p;
     form.push(k, p.torque, d);
     // a lane without it adds zeros
-    if (any(value(p.by_time) != 0)) form.push(k, p.by_time, dt);
+    if (counts(p.by_time)) form.push(k, p.by_time, dt);
     for (int s = 0; s < b.states; ++s) dt[nz + b.state + s] = out.g_time[s];
   }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) edge.rate[k] = form.rate(k, y) + offset_rate(ws, k);

@@ -60,7 +60,7 @@ struct FullForm : SparseForm<T> {
     auto take = [&](int k, const T* row, int from, int to) {
       f.first[k] = n;
       for (int j = from; j < to; ++j) {
-        if (value(row[j]) != 0) f.part[n] = row[j], f.column[n++] = j;
+        if (counts(row[j])) f.part[n] = row[j], f.column[n++] = j;
       }
     };
     for (int i = 0; i < count; ++i) {

@@ -182,7 +182,7 @@ struct SharedRow {
   void add_input(int i, T factor, int ref) {
     const auto& sys = ws.sys;
     const int code = sys.input_refs[ref];
-    if (value(factor) == 0) return;
+    if (!counts(factor)) return;
     if (code < sys.inputs) {
       dt[first + i] += factor * ws.in.du[ref];
     } else if (code < sys.inputs + sys.shared) {

@@ -50,8 +50,9 @@ T rate_at(Form& form, int d, double t, const T* y) {
 template <class T>
 T level_of(const Workspace<T>& ws, const LineGuard& guard) {
   const int d = ws.branch[guard.branch].direction, c = d - int(ws.sys.elements);
-  if (guard.kind != LineGuard::slip || guard.level == 0) return T(guard.level);
-  return T(guard.sign) * T(ws.sys.contact_tolerance[c]);
+  // one that was forced to slip, or that is driven, is watched at zero
+  const bool own = guard.kind == LineGuard::slip && abs(guard.level) == value(ws.sys.contact_tolerance[c]);
+  return own ? T(guard.sign) * T(ws.sys.contact_tolerance[c]) : T(guard.level);
 }
 
 /// The guard that was hit at (t, y): zero at the event.
@@ -244,24 +245,48 @@ void note_graze(Workspace<T>& ws, int what, int component, double index, const T
   if (m.n < Moved<T>::room) m.graze[m.n++] = {ws.time, double(what), double(component), index, apart};
 }
 
-/// How the knot moves at which the run is: that of a signal that jumps there, else of any.
+/// Contacts that come to rest with the one that was hit, but at another instant where a number changes: by how much
+/// their instants differ is noted.
+template <class T>
+void note_others(Workspace<T>& ws, int located) {
+  const double tolerance = slip_tolerance(ws);
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int mode = ws.contact.mode[c];
+    if (c == located || (mode != forward && mode != backward) || !may_stick(ws, c) || !ws.contact.pressed[c]) continue;
+    // at the event, which moves, the slip of one that locks at the same instant does not change
+    const T slip = rate_of(ws, int(ws.sys.elements) + c);
+    const double slope = value(ws.happened.slope[c]);
+    if (abs(value(slip)) > tolerance || slope == 0 || ws.moved.n == 0 || ws.moved.n > Moved<T>::room) continue;
+    double& apart = ws.moved.graze[ws.moved.n - 1].together;
+    apart = larger(apart, largest_difference(slip * T(-1 / slope), T(0)));
+  }
+}
+
+/// How the knot moves at which the run is: that of a signal that jumps there, else of a prescribed speed that bends,
+/// else of any.
 template <class T>
 T knot_shift(Workspace<T>& ws) {
   T shift = T(0);
-  bool jumps = false;
+  int weight = 0;
+  auto is_prescribed = [&](int i) {
+    bool found = false;
+    for (int p = 0; p < ws.sys.prescribed; ++p) found = found || ws.sys.prescribed_input[p] == i;
+    return found;
+  };
   for (int i = 0; i < ws.sys.inputs; ++i) {
     auto& signal = ws.in.signal[i];
     if (!(value(signal.knot) <= ws.time) || is_held(ws, i)) continue;
     const T knot = without_value(signal.knot);
-    const double before = value(signal_value(ws, i, ws.time));
+    const double before = value(signal_value(ws, i, ws.time)), slope = value(signal_slope(ws, i, ws.time));
     auto next = signal;
     seek(ws, i, ws.time);
-    const double after = value(signal_value(ws, i, ws.time));
-    const bool own = abs(after - before) > 1e-12 * (abs(after) + abs(before));
+    const double after = value(signal_value(ws, i, ws.time)), next_slope = value(signal_slope(ws, i, ws.time));
+    const bool jumps = abs(after - before) > 1e-12 * (abs(after) + abs(before));
+    const bool bends = is_prescribed(i) && abs(next_slope - slope) > 1e-12 * (abs(next_slope) + abs(slope));
+    const int own = jumps ? 3 : bends ? 2 : is_zero(knot) ? 0 : 1;
     signal = next;
-    if (own) note_graze(ws, -1, i, infinity, knot);
-    if (own ? !jumps : is_zero(shift)) shift = knot;
-    jumps = jumps || own;
+    if (own > 1) note_graze(ws, -1, i, infinity, knot);
+    if (own > weight) shift = knot, weight = own;
   }
   return shift;
 }

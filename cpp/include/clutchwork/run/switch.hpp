@@ -203,6 +203,9 @@ Status switch_modes(Workspace<T>& ws) {
   const BesideRatios<T> beside(ws);
   if (ws.ratios.n > 0) settle_rows(ws);
   if (!at_start) see_speeds(ws);
+  if constexpr (has_tangents<T>) {
+    if (ws.happened.cause == Cause::slip_zero) note_others(ws, located);
+  }
   const double energy_before = kinetic_energy(ws);
   const Status decided = decide(ws, at_start);
   if (decided != Status::running) return decided;
