@@ -208,8 +208,8 @@ int64_t cw_adjoint_grazes(cw_adjoint* run, double* grazes, int64_t most);
 /* Numbers on the tape. */
 int64_t cw_adjoint_numbers(const cw_adjoint* run);
 
-/* Weights of results, at their numbers on the tape, become derivatives of their sum by all numbers. 1: done; 0: the tape
-   is full. */
+/* Weights of results, at their numbers on the tape, become derivatives of their sum by all numbers.
+   1: done; 0: the tape is full. */
 int cw_adjoint_back(const cw_adjoint* run, double* adjoint);
 
 /* As cw_tangents_fault. */
