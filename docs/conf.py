@@ -8,6 +8,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures"), str(HERE)]
 
+import calibrations  # noqa: E402
 import drawings  # noqa: E402
 import experiments  # noqa: E402
 import gearboxes  # noqa: E402
@@ -29,6 +30,7 @@ gen_docs.write(HERE / "reference")
 gen_lists.write(HERE / "reference")
 kept.write(experiments.write, HERE / "reference" / "rig")
 kept.write(launches.write, HERE / "reference" / "car")
+kept.write(calibrations.write, HERE / "reference" / "calibrations")
 kept.write(sweeps.write, HERE / "reference" / "sweeps")
 kept.write(drawings.write, HERE / "reference" / "pictures")
 kept.write(schematics.write, HERE / "reference" / "schematics")

@@ -145,7 +145,8 @@ def _effort(found: Told) -> str:
     said = [f"{found.effort}, {counted(len(found.outcomes), 'starts')}, {counted(runs, 'runs with gradient')}"]
     said.append(f"largest violation {found.certificate.violation:.1g}, residual {found.certificate.residual:.1g}")
     if found.samples:
-        said.append(f"limits hold in all samples of production, of which {len(found.samples)} decided")
+        hold = "hold in all samples" if found.feasible else "are broken in samples"
+        said.append(f"limits {hold} of production, of which {len(found.samples)} decided")
     return "; ".join(said)
 
 

@@ -27,8 +27,8 @@ class Tape {
   Tape(void* memory, std::int64_t bytes)
       : node_(static_cast<Node*>(memory)), room_(std::int32_t(smaller(bytes / std::int64_t(sizeof(Node)), most))) {}
 
-  /// The number of a new result.
-  CLUTCHWORK_INLINE std::int32_t note(std::int32_t a, double by_a, std::int32_t b, double by_b) {
+  /// The number of a new result. One copy for all operations: the core has very many.
+  [[gnu::noinline]] std::int32_t note(std::int32_t a, double by_a, std::int32_t b, double by_b) {
     if (n_ >= room_) return full_ = true, 0;
     node_[n_] = {a, b, by_a, by_b};
     return n_++;

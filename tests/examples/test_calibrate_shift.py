@@ -1,0 +1,21 @@
+"""A shift is calibrated with few samples: less jerk, and limits that hold in gearboxes that were not looked at."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+
+import pytest
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "calibrate_shift"
+
+
+def test_the_eight_speed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(EXAMPLE))
+    script = importlib.import_module("calibrate_shift")
+    shift = script.eight_speed()
+    found = script.calibrated(shift, samples=16)
+    assert found.feasible
+    # 9.6 m/s3 before, of the nominal gearbox
+    assert found.goal[1] < 5.0
+    assert not found.verify(100).broken.any()
