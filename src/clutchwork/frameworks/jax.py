@@ -11,6 +11,7 @@ import numpy as np
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.shown import shown
+from clutchwork.declare.calls import explained
 from clutchwork.frameworks.lines import no_second, refuse, values, values_and_matrix
 from clutchwork.gradients.differentiable import Differentiable
 
@@ -18,6 +19,7 @@ CALL = "cw.to_jax"
 BITS = 'jax.config.update("jax_enable_x64", True)'
 
 
+@explained("to_jax", f="cw.differentiable(model, 2.0, of=..., by=...)")
 def to_jax(f: Differentiable) -> Callable[[Any], Any]:
     """A function of JAX: values of a driveline at an array x of its numbers, with exact derivatives.
 

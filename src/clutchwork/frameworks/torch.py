@@ -9,12 +9,14 @@ from typing import Any
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.shown import shown
+from clutchwork.declare.calls import explained
 from clutchwork.frameworks.lines import no_second, refuse, values, values_and_matrix
 from clutchwork.gradients.differentiable import Differentiable
 
 CALL = "cw.to_torch"
 
 
+@explained("to_torch", f="cw.differentiable(model, 2.0, of=..., by=...)")
 def to_torch(f: Differentiable) -> Callable[[Any], Any]:
     """A function of PyTorch: values of a driveline at a tensor x of its numbers, with exact derivatives.
 
