@@ -24,6 +24,7 @@ import gen_docs  # noqa: E402
 import gen_lists  # noqa: E402
 import parity  # noqa: E402
 import shifts  # noqa: E402
+import studies  # noqa: E402
 import sweeps  # noqa: E402
 
 gen_docs.write(HERE / "reference")
@@ -31,6 +32,7 @@ gen_lists.write(HERE / "reference")
 kept.write(experiments.write, HERE / "reference" / "rig")
 kept.write(launches.write, HERE / "reference" / "car")
 kept.write(calibrations.write, HERE / "reference" / "calibrations")
+kept.write(studies.write, HERE / "reference" / "studies")
 kept.write(sweeps.write, HERE / "reference" / "sweeps")
 kept.write(drawings.write, HERE / "reference" / "pictures")
 kept.write(schematics.write, HERE / "reference" / "schematics")

@@ -79,15 +79,17 @@ except cw.Interrupted as stop:
 """
 
 
+# a shell lets what runs in its background ignore Ctrl-C, children included
+LISTEN = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+
+
 def _interrupted(code: str, *arguments: str, after: float = 1.0) -> tuple[float, subprocess.Popen[str]]:
     """Start Python code, send it Ctrl-C some time after it is ready; when that was."""
     child = subprocess.Popen(
-        [sys.executable, "-c", code, *arguments],
+        [sys.executable, "-c", LISTEN + code, *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        # a shell lets what runs in its background ignore Ctrl-C, children included
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     assert child.stdout is not None
     assert child.stdout.readline() == "ready\n"
