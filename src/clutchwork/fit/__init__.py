@@ -1,4 +1,4 @@
-"""Parameters of a friction law from measured slip and torque, or numbers of a driveline from a measured response.
+"""Parameters of a friction law from measured slip and torque, or numbers of a driveline from measured runs.
 
     import clutchwork as cw
     from clutchwork.fit import fit_csv
@@ -21,8 +21,10 @@ if TYPE_CHECKING:
     from clutchwork.fit.failure import FitError as FitError
     from clutchwork.fit.law import fit_csv as fit_csv
     from clutchwork.fit.law import fit_law as fit_law
-    from clutchwork.fit.response import ResponseFit as ResponseFit
+    from clutchwork.fit.record import Record as Record
+    from clutchwork.fit.records import fit_records as fit_records
     from clutchwork.fit.response import fit_response as fit_response
+    from clutchwork.fit.response_result import ResponseFit as ResponseFit
     from clutchwork.fit.result import FitResult as FitResult
     from clutchwork.fit.result import Parameter as Parameter
     from clutchwork.fit.result import UndeterminedError as UndeterminedError
@@ -32,10 +34,12 @@ _LAZY = {
     "FitError": "failure",
     "FitResult": "result",
     "Parameter": "result",
-    "ResponseFit": "response",
+    "Record": "record",
+    "ResponseFit": "response_result",
     "UndeterminedError": "result",
     "fit_csv": "law",
     "fit_law": "law",
+    "fit_records": "records",
     "fit_response": "response",
 }
 __all__ = sorted(_LAZY)

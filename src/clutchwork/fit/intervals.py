@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import exp, log, sqrt
 from typing import TYPE_CHECKING
 
@@ -42,15 +43,15 @@ def estimate(search: Search, u: Array, confidence: float) -> Estimate:
     residuals = search.residuals(u)[equations]
     known = information(search.jacobian(u)[equations], search.measured.size, search.model.exact)
     freedom = max(len(residuals) - int(np.sum(~known.lost)), 1)
-    alike = _alike(residuals)
-    variance = float(np.sum(residuals**2)) / freedom * (1.0 + alike) / (1.0 - alike)
+    correlated = alike([residuals])
+    variance = float(np.sum(residuals**2)) / freedom * widened(correlated)
     spread = spread_of(search, u)
     covariance = variance * known.covariance(spread)
     t = float(scipy("stats").t.ppf(0.5 + 0.5 * confidence, freedom))
     items, ends = search.unknowns.items, search.unknowns.ends(u)
     codes, halves = search.unknowns.codes(u).tolist(), (t * np.sqrt(np.diag(covariance))).tolist()
     rows = list(zip(items, codes, halves, ends, strict=True))
-    limits = [_interval(*row) for row in rows]
+    limits = [interval(*row) for row in rows]
     for place in np.flatnonzero(known.silent):
         limits[search.unknowns.searched[place]] = _reach(search, u, int(place), t**2 * variance)
     why = [
@@ -58,7 +59,7 @@ def estimate(search: Search, u: Array, confidence: float) -> Estimate:
         for cause, (item, code, half, end) in zip(reasons.causes(known, spread, items), rows, strict=True)
     ]
     directions = reasons.directions(known, spread, items, why)
-    return Estimate(sqrt(variance), t**2 * variance, covariance, limits, why, directions, alike)
+    return Estimate(sqrt(variance), t**2 * variance, covariance, limits, why, directions, correlated)
 
 
 def limits_at(search: Search, u: Array, tolerance: float, places: Array) -> list[tuple[float, float]]:
@@ -68,15 +69,24 @@ def limits_at(search: Search, u: Array, tolerance: float, places: Array) -> list
     spread = spread_of(search, u)[:, places]
     halves = np.sqrt(tolerance * np.diag(known.covariance(spread))).tolist()
     rows = zip(search.unknowns.items, search.unknowns.codes(u).tolist(), halves, search.unknowns.ends(u), strict=True)
-    return [_interval(*row) for row in rows]
+    return [interval(*row) for row in rows]
 
 
-def _alike(residuals: Array) -> float:
-    """Correlation of neighbouring residuals, 0 where it may be chance; neighbours that are alike count less."""
-    if len(residuals) < FEWEST_NEIGHBOURS or not np.any(residuals):
+def alike(rows: Sequence[Array]) -> float:
+    """Correlation of neighbouring residuals, 0 where it may be chance; neighbours that are alike count less.
+
+    Parameters: rows, residuals in order of time, those of each signal and record on their own.
+    """
+    count, size = sum(len(row) for row in rows), sum(float(row @ row) for row in rows)
+    if count < FEWEST_NEIGHBOURS or not size:
         return 0.0
-    found = float(residuals[1:] @ residuals[:-1] / (residuals @ residuals))
-    return min(found, 0.99) if found > 2.0 / sqrt(len(residuals)) else 0.0
+    found = sum(float(row[1:] @ row[:-1]) for row in rows) / size
+    return min(found, 0.99) if found > 2.0 / sqrt(count) else 0.0
+
+
+def widened(correlated: float) -> float:
+    """Factor on a variance where neighbouring residuals are correlated."""
+    return (1.0 + correlated) / (1.0 - correlated)
 
 
 def spread_of(search: Search, u: Array) -> Array:
@@ -90,7 +100,7 @@ def spread_of(search: Search, u: Array) -> Array:
     return np.array(columns).T
 
 
-def _interval(item: Unknown, code: float, half: float, ends: tuple[float, float]) -> tuple[float, float]:
+def interval(item: Unknown, code: float, half: float, ends: tuple[float, float]) -> tuple[float, float]:
     """Interval of the value, within its bounds."""
     lower, upper = ends
     if not item.is_log:

@@ -50,14 +50,17 @@ def at_end(item: Unknown, value: float, ends: tuple[float, float]) -> str:
     return f"it diverged to {value:.3g}" if any(abs(value - end) <= reach for end in (item.lower, item.upper)) else ""
 
 
-def wide(item: Unknown, code: float, half: float, confidence: float) -> str:
-    """Whether an interval of the code, plus and minus half, is too wide to say anything."""
+def wide(item: Unknown, code: float, half: float, confidence: float, size: float = 0.0) -> str:
+    """Whether an interval of the code, plus and minus half, is too wide to say anything.
+
+    Parameters: size, what a number that may be zero is compared with, where that is more than itself.
+    """
     share = f"{100 * confidence:g} % interval"
     if item.is_log:
         factor = exp(min(half, log(1e9)))
         shown = "many orders of magnitude" if factor > 1e6 else f"a factor {factor:.3g}"
         return f"its {share} reaches {shown} either way" if factor > WIDE_FACTOR else ""
-    if half <= WIDE_SHARE * abs(code):
+    if half <= WIDE_SHARE * max(abs(code), size):
         return ""
     if abs(code) < half:
         return f"it cannot be distinguished from zero, its {share} is +- {half:.3g}"

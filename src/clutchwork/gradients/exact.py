@@ -14,6 +14,7 @@ from clutchwork.gradients.engine import Found, Task
 from clutchwork.gradients.grazing import crowded, decided, noted, refused, together
 from clutchwork.gradients.measures import Asked, Measure, measures
 from clutchwork.gradients.runs import Run, Runs
+from clutchwork.gradients.traces import are_traces, at_events, traces, traces_of
 from clutchwork.results.gradient import NoGradient
 from clutchwork.sweeps.outputs import Integral
 
@@ -55,14 +56,26 @@ class Exact:
 
     def gradient(self, x: Array) -> Found:
         """Values and derivatives at a point; NoGradient names all that do not exist."""
+        if not self._is_followed_back(x, len(self.task.labels)) and are_traces(self.task.outputs.values()):
+            return self._traces(x)
         run, found = self._run(x, len(self.task.labels))
         lines = [np.array([run.slope(one) for one in measure.changes]) for measure in found]
         problems = list[str]()
         for name, one, own in zip(self.task.labels, found, lines, strict=True):
             problems += _several(name, one, own, self._sizes(x))
         _refuse(problems)
-        notes = dict.fromkeys([*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.events)])
-        return Found(np.array([one.value for one in found]), np.array([own[0] for own in lines]), tuple(notes))
+        return Found(np.array([one.value for one in found]), np.array([own[0] for own in lines]), self._notes(run))
+
+    def _traces(self, x: Array) -> Found:
+        """The same of signals at instants alone."""
+        run, outputs = self.runs.forward(self.runs.point(x)), self.task.outputs.values()
+        met = [_moving(name, time) for name, time in at_events(run, outputs)]
+        _refuse([*met, *self._not_there(x, run, max(one.times[-1] for one in traces_of(outputs)))])
+        return Found(*traces(run, outputs), self._notes(run))
+
+    def _notes(self, run: Run) -> tuple[str, ...]:
+        found = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.events)]
+        return tuple(dict.fromkeys(found))
 
     def gradients(self, x: Array) -> tuple[Array, Array]:
         """The same for each line of numbers; NaN where there is none."""
@@ -90,13 +103,17 @@ class Exact:
     def _run(self, x: Array, results: int) -> tuple[Run, list[Measure]]:
         """A run and what is measured in it: followed back where results are few and numbers many."""
         point = self.runs.point(x)
-        back = len(x) >= FOLLOWED_FROM + FOLLOWED_FOR_EACH * results
-        run = self.runs.taped(point) if back else self.runs.forward(point)
+        run = self.runs.taped(point) if self._is_followed_back(x, results) else self.runs.forward(point)
         if not run.is_forward and together(run.primal.grazes):
             run = self.runs.forward(point)
         found = measures(run.primal, self.task.outputs, self._asked)
         _refuse(list(self._problems(x, run, found)))
         return run, found
+
+    @staticmethod
+    def _is_followed_back(x: Array, results: int) -> bool:
+        """Whether following a run back costs less than carrying derivatives along."""
+        return len(x) >= FOLLOWED_FROM + FOLLOWED_FOR_EACH * results
 
     # ------------------------------------------------------------------------------------------------------- what fails
 
@@ -105,13 +122,16 @@ class Exact:
         return np.maximum(np.abs(x), own)
 
     def _problems(self, x: Array, run: Run, found: Sequence[Measure]) -> Iterator[str]:
-        primal = run.primal
         for name, one in zip(self.task.labels, found, strict=True):
             if not one.changes:
-                yield f"{name} does not happen before {primal.t_end:g} s; take one that does, or a later end time"
+                yield f"{name} does not happen before {run.primal.t_end:g} s; take one that does, or a later end time"
             elif one.at is not None:
                 yield from _at_event(name, one.at, run)
-        until, sizes = max((one.until for one in found), default=0.0), float(np.max(self._sizes(x), initial=0.0))
+        yield from self._not_there(x, run, max((one.until for one in found), default=0.0))
+
+    def _not_there(self, x: Array, run: Run, until: float) -> Iterator[str]:
+        """Why there is no derivative of anything up to a time [s]."""
+        primal, sizes = run.primal, float(np.max(self._sizes(x), initial=0.0))
         yield from refused(self.task.system, decided(primal.grazes, primal.events), until, sizes)
         yield from crowded(primal.events, self.runs.wanted.contacts, until)
 
@@ -128,7 +148,11 @@ def _at_event(name: str, time: float, run: Run) -> Iterator[str]:
         moves = run.primal.functional()
         moves.add_event(number, 1.0)
         if np.any(run.slope(moves)):
-            yield f"{name} is asked for at the instant of an event, {time:.9g} s, which moves; ask before or behind it"
+            yield _moving(name, time)
+
+
+def _moving(name: str, time: float) -> str:
+    return f"{name} is asked for at the instant of an event, {time:.9g} s, which moves; ask before or behind it"
 
 
 def _several(name: str, one: Measure, lines: Array, sizes: Array) -> Iterator[str]:

@@ -31,6 +31,7 @@ Array = NDArray[np.float64]
 
 # memory of a run that is followed back: the first is asked for, what is not written costs nothing
 TAPES = (1 << 28, 1 << 31)
+NO_TANGENTS = np.zeros((0, 0, 0))
 
 
 class Point(NamedTuple):
@@ -53,6 +54,7 @@ class Run(NamedTuple):
     slope: Callable[[Functional], Array]
     is_forward: bool  # whether derivatives of the times of all events are known
     notes: tuple[str, ...]
+    tangents: Array = NO_TANGENTS  # of the numbers of all rows by each number, of a forward run
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +114,8 @@ class Runs:
         if moved is not None:
             return self.forward(moved)
         slope = partial(_forward, row_tangents, event_tangents)
-        return Run(self._primal(point, rows, events, grazes), slope, is_forward=True, notes=point.notes)
+        primal = self._primal(point, rows, events, grazes)
+        return Run(primal, slope, is_forward=True, notes=point.notes, tangents=row_tangents)
 
     def taped(self, point: Point) -> Run:
         """A run that is followed back from each result; forward where there is no memory for it."""

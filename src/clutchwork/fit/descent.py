@@ -1,0 +1,184 @@
+"""Residuals of the samples of all records over the codes of the free numbers, and their exact derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.errors import ModelError
+from clutchwork.fit.driven import Driven
+from clutchwork.fit.failure import FitError, scipy
+from clutchwork.fit.numbers import Numbers
+from clutchwork.fit.search import STAY
+from clutchwork.fit.traces import Trace
+from clutchwork.gradients.differentiable import Differentiable, made
+from clutchwork.results.gradient import NoGradient
+from clutchwork.sweeps.outputs import AtTimes
+
+Array = NDArray[np.float64]
+
+# relative step of difference quotients, far above the error of the runs
+STEP = 1e-4
+# how far starts lie from the first one, of the scale of a code
+SPREAD = 1.0
+SEED = 14
+
+
+class Ended(NamedTuple):
+    """Where a search ended."""
+
+    u: Array
+    squares: float
+    converged: bool
+
+
+class Descent:
+    """What is minimised: residuals, each over its deviation or the size of its signal."""
+
+    def __init__(self, records: Sequence[Driven], numbers: Numbers) -> None:
+        self.records, self.numbers = records, numbers
+        self.lower, self.upper = numbers.ends()
+        self.points, self.fallen = 0, list[str]()  # derivatives that were asked for, and why some did not exist
+
+    @cached_property
+    def functions(self) -> list[Differentiable]:
+        """The signals of each record at its samples, as functions of its numbers."""
+        return [_function(one, self.numbers.by) for one in self.records]
+
+    @cached_property
+    def measured(self) -> list[Array]:
+        """Samples of each record."""
+        return [np.concatenate([one.values for one in record.traces]) for record in self.records]
+
+    @cached_property
+    def sizes(self) -> dict[str, float]:
+        """Root mean square of each signal over all records."""
+        rows = dict[str, list[Array]]()
+        for one in self.traces:
+            rows.setdefault(one.signal, []).append(one.values)
+        return {name: float(np.sqrt(np.mean(np.concatenate(of) ** 2))) or 1.0 for name, of in rows.items()}
+
+    @cached_property
+    def traces(self) -> list[Trace]:
+        """Measured signals of all records in order."""
+        return [one for record in self.records for one in record.traces]
+
+    @cached_property
+    def weights(self) -> list[Array]:
+        """What residuals of each record are divided by."""
+        return [
+            np.concatenate(
+                [np.full(len(one.times), self.sizes[one.signal]) if one.deviation is None else one.deviation
+                 for one in record.traces]
+            )
+            for record in self.records
+        ]  # fmt: skip
+
+    # ------------------------------------------------------------------------------------------------------- residuals
+
+    def residuals(self, u: Array) -> Array:
+        """Run minus samples over their weights; NaN where a driveline cannot be or stops early."""
+        values = self.numbers.values(u)
+        return np.concatenate([self._residuals(number, values) for number in range(len(self.records))])
+
+    def _residuals(self, number: int, values: Array) -> Array:
+        x = values[self.numbers.places(number)]
+        try:
+            found = self.functions[number](x)
+        except ModelError:
+            found = np.full(len(self.measured[number]), np.nan)
+        return np.asarray((found - self.measured[number]) / self.weights[number])
+
+    def jacobian(self, u: Array) -> Array:
+        """Derivatives of the residuals by the codes."""
+        values = self.numbers.values(u)
+        rates, blocks = self.numbers.rates(values), []
+        for number, function in enumerate(self.functions):
+            places = self.numbers.places(number)
+            block = np.zeros((len(self.measured[number]), len(u)))
+            self.points += 1
+            try:
+                matrix = function.jacobian(values[places])
+                block[:, places] = matrix * rates[places] / self.weights[number][:, None]
+            except (NoGradient, ModelError) as why:
+                self.fallen += [str(problem) for problem in why.problems[:1]]
+                block[:, places] = self.differences(number, u)
+            blocks.append(block)
+        return np.concatenate(blocks)
+
+    def differences(self, number: int, u: Array) -> Array:
+        """The same of a record by differences of runs, central inside the bounds and one-sided at them."""
+        found = []
+        for place in self.numbers.places(number):
+            step = STEP * max(self.numbers.scales[place], 0.0 if self.numbers.items[place].is_log else abs(u[place]))
+            above, below = u.copy(), u.copy()
+            above[place] = min(u[place] + step, self.upper[place])
+            below[place] = max(u[place] - step, self.lower[place])
+            ends = [self._residuals(number, self.numbers.values(one)) for one in (above, below)]
+            here = self._residuals(number, self.numbers.values(u)) if np.any(np.isnan(ends)) else ends[0]
+            # beside what a driveline refuses one side is there
+            for side, codes in enumerate((above, below)):
+                if np.any(np.isnan(ends[side])):
+                    ends[side], codes[place] = here, u[place]
+            found.append((ends[0] - ends[1]) / ((above[place] - below[place]) or 1.0))
+        return np.array(found).T
+
+    # ---------------------------------------------------------------------------------------------------------- search
+
+    def solve(self, starts: int) -> list[Ended]:
+        """Where the searches from several starts ended, the best one first."""
+        ended = [self._solved(u) for u in self._starts(starts)]
+        return sorted((one for one in ended if one is not None), key=lambda one: one.squares)
+
+    def _starts(self, count: int) -> list[Array]:
+        first = np.clip(self.numbers.codes(), self.lower, self.upper)
+        self._refuse_dead(first)
+        if count < 2:
+            return [first]
+        cube = scipy("stats.qmc").LatinHypercube(len(first), seed=SEED).random(count - 1)
+        reach = SPREAD * self.numbers.scales
+        low, high = np.maximum(first - reach, self.lower), np.minimum(first + reach, self.upper)
+        return [first, *(low + cube * (high - low))]
+
+    def _refuse_dead(self, u: Array) -> None:
+        """Refuse start values whose runs stop early."""
+        values = self.numbers.values(u)
+        for number, (record, function) in enumerate(zip(self.records, self.functions, strict=True)):
+            x = values[self.numbers.places(number)]
+            if not np.all(np.isfinite(function(x))):
+                remedy = "start with values whose run reaches the last sample"
+                raise FitError(f"the run of {record.label}", "ends early with the start values", remedy)
+
+    def _solved(self, u: Array) -> Ended | None:
+        if not np.all(np.isfinite(self.residuals(u))):
+            return None
+        stay, start = self._stay(), self.numbers.codes()
+        found = scipy("optimize").least_squares(
+            lambda u: np.append(self.residuals(u), stay * (u - start)),
+            u,
+            jac=lambda u: np.vstack([self.jacobian(u), np.diag(stay)]),
+            bounds=(self.lower, self.upper),
+            x_scale="jac",
+            xtol=1e-10,
+            ftol=1e-12,
+        )
+        return Ended(found.x, float(np.sum(self.residuals(found.x) ** 2)), found.status > 0)
+
+    def _stay(self) -> Array:
+        """Weights of staying at the start values, which alone decide what the samples leave open."""
+        whole = np.sqrt(sum(float(np.sum((m / w) ** 2)) for m, w in zip(self.measured, self.weights, strict=True)))
+        fixed = np.array([item.is_log or item.start != 0.0 for item in self.numbers.items])
+        return np.where(fixed, STAY * float(whole) / self.numbers.scales, 0.0)
+
+
+def _function(record: Driven, by: Sequence[str]) -> Differentiable:
+    """The measured signals of a record at their instants."""
+    outputs = {
+        f"{one.signal} of {number}": AtTimes(one.signal, tuple(one.times.tolist()))
+        for number, one in enumerate(record.traces)
+    }
+    return made(record.system, outputs, by, record.t_end, record.options, None)

@@ -1,0 +1,149 @@
+"""Numbers of a driveline that are searched for: those of all records, and those that each record has for itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import inf, nextafter
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UseError, near
+from clutchwork.fit.failure import FitError, refuse
+from clutchwork.fit.unknown import Bounds, Pair, Unknown
+from clutchwork.gradients.parameters import ENTRY, Parameter, parameters
+from clutchwork.model.changes import all_names, named, target
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.fit.driven import Driven
+
+Array = NDArray[np.float64]
+
+# how far the search goes from a start value above zero where no bounds are given, as a factor
+REACH = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class Numbers:
+    """What is searched for, and which of it each record has."""
+
+    items: tuple[Unknown, ...]
+    shared: int  # the first ones, of all records
+    by: tuple[str, ...]  # names in one record: shared ones, then its own
+    scales: Array  # what a change of each code is measured in
+
+    def places(self, record: int) -> NDArray[np.intp]:
+        """Places of the numbers of a record among all."""
+        own = len(self.by) - self.shared
+        first = self.shared + record * own
+        return np.array([*range(self.shared), *range(first, first + own)], dtype=np.intp)
+
+    def values(self, u: Array) -> Array:
+        """Codes -> numbers."""
+        return np.array([item.decoded(float(code)) for item, code in zip(self.items, u, strict=True)])
+
+    def codes(self) -> Array:
+        """Codes of the start values."""
+        return np.array([item.coded(item.start) for item in self.items])
+
+    def ends(self) -> tuple[Array, Array]:
+        """Ends of the search, as codes."""
+        lower = [item.coded(item.lower) for item in self.items]
+        return np.array(lower), np.array([item.coded(item.upper) for item in self.items])
+
+    def rates(self, values: Array) -> Array:
+        """Derivatives of the numbers by their codes."""
+        return np.where([item.is_log for item in self.items], values, 1.0)
+
+
+def numbers(records: Sequence[Driven], free: Sequence[str], own: Sequence[str], bounds: Bounds) -> Numbers:
+    """The free numbers with their bounds; FitError names all that cannot be searched for."""
+    shared, problems = [name for name in free if name not in own], list[FitError]()
+    found, count = _found(records, shared, own)
+    made = [_item(one, one.name, bounds, problems) for one in found[0][:count]]
+    for record, all_of in zip(records, found, strict=True):
+        of = f" ({record.label})" if len(records) > 1 else ""
+        made += [_item(one, f"{one.name}{of}", bounds, problems) for one in all_of[count:]]
+    known = {key for one in found[0] for key in _keys(one.name)}
+    told = ((name, f"are given for {name!r}, which is not free{near(name, known)}") for name in bounds)
+    problems += [FitError("bounds", what, "free it, or take them out") for name, what in told if name not in known]
+    samples = sum(len(one.times) for record in records for one in record.traces)
+    if samples <= len(made):
+        problems.append(FitError("samples", f"are {samples} for {len(made)} numbers", "record more of them"))
+    refuse(problems)
+    scales = [one.scale for one in (*found[0][:count], *(one for all_of in found for one in all_of[count:]))]
+    sizes = np.array([1.0 if item.is_log else size for item, size in zip(made, scales, strict=True)])
+    return Numbers(tuple(made), count, tuple(one.name for one in found[0]), sizes)
+
+
+def _found(records: Sequence[Driven], shared: Sequence[str], own: Sequence[str]) -> tuple[list[list[Parameter]], int]:
+    """The numbers of each record, and how many of them all have in common."""
+    refuse(list(_unknown(records[0].system, [*shared, *own])))
+    try:
+        count = len(parameters(records[0].system, shared)) if shared else 0
+        return [list(parameters(one.system, [*shared, *own])) for one in records], count
+    except UseError as error:
+        told = (text.partition("; ") for text in error.problems)
+        refuse([FitError("free", what, remedy or "name another number") for what, _, remedy in told])
+        raise
+
+
+def _unknown(system: System, names: Sequence[str]) -> Iterator[FitError]:
+    """Names that lead nowhere."""
+    if system.source is None:
+        return
+    owners, known = named(system.source), list(all_names(system.source))
+    for name in names:
+        parts = ENTRY.fullmatch(name) if isinstance(name, str) else None
+        if target(owners, name) is None and (parts is None or target(owners, parts[1]) is None):
+            words = name.split(".") if isinstance(name, str) else []
+            is_there = any(".".join(words[:cut]) in owners for cut in range(1, len(words)))
+            like = near(name, known) if is_there else near(words[0] if words else "", owners)
+            yield FitError("free", f"has no {name!r}{like}", 'name a number of an element, "c1.gain"')
+
+
+def _keys(name: str) -> list[str]:
+    """What bounds of a number may be given under: its name, or that of all entries of its table."""
+    parts = ENTRY.fullmatch(name)
+    return [name, f"{parts[1]}.{parts[2]}"] if parts else [name]
+
+
+def _item(one: Parameter, name: str, bounds: Bounds, problems: list[FitError]) -> Unknown:
+    given = next((bounds[key] for key in _keys(one.name) if key in bounds), (None, None))
+    try:
+        return _made(one, name, given)
+    except FitError as error:
+        problems.append(error)
+        return replace(_made(one, name, (None, None)), start=one.start)
+
+
+def _made(one: Parameter, name: str, given: Pair) -> Unknown:
+    """A number that is searched for, by its logarithm where it is above zero and must not fall below."""
+    try:
+        low, high = (None if end is None else float(end) for end in given)
+    except (TypeError, ValueError):
+        raise FitError("bounds", f"of {name} are {given!r}", "give a pair: (lower, upper)") from None
+    is_given = low is not None or high is not None
+    lowest = max(one.lower, -inf if low is None else low)
+    highest = min(one.upper, inf if high is None else high)
+    lower, upper = lowest, highest
+    if one.start > 0.0 and lowest >= 0.0 and low != 0.0:
+        lower, upper = max(lowest, one.start / REACH), min(highest, one.start * REACH)
+        lower, upper = lower if low is None else lowest, upper if high is None else highest
+    inside = lower < one.start < upper if is_given else lower <= one.start <= upper
+    if not inside:
+        fault = f"of {name} are {lowest:g} to {highest:g} [{one.unit}], its start value is {one.start:g}"
+        raise FitError("bounds", fault, "start between them")
+    words = f"{lowest:g} to {highest:g}" if is_given else _declared(one)
+    return Unknown(name, one.unit, one.start, words, lower, upper, lowest, highest, one.field)
+
+
+def _declared(one: Parameter) -> str:
+    """Bounds of the declaration in words."""
+    if one.upper < inf:
+        return f"{one.lower:g} to {one.upper:g}"
+    return "> 0" if one.lower == nextafter(0.0, inf) else f">= {one.lower:g}"

@@ -1,0 +1,164 @@
+"""Fit numbers of a driveline to several measured records at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.system import System
+from clutchwork.base.errors import ModelError
+from clutchwork.base.text import counted
+from clutchwork.fit.descent import Descent, Ended
+from clutchwork.fit.determined import known
+from clutchwork.fit.driven import Driven, driven
+from clutchwork.fit.failure import FitError, refuse
+from clutchwork.fit.followed import Followed
+from clutchwork.fit.numbers import Numbers, numbers
+from clutchwork.fit.record import Record
+from clutchwork.fit.response_result import ResponseFit
+from clutchwork.gradients.parameters import changes, parameters
+
+if TYPE_CHECKING:
+    from clutchwork.fit.unknown import Pair
+    from clutchwork.run.simulation import Assembles
+
+Array = NDArray[np.float64]
+
+# sums of squares that differ by less, of themselves, are those of one solution
+SAME = 1e-3
+# how far is looked whether better values are refused, of the scale of a code
+BESIDE = 1e-3
+
+
+def fit_records(
+    model: Assembles | System,
+    records: Sequence[Record] | Record,
+    free: Sequence[str],
+    *,
+    own: Sequence[str] = (),
+    bounds: Mapping[str, Pair] | None = None,
+    confidence: float = 0.95,
+    starts: int = 1,
+) -> ResponseFit:
+    """Bounded least squares of measured records over numbers of a driveline; see docs/guide/fit.md.
+
+    Parameters: model, a Driveline or a System with the start values; records, one or several; free, names of numbers
+    that all records have in common, as in `cw.differentiable`: "c1.gain", "engine.speed", "c1.friction.kinetic",
+    "c1.pressure.values" for all ordinates of a table, "c1.pressure.times[3]" for the time of its third knot; own, names
+    of numbers that each record has for itself, such as initial values; bounds, {name: (lower, upper)}, by default those
+    of the declaration, and a factor of 1000 either way for numbers that stay above zero; confidence of the intervals;
+    starts, searches from other start values too, up to a factor e away, of which the best one counts.
+
+    Derivatives are those of `cw.differentiable`, exact through locking and breaking away. Numbers that the samples do
+    not determine are not an error: the result reports them. FitError reports all that is wrong with the input.
+    """
+    listed = [records] if isinstance(records, Record) else list(records)
+    names, owned, problems = list(dict.fromkeys(free)), list(dict.fromkeys(own)), list[FitError]()
+    if not listed:
+        raise FitError("records", "are empty", "give at least one Record")
+    if not 0.0 < confidence < 1.0:
+        problems.append(FitError("confidence", f"is {confidence!r}", "give a number between 0 and 1, such as 0.95"))
+    if not (names or owned):
+        problems.append(FitError("free", "is empty", "give at least one name"))
+    for number, record in enumerate(listed):
+        problems += _taken(record, number, names, owned)
+    refuse(problems)
+    system = model if isinstance(model, System) else model.assemble()
+    found = driven(system, listed, problems)
+    refuse(problems)
+    return _solved(found, numbers(found, names, owned, bounds or {}), confidence, starts)
+
+
+def _taken(record: Record, number: int, free: Sequence[str], own: Sequence[str]) -> list[FitError]:
+    """Numbers that are free, and given by a record too."""
+    of, made = record.name or f"record {number + 1}", []
+    for name in [*free, *own]:
+        stem = next((one for one in record.inputs if name == one or str(name).startswith(f"{one}.")), "")
+        if stem:
+            told = f"is free, and {of} drives {stem}"
+            made.append(FitError(str(name), told, "take it out of free, or out of inputs"))
+        elif name in record.start and name not in own:
+            remedy = f"give own=[{name!r}], or take it out of start"
+            made.append(FitError(str(name), f"is free, and {of} sets it", remedy))
+    return made
+
+
+def _solved(records: Sequence[Driven], searched: Numbers, confidence: float, starts: int) -> ResponseFit:
+    descent = Descent(records, searched)
+    ended = descent.solve(starts)
+    best = ended[0]
+    what = known(descent, best.u, confidence)
+    values = searched.values(best.u)
+    followed = tuple(_followed(record, searched, values[searched.places(k)]) for k, record in enumerate(records))
+    return ResponseFit(
+        parameters=what.parameters,
+        values=_changes(records[0], searched.by[: searched.shared], values[: searched.shared]),
+        records=followed,
+        rms=_rms(followed),
+        r2=_share(descent, best.squares),
+        confidence=confidence,
+        converged=best.converged,
+        correlation=what.correlation,
+        alike=what.alike,
+        remarks=tuple(_remarks(descent, ended, starts)),
+    )
+
+
+def _changes(record: Driven, names: Sequence[str], values: Array) -> dict[str, object]:
+    """Values as `System.changed` takes them: entries of a table in the whole table."""
+    return changes(record.system, parameters(record.system, names), values) if len(names) else {}
+
+
+def _followed(record: Driven, searched: Numbers, values: Array) -> Followed:
+    made = _changes(record, searched.by, values)
+    return Followed(record.label, record.traces, record.run(made), made)
+
+
+def _rms(records: Sequence[Followed]) -> dict[str, float]:
+    rows = dict[str, list[Array]]()
+    for record in records:
+        for one in record.traces:
+            rows.setdefault(one.signal, []).append(record.residuals(one))
+    return {name: float(np.sqrt(np.mean(np.concatenate(of) ** 2))) for name, of in rows.items()}
+
+
+def _share(descent: Descent, squares: float) -> float:
+    """Share of the variation of the samples that the runs describe."""
+    rows = dict[str, list[tuple[Array, Array]]]()
+    for one in descent.traces:
+        size = np.full(len(one.times), descent.sizes[one.signal]) if one.deviation is None else one.deviation
+        rows.setdefault(one.signal, []).append((one.values, size))
+    variation = 0.0
+    for of in rows.values():
+        values, sizes = (np.concatenate(part) for part in zip(*of, strict=True))
+        variation += float(np.sum(((values - np.mean(values)) / sizes) ** 2))
+    return 1.0 - squares / variation if variation > 0.0 else float("nan")
+
+
+def _remarks(descent: Descent, ended: Sequence[Ended], starts: int) -> list[str]:
+    """How the search went."""
+    made = []
+    if descent.fallen:
+        count = f"at {len(descent.fallen)} of {descent.points} points of the search"
+        made.append(f"{count} derivatives are differences of runs: {descent.fallen[0]}")
+    if starts > 1:
+        alike = sum(one.squares <= ended[0].squares * (1.0 + SAME) for one in ended)
+        made.append(f"{alike} of {counted(starts, 'starts')} end at these values")
+    return made + _held(descent, ended[0].u)
+
+
+def _held(descent: Descent, u: Array) -> list[str]:
+    """Whether the driveline refuses values beside the solution, so that the search could not go on."""
+    step = -np.linalg.lstsq(descent.jacobian(u), descent.residuals(u), rcond=1e-6)[0]
+    longest = float(np.max(np.abs(step / descent.numbers.scales)))
+    beside = np.clip(u + BESIDE * step / max(longest, BESIDE), descent.lower, descent.upper)
+    values = descent.numbers.values(beside)
+    for number, function in enumerate(descent.functions):
+        try:
+            function(values[descent.numbers.places(number)])
+        except ModelError as error:
+            return [f"the driveline refuses better values: {error.problems[0]}"]
+    return []
