@@ -14,12 +14,10 @@ from clutchwork.base.errors import UseError, near
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained, explained_methods
-from clutchwork.declare.core import core
 from clutchwork.declare.options import Options
-from clutchwork.gradients.differences import Differences
-from clutchwork.gradients.engine import Engine, Found, Task
 from clutchwork.gradients.exact import Exact
 from clutchwork.gradients.parameters import parameters
+from clutchwork.gradients.task import Found, Task
 from clutchwork.results.channels import channels
 from clutchwork.results.gradient import Gradient
 from clutchwork.run.control import controllers
@@ -49,7 +47,7 @@ class Differentiable:
     """
 
     task: Task = field(repr=False)
-    engine: Engine = field(repr=False)
+    engine: Exact = field(repr=False)
     of: tuple[str, ...]
     by: tuple[str, ...]
     of_units: tuple[str, ...]  # SI
@@ -216,8 +214,7 @@ def made(
     of, units = zip(*labels, strict=True)
     task = Task(system, outputs, chosen, t_end, options, threads_of(threads), of)
     by_units = tuple(one.unit for one in chosen)
-    engine: Engine = Exact(task) if hasattr(core(), "tangents") else Differences(task)
-    return Differentiable(task, engine, of, tuple(one.name for one in chosen), units, by_units)
+    return Differentiable(task, Exact(task), of, tuple(one.name for one in chosen), units, by_units)
 
 
 def _labels(name: str, one: Output) -> list[str]:

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.gradients.engine import Found, Task
 from clutchwork.gradients.grazing import crowded, decided, noted, refused, together
 from clutchwork.gradients.measures import Asked, Measure, measures
+from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.runs import Run, Runs
-from clutchwork.gradients.traces import are_traces, at_events, traces, traces_of
+from clutchwork.gradients.task import Found, Task
+from clutchwork.gradients.traces import are_traces, at_events, at_knots, traces, traces_of
 from clutchwork.results.gradient import NoGradient
 from clutchwork.sweeps.outputs import Integral
 
@@ -70,6 +71,7 @@ class Exact:
         """The same of signals at instants alone."""
         run, outputs = self.runs.forward(self.runs.point(x)), self.task.outputs.values()
         met = [_moving(name, time) for name, time in at_events(run, outputs)]
+        met += [_at_moving_knot(name, time) for name, time in at_knots(run, outputs)]
         _refuse([*met, *self._not_there(x, run, max(one.times[-1] for one in traces_of(outputs)))])
         return Found(*traces(run, outputs), self._notes(run))
 
@@ -127,6 +129,9 @@ class Exact:
                 yield f"{name} does not happen before {run.primal.t_end:g} s; take one that does, or a later end time"
             elif one.at is not None:
                 yield from _at_event(name, one.at, run)
+                yield from _at_knot(name, one, run.primal)
+            for time in one.kinks:
+                yield f"{name} has a kink at {time:.9g} s, where knots meet or the run begins or ends; move a knot"
         yield from self._not_there(x, run, max((one.until for one in found), default=0.0))
 
     def _not_there(self, x: Array, run: Run, until: float) -> Iterator[str]:
@@ -155,12 +160,23 @@ def _moving(name: str, time: float) -> str:
     return f"{name} is asked for at the instant of an event, {time:.9g} s, which moves; ask before or behind it"
 
 
+def _at_knot(name: str, one: Measure, primal: Primal) -> Iterator[str]:
+    """An instant that is asked for and is that of a knot that moves, where the value bends or jumps with it."""
+    time = float(one.at or 0.0)
+    if any(primal.bends_at(columns, np.array([time]))[0] for columns in one.changes[0].columns):
+        yield _at_moving_knot(name, time)
+
+
+def _at_moving_knot(name: str, time: float) -> str:
+    return f"{name} is asked for at a knot that moves, {time:.9g} s; ask before or behind it"
+
+
 def _several(name: str, one: Measure, lines: Array, sizes: Array) -> Iterator[str]:
     """Equal extremes whose derivatives differ.
 
     Parameters: sizes, by which numbers are compared.
     """
-    allowed = ALIKE * (np.abs(lines).max(axis=0, initial=0.0) + abs(one.value) / sizes)
+    allowed = ALIKE * (np.abs(lines).max(axis=0, initial=0.0) + one.size / sizes)
     for line, when in zip(lines[1:], one.when[1:], strict=False):
         if np.any(np.abs(line - lines[0]) > allowed):
             remedy = "move a number so that one of them is the only one"

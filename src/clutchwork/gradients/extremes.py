@@ -35,6 +35,11 @@ class Found(NamedTuple):
     share: float
     sign: float
 
+    @property
+    def begins(self) -> int | None:
+        """The step that begins there; None inside of a step."""
+        return self.step + int(self.share == 1.0) if self.share in (0.0, 1.0) else None
+
     def time(self, steps: Steps) -> float:
         """Its instant [s]."""
         return float(steps.begin[self.step] + self.share * steps.length[self.step])
@@ -94,13 +99,19 @@ def value(one: Extreme, found: list[Found]) -> float:
     return float("nan") if not found else -found[0].value if one.kind == "minimum" else found[0].value
 
 
+def kinks(primal: Primal, found: list[Found]) -> tuple[float, ...]:
+    """Instants of extremes at which knots meet [s], but for the ends of the run, which stay."""
+    there = {one.begins for one in found} - {0, len(primal.steps), None}
+    return tuple(time for time, place in primal.meets if place in there)
+
+
 def add_extreme(primal: Primal, one: Extreme, found: Found, into: Functional) -> None:
     """How an extreme changes: the signal at its instant, and that instant where it is that of an event."""
     steps, sign = primal.steps, 1.0 if one.kind == "minimum" else found.sign
     weights = sign * steps.at(found.step, found.share)
     add_signal(primal, one.signal, steps.rows[found.step], weights, into)
-    end = found.step + (found.share == 1.0)
-    if found.share not in (0.0, 1.0) or not 0 < end < len(steps) or primal.between[0][end] == SMOOTH:
+    end = found.begins
+    if end is None or not 0 < end < len(steps) or primal.between[0][end] == SMOOTH:
         return
     slopes = steps.left_slope if found.share == 0.0 else steps.right_slope
     rate = float(slopes[found.step] @ signal_at(primal, one.signal, steps.rows[found.step]))

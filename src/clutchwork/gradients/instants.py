@@ -29,15 +29,15 @@ def _add_kink(primal: Primal, step: int, share: float, into: Functional) -> None
     """The same of a piece of a law or a table, by what it bends: a speed, else an acceleration of some shaft."""
     steps = primal.steps
     before, behind = steps.rows[step - 1], steps.rows[step]
-    acceleration = primal.rows[:, primal.accelerations]
+    acceleration = primal.rows[:, primal.columns["acceleration"]]
     jumps = steps.right[step - 1] @ acceleration[before], steps.left[step] @ acceleration[behind]
     bends = steps.right_slope[step - 1] @ acceleration[before], steps.left_slope[step] @ acceleration[behind]
     both = np.concatenate([acceleration[before], acceleration[behind]])
     # what is small beside it in the same steps is what polynomials miss
     sizes = np.abs(both).max(axis=0), np.abs(both).max(axis=0) / float(steps.length[step - 1 : step + 1].max())
     for first, (left, right), size, least in (
-        (primal.speeds, jumps, sizes[0], JUMP),
-        (primal.accelerations, bends, np.maximum(sizes[1], np.abs(bends).max(axis=0)), BEND),
+        (primal.columns["speed"], jumps, sizes[0], JUMP),
+        (primal.columns["acceleration"], bends, np.maximum(sizes[1], np.abs(bends).max(axis=0)), BEND),
     ):
         rise = left - right
         relative = np.abs(rise) / np.maximum(size, 1e-9 * max(float(size.max(initial=0.0)), 1e-300))

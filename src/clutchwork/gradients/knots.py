@@ -19,27 +19,43 @@ Array = NDArray[np.float64]
 MOST_REPEATS = 100_000
 
 
+# knots that are as close are at one instant, and derivatives of instants that are as alike move together
+ONE_INSTANT, ALIKE = 1e-12, 1e-9
+
+
 def knots(chart: Chart, words: Array, slopes: Slopes, begin: float, end: float) -> Knots:
-    """All that move, up to the end of a run."""
+    """All that move, up to the end of a run, and where they meet others."""
     system, starts = chart.assembled.system, chart.assembled.structure.layout.starts
     first, at_period = starts["segment_time"] // 8, starts["input_period"] // 8
     periods = at_period + np.arange(len(system.arrays["input_period"]))
+    width = slopes.matrix.shape[1]
     free, known = _moving(slopes, first, len(system.arrays["segment_time"])), slopes.places
     if not len(free) and not np.any(np.isin(periods, known)):
-        return Knots(np.zeros(0), np.zeros((0, slopes.matrix.shape[1])))
-    times, moved = list[float](), list[Array]()
+        return Knots(np.zeros(0), np.zeros((0, width)), np.zeros(0))
+    times, moved = [np.zeros(0)], [np.zeros((0, width))]
     for number, (segment, count) in enumerate(_segments(system)):
         period, by_period = float(words[at_period + number]), _of(slopes, at_period + number)
         for word in range(first + segment, first + segment + count):
-            by_time = _of(slopes, word)
-            if not np.any(by_time) and not np.any(by_period):
-                continue
             repeats = int(min(MOST_REPEATS, max(0.0, (end - words[word]) // period))) if period > 0.0 else 0
-            there = float(words[word]) + np.arange(repeats + 1) * period
-            for repeat in np.flatnonzero((begin < there) & (there < end)).tolist():
-                times.append(float(there[repeat]))
-                moved.append(by_time + repeat * by_period)
-    return Knots(np.array(times), np.array(moved).reshape(len(times), slopes.matrix.shape[1]))
+            cycles = np.arange(repeats + 1.0)
+            times.append(float(words[word]) + cycles * period)
+            moved.append(_of(slopes, word) + cycles[:, None] * by_period)
+    return _met(np.concatenate(times), np.concatenate(moved), begin, end)
+
+
+def _met(times: Array, moved: Array, begin: float, end: float) -> Knots:
+    """Knots that move inside of a run, from all that there are."""
+    order = np.argsort(times, kind="stable")
+    times, moved = times[order], moved[order]
+    moves: NDArray[np.bool_] = np.any(moved != 0.0, axis=1)
+    room = ONE_INSTANT * (1.0 + np.abs(times))
+    at_ends = moves & ((np.abs(times - begin) <= room) | (np.abs(times - end) <= room))
+    close = np.flatnonzero((np.diff(times) <= room[1:]) & (moves[1:] | moves[:-1]))
+    apart = np.abs(moved[close + 1] - moved[close]).max(axis=1, initial=0.0)
+    meeting = close[apart > ALIKE * np.abs(moved[close]).max(axis=1, initial=0.0)]
+    meets = np.unique(np.concatenate([times[at_ends], times[meeting]]))
+    inside = moves & (begin < times) & (times < end)
+    return Knots(times[inside], moved[inside], meets[(begin - room.max() <= meets) & (meets <= end + room.max())])
 
 
 def _moving(slopes: Slopes, first: int, count: int) -> NDArray[np.int64]:

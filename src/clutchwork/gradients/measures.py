@@ -29,6 +29,8 @@ class Measure(NamedTuple):
     until: float  # s
     when: tuple[float, ...] = ()  # s, where the extremes are
     at: float | None = None  # s, an instant that is asked for
+    kinks: tuple[float, ...] = ()  # s, where knots meet that it depends on
+    size: float = 0.0  # of the signal whose extreme it is
 
 
 class Asked(NamedTuple):
@@ -95,17 +97,25 @@ def _when(primal: Primal, one: When, asked: Asked) -> Measure:
 
 
 def _extreme(primal: Primal, one: Extreme) -> Measure:
-    steps = primal.steps
-    found = extremes.apart(primal, extremes.candidates(one, steps, signal_at(primal, one.signal, steps.rows)))
+    steps, values = primal.steps, signal_at(primal, one.signal, primal.steps.rows)
+    found = extremes.apart(primal, extremes.candidates(one, steps, values))
     changes = list[Functional]()
     for place in found:
         changes.append(primal.functional())
         extremes.add_extreme(primal, one, place, changes[-1])
     when = tuple(place.time(steps) for place in found)
-    return Measure(extremes.value(one, found), tuple(changes), max(when, default=primal.t_end), when)
+    return Measure(
+        value=extremes.value(one, found),
+        changes=tuple(changes),
+        until=max(when, default=primal.t_end),
+        when=when,
+        kinks=extremes.kinks(primal, found),
+        size=float(np.abs(values).max(initial=0.0)),
+    )
 
 
 def _jerk(primal: Primal, one: SquaredJerk) -> Measure:
     into, acceleration = primal.functional(), signal_at(primal, one.signal, primal.steps.rows)
     jerk.add_jerk(primal, one.signal, acceleration, into)
-    return Measure(jerk.value(primal.steps, acceleration), (into,), primal.t_end)
+    value, kinks = jerk.value(primal.steps, acceleration), jerk.kinks(primal, acceleration)
+    return Measure(value, (into,), primal.t_end, kinks=kinks)

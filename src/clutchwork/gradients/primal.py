@@ -19,6 +19,12 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
 
+# parts of a row whose rates do not jump where torques bend
+INTEGRATED = (
+    *("speed", "angle", "state", "element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy"),
+)
+# instants that are as close are one, of a second or of their size
+SAME = 1e-12
 # kinds of what is between two steps
 SMOOTH, EVENT, KNOT, KINK = range(4)
 
@@ -29,6 +35,7 @@ class Knots:
 
     times: Array  # s
     moved: Array  # a line for each knot
+    meets: Array  # s, where one meets another that moves otherwise, or an end of the run
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +51,7 @@ class Primal:
     forms: Mapping[str, Form]  # of the signals that are asked for
     bent: Mapping[str, Array]  # derivatives of signals in all rows by numbers that are in their forms
     numbers: int  # by which is differentiated
-    speeds: slice  # of all shafts, in a row
-    accelerations: slice
+    columns: Mapping[str, slice]  # parts of a row
     t_end: float  # s
 
     def functional(self) -> Functional:
@@ -55,6 +61,24 @@ class Primal:
     def row(self, time: float) -> int:
         """The row of an instant."""
         return int(np.searchsorted(self.times, time))
+
+    @cached_property
+    def is_smooth(self) -> NDArray[np.bool_]:
+        """Which numbers of a row are integrals."""
+        found = np.zeros(max(part.stop for part in self.columns.values()), dtype=bool)
+        for name in INTEGRATED:
+            found[self.columns[name]] = True
+        return found
+
+    def bends_at(self, columns: Places, times: Array) -> NDArray[np.bool_]:
+        """Whether numbers of a row bend or jump at some instants with a knot that moves."""
+        knots = np.r_[self.knots.times, self.knots.meets]
+        jumps = self.grazes[self.grazes[:, 1] < 0, 0]
+        # speeds and energies follow torques that bend, but do not bend with them
+        met = np.intersect1d(knots, jumps) if np.all(self.is_smooth[columns]) else knots
+        room = SAME * (1.0 + np.abs(times))
+        found: NDArray[np.bool_] = np.any(np.abs(times[:, None] - met) <= room[:, None], axis=1)
+        return found
 
     # ----------------------------------------------------------------------------------------------- between two steps
 
@@ -70,6 +94,12 @@ class Primal:
             if place > 0:
                 kinds[place], which[place] = kind, number
         return kinds, which
+
+    @cached_property
+    def meets(self) -> list[tuple[float, int]]:
+        """Instants at which knots meet others that move otherwise [s], and the steps that begin there."""
+        ends = np.r_[self.steps.begin, self.steps.end[-1:]]
+        return [(float(time), int(np.argmin(np.abs(ends - time)))) for time in self.knots.meets] if len(ends) else []
 
     def _nearest(self, time: float) -> int:
         """The step that begins nearest to an instant."""

@@ -14,7 +14,6 @@ from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import core
 from clutchwork.declare.status import DONE, INTERRUPTED
 from clutchwork.gradients.chart import Slopes
-from clutchwork.gradients.engine import Task
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
 from clutchwork.gradients.plain import Plain
@@ -22,6 +21,7 @@ from clutchwork.gradients.pressing import at_rest
 from clutchwork.gradients.primal import Knots, Primal
 from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import Steps
+from clutchwork.gradients.task import Task
 from clutchwork.gradients.words import Words
 from clutchwork.results.gradient import NoGradient
 from clutchwork.run.simulation import told
@@ -120,7 +120,7 @@ class Runs:
     def taped(self, point: Point) -> Run:
         """A run that is followed back from each result; forward where there is no memory for it."""
         places = point.slopes.places.astype(np.int64)
-        for size in TAPES if hasattr(core(), "Adjoint") else ():
+        for size in TAPES:
             tape = core().Adjoint(
                 point.system, places, point.grid, self.wanted.t_end, list(self._options.items()), self._size, size
             )
@@ -155,7 +155,6 @@ class Runs:
         return self._with_grid(point._replace(steps=point.steps.moved(point.events, events), events=events))
 
     def _primal(self, point: Point, rows: Array, events: Array, grazes: Array) -> Primal:
-        columns = wiring(self.task.system).columns
         return Primal(
             times=point.grid,
             rows=rows,
@@ -166,8 +165,7 @@ class Runs:
             forms=self.signals.at(point.x),
             bent=self.signals.bent(point.x, rows),
             numbers=len(point.x),
-            speeds=columns["speed"],
-            accelerations=columns["acceleration"],
+            columns=wiring(self.task.system).columns,
             t_end=self.wanted.t_end,
         )
 

@@ -8,14 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.gradients.forms import weights
+from clutchwork.gradients.primal import SAME
 from clutchwork.gradients.runs import Run
 from clutchwork.gradients.signals import signal_at
 from clutchwork.sweeps.outputs import AtTimes, Output
 
 Array = NDArray[np.float64]
-
-# instants are those of an event where they differ by less, of a second or of their size
-SAME = 1e-12
 
 
 def traces_of(outputs: Iterable[Output]) -> list[AtTimes]:
@@ -54,3 +52,13 @@ def at_events(run: Run, outputs: Iterable[Output]) -> Iterator[tuple[str, float]
         moves.add_event(number, 1.0)
         if met and np.any(run.slope(moves)):
             yield from ((f"{name} at {time:.12g} s", time) for name in met)
+
+
+def at_knots(run: Run, outputs: Iterable[Output]) -> Iterator[tuple[str, float]]:
+    """Signals that bend with a knot that moves and are asked for at its instant [s], each with that."""
+    primal = run.primal
+    for one in traces_of(outputs):
+        times = np.array(one.times)
+        columns = weights(primal.forms[one.signal], primal.rows[:1]).columns
+        for time in times[primal.bends_at(columns, times)].tolist():
+            yield f"{one.signal} at {time:.12g} s", time

@@ -265,6 +265,43 @@ CLUTCHWORK_INLINE void input_slopes_at(Workspace<T>& ws, double t) {
   }
 }
 
+/// A signal on both sides of the knot that the run has reached.
+struct Turn {
+  double before, after;              ///< values
+  double slope_before, slope_after;  ///< [1/s]
+
+  bool jumps() const { return abs(after - before) > 1e-12 * (abs(after) + abs(before)); }
+  bool bends() const { return abs(slope_after - slope_before) > 1e-12 * (abs(slope_after) + abs(slope_before)); }
+};
+
+/// Whether the run is at a knot of signal i that was not passed yet.
+template <class T>
+bool is_turning(const Workspace<T>& ws, int i) {
+  return value(ws.in.signal[i].knot) <= ws.time && !is_held(ws, i);
+}
+
+/// What signal i does at its knot.
+template <class T>
+Turn turn_of(Workspace<T>& ws, int i) {
+  auto& signal = ws.in.signal[i];
+  Turn turn;
+  turn.before = value(signal_value(ws, i, ws.time)), turn.slope_before = value(signal_slope(ws, i, ws.time));
+  const auto present = signal;
+  seek(ws, i, ws.time);
+  turn.after = value(signal_value(ws, i, ws.time)), turn.slope_after = value(signal_slope(ws, i, ws.time));
+  signal = present;
+  return turn;
+}
+
+/// Whether any signal jumps at the knot that the run has reached.
+template <class T>
+bool any_jumps(Workspace<T>& ws) {
+  for (int i = 0; i < ws.sys.inputs; ++i) {
+    if (is_turning(ws, i) && turn_of(ws, i).jumps()) return true;
+  }
+  return false;
+}
+
 /// The prescribed speeds before they jump.
 template <class T>
 void keep_prescribed(Workspace<T>& ws) {

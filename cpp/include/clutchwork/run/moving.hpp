@@ -274,17 +274,10 @@ T knot_shift(Workspace<T>& ws) {
     return found;
   };
   for (int i = 0; i < ws.sys.inputs; ++i) {
-    auto& signal = ws.in.signal[i];
-    if (!(value(signal.knot) <= ws.time) || is_held(ws, i)) continue;
-    const T knot = without_value(signal.knot);
-    const double before = value(signal_value(ws, i, ws.time)), slope = value(signal_slope(ws, i, ws.time));
-    auto next = signal;
-    seek(ws, i, ws.time);
-    const double after = value(signal_value(ws, i, ws.time)), next_slope = value(signal_slope(ws, i, ws.time));
-    const bool jumps = abs(after - before) > 1e-12 * (abs(after) + abs(before));
-    const bool bends = is_prescribed(i) && abs(next_slope - slope) > 1e-12 * (abs(next_slope) + abs(slope));
-    const int own = jumps ? 3 : bends ? 2 : is_zero(knot) ? 0 : 1;
-    signal = next;
+    if (!is_turning(ws, i)) continue;
+    const T knot = without_value(ws.in.signal[i].knot);
+    const Turn turn = turn_of(ws, i);
+    const int own = turn.jumps() ? 3 : is_prescribed(i) && turn.bends() ? 2 : is_zero(knot) ? 0 : 1;
     if (own > 1) note_graze(ws, -1, i, infinity, knot);
     if (own > weight) shift = knot, weight = own;
   }

@@ -145,10 +145,19 @@ class Phase : public Pace<typename Form::Scalar> {
     export_state(form_, step_.y0());
     note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
+    const bool jumps = sink_.steps > 0 && ws_.time < t_end_ && any_jumps(ws_);
     if (pass_knot(form_, step_)) return hand_over(Cause::input);
     if constexpr (has_tangents<T>) {
       if (leave_event(form_, step_)) look_here();
     }
+    if (jumps) show_jump();
+  }
+
+  /// The row behind a jump of a signal: in steps both sides have one.
+  void show_jump() {
+    const Status shown = emit_start(form_, step_, sink_, true);
+    if (shown != Status::running) return leave(shown);
+    look_here();
   }
 
   // ------------------------------------------------------------------------------------------------------------- step
