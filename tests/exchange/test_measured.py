@@ -145,6 +145,17 @@ def test_times_that_fall_and_times_that_are_equal(tmp_path: Path) -> None:
     assert cw.Column(str(tmp_path / "x.parquet"), "p [bar]").points[2] == (1.0, 1e5)
 
 
+def test_revolutions_per_minute_in_the_head_of_a_csv_file(tmp_path: Path) -> None:
+    """They drive what turns: 1/min is rpm there, as in all other formats, and not once in 60 s."""
+    (tmp_path / "x.csv").write_text("time,n [1/min],m [rpm]\n0,300,300\n1,300,300\n")
+    column = cw.Column(str(tmp_path / "x.csv"), "n")
+    assert column.points == cw.Column(str(tmp_path / "x.csv"), "m").points
+    assert column.points[0][1] == pytest.approx(10.0 * np.pi)
+    d = cw.Driveline()
+    d.add(cw.PrescribedSpeed("n", shaft=d.shaft("a"), speed=column))
+    assert d.simulate(1.0)["a.speed"][-1] == pytest.approx(10.0 * np.pi)
+
+
 def test_mdf_of_version_3(tmp_path: Path) -> None:
     with asammdf.MDF(version="3.30") as file:
         file.append([_channel("EngTrq", TORQUE * 1.0, FAST, "Nm")], comment="task", common_timebase=True)

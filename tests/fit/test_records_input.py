@@ -29,11 +29,11 @@ NAN = {"load.speed": np.where(np.arange(126) == 3, np.nan, 1.0)}
         (replace(ONE, time=two.TIMES - 1.0), "begins at -1 s, and the run at 0 s; count time from the begin"),
         (replace(ONE, units={"load.speed": "rmp"}), r"unknown unit 'rmp'.*give it in \[rad/s\]"),
         (replace(ONE, units={"load.speed": "bar"}), "has a unit that does not fit"),
-        (replace(ONE, units={"lod.speed": "rpm"}), "did you mean 'load.speed'"),
+        (replace(ONE, units={"loaad.speed": "rpm"}), "did you mean 'load.speed'"),
         (replace(ONE, deviation={"load.speed": -0.1}), r"deviation of load.speed is -0.1; give a number above zero"),
         (replace(ONE, inputs={"c1.presure": 1e5}), "did you mean 'c1.pressure'"),
         (replace(ONE, inputs={"c1.pressure": [1e5]}), "c1.pressure has 1 samples for 126 instants"),
-        (replace(ONE, start={"load.spead": 1.0}), "did you mean 'load.speed'"),
+        (replace(ONE, start={"load.speedd": 1.0}), "did you mean 'load.speed'"),
         (replace(ONE, start={"load.inertia": -1.0}), 'load" inertia = -1.0 kg m2 must be >= 0 kg m2'),
     ],
 )
@@ -55,6 +55,8 @@ def test_a_record_that_cannot_be_used_is_refused(record: Record, words: str) -> 
         ({"bounds": {"load.inertai": (0.1, 2.0)}}, "which is not free; did you mean 'load.inertia'"),
         ({"bounds": {"load.inertia": 1.0}}, r"give a pair: \(lower, upper\)"),
         ({"records": []}, "records are empty"),
+        ({"records": [ONE.measured["load.speed"]]}, r"give each as a Record\(time, measured\)"),
+        ({"starts": 0}, "starts is 0; give a whole number from 1 on"),
         ({"confidence": 95.0}, "confidence is 95.0; give a number between 0 and 1"),
         ({"records": replace(ONE, start={"load.inertia": 1.0})}, r"record 1 sets it; give own=\['load.inertia'\]"),
         (

@@ -113,12 +113,17 @@ def other_zero(text: str) -> str:
     return word if word in OTHER_ZERO else ""
 
 
+def turns(text: str) -> bool:
+    """Whether a unit is 1/min, which of what turns are revolutions."""
+    return _TURNS.fullmatch(_plain(text).strip()) is not None
+
+
 def _readings(text: str) -> list[Unit]:
     """What a unit may mean: a lb may be the force of one, and 1/min that of what turns."""
     found = [_parsed(text)]
     if re.search(r"\blb\b", text):
         found.append(_parsed(re.sub(r"\blb\b", "lbf", text)))
-    if _TURNS.fullmatch(text.strip()):
+    if turns(text):
         found.append(_parsed("rpm"))
     return found
 

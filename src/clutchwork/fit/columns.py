@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,14 +54,10 @@ def _read(path: str | Path, wanted: str, time: str, group: str | None) -> Read:
         column = column if plain.problems() else plain
     points, own = np.array(column.points), column.unit()
     scale = Head(wanted, own).scale()
-    if unit and own and _factor(unit) != _factor(own):
+    if unit and own and Head(wanted, unit).scale() != scale:
         raise FitError("column", f"{shown(name)} is in {own} in the file, not in {unit}", "leave out the unit")
-    # the file was read in its own unit, whose meaning its signal decides: 1/min of what turns is not 60 s
+    # what the unit is worth its signal decides: a temperature, or a difference of two
     return Read(points[:, 0], (points[:, 1] - scale.zero) / scale.factor, own or unit)
-
-
-def _factor(unit: str) -> Any:
-    return Head(unit, "rpm" if unit.replace(" ", "") in ("1/min", "min-1", "min^-1") else unit).scale()
 
 
 def _span(window: Sequence[float] | None) -> tuple[float, float] | None:

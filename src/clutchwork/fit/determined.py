@@ -17,6 +17,8 @@ from clutchwork.fit.result import Parameter
 
 Array = NDArray[np.float64]
 
+SMALLEST = 1e-300
+
 
 @dataclass(frozen=True)
 class Known:
@@ -43,7 +45,8 @@ def known(descent: Descent, u: Array, confidence: float) -> Known:
     sizes = np.where(found.silent, inf, scales * np.sqrt(len(jacobian)) / np.maximum(found.size, FLOOR))
     why, limits = [], []
     for place, (item, code, half) in enumerate(zip(items, u.tolist(), halves.tolist(), strict=True)):
-        ends = item.lowest, item.highest
+        # the smallest number above zero is zero to a reader
+        ends = 0.0 if 0.0 < item.lowest < SMALLEST else item.lowest, item.highest
         cause = causes[place] or reasons.at_end(item, values[place], ends)
         why.append(cause or reasons.wide(item, code, half, confidence, float(sizes[place])))
         limits.append(interval(item, code, half, ends) if half < 1e9 * max(scales[place], abs(code)) else ends)

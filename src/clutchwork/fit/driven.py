@@ -53,9 +53,10 @@ class Driven:
 
 def driven(system: System, records: Sequence[Record], problems: list[FitError]) -> list[Driven]:
     """All records that can be used; what is wrong with the others joins the problems."""
-    made = list[Driven]()
+    made, labels = list[Driven](), [label(record, number) for number, record in enumerate(records)]
     for number, record in enumerate(records):
-        told = label(record, number)
+        again = labels[:number].count(labels[number])
+        told = f"{labels[number]} {again + 1}" if again else labels[number]
         of = f"{told}: " if len(records) > 1 or record.name else ""
         own = _changed(system, record, of, problems)
         known = channels(own, True, True)

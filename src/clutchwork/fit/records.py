@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
 from clutchwork.base.errors import ModelError
+from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
 from clutchwork.fit.descent import Descent, Ended
 from clutchwork.fit.determined import known
@@ -19,6 +20,7 @@ from clutchwork.fit.followed import Followed
 from clutchwork.fit.numbers import Numbers, numbers
 from clutchwork.fit.record import Record
 from clutchwork.fit.response_result import ResponseFit
+from clutchwork.fit.traces import label
 from clutchwork.gradients.parameters import changes, parameters
 
 if TYPE_CHECKING:
@@ -36,9 +38,9 @@ BESIDE = 1e-3
 def fit_records(
     model: Assembles | System,
     records: Sequence[Record] | Record,
-    free: Sequence[str],
+    free: Sequence[str] | str,
     *,
-    own: Sequence[str] = (),
+    own: Sequence[str] | str = (),
     bounds: Mapping[str, Pair] | None = None,
     confidence: float = 0.95,
     starts: int = 1,
@@ -56,15 +58,8 @@ def fit_records(
     not determine are not an error: the result reports them. FitError reports all that is wrong with the input.
     """
     listed = [records] if isinstance(records, Record) else list(records)
-    names, owned, problems = list(dict.fromkeys(free)), list(dict.fromkeys(own)), list[FitError]()
-    if not listed:
-        raise FitError("records", "are empty", "give at least one Record")
-    if not 0.0 < confidence < 1.0:
-        problems.append(FitError("confidence", f"is {confidence!r}", "give a number between 0 and 1, such as 0.95"))
-    if not (names or owned):
-        problems.append(FitError("free", "is empty", "give at least one name"))
-    for number, record in enumerate(listed):
-        problems += _taken(record, number, names, owned)
+    names, owned = _names(free), _names(own)
+    problems = list(_faults(listed, names, owned, confidence, starts))
     refuse(problems)
     system = model if isinstance(model, System) else model.assemble()
     found = driven(system, listed, problems)
@@ -72,18 +67,37 @@ def fit_records(
     return _solved(found, numbers(found, names, owned, bounds or {}), confidence, starts)
 
 
-def _taken(record: Record, number: int, free: Sequence[str], own: Sequence[str]) -> list[FitError]:
+def _names(given: Sequence[str] | str) -> list[str]:
+    """One or several, each once."""
+    return [given] if isinstance(given, str) else list(dict.fromkeys(given))
+
+
+def _faults(records: list[Any], free: list[Any], own: list[Any], confidence: float, starts: int) -> Iterator[FitError]:
+    """What is wrong with a call, without a look at the driveline."""
+    if not records:
+        yield FitError("records", "are empty", "give at least one Record")
+    if not (free or own):
+        yield FitError("free", "is empty", "give at least one name")
+    if not 0.0 < confidence < 1.0:
+        yield FitError("confidence", f"is {confidence!r}", "give a number between 0 and 1, such as 0.95")
+    if not (isinstance(starts, int) and starts > 0):
+        yield FitError("starts", f"is {starts!r}", "give a whole number from 1 on")
+    for number, record in enumerate(records):
+        if isinstance(record, Record):
+            yield from _taken(record, label(record, number), free, own)
+        else:
+            yield FitError("records", f"hold {shown(record)}", "give each as a Record(time, measured)")
+
+
+def _taken(record: Record, of: str, free: Sequence[str], own: Sequence[str]) -> Iterator[FitError]:
     """Numbers that are free, and given by a record too."""
-    of, made = record.name or f"record {number + 1}", []
-    for name in [*free, *own]:
-        stem = next((one for one in record.inputs if name == one or str(name).startswith(f"{one}.")), "")
+    for name in map(str, [*free, *own]):
+        stem = next((one for one in record.inputs if name == one or name.startswith(f"{one}.")), "")
         if stem:
-            told = f"is free, and {of} drives {stem}"
-            made.append(FitError(str(name), told, "take it out of free, or out of inputs"))
+            yield FitError(name, f"is free, and {of} drives {stem}", "take it out of free, or out of inputs")
         elif name in record.start and name not in own:
             remedy = f"give own=[{name!r}], or take it out of start"
-            made.append(FitError(str(name), f"is free, and {of} sets it", remedy))
-    return made
+            yield FitError(name, f"is free, and {of} sets it", remedy)
 
 
 def _solved(records: Sequence[Driven], searched: Numbers, confidence: float, starts: int) -> ResponseFit:

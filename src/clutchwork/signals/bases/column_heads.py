@@ -6,7 +6,7 @@ import re
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.quantity import PLAIN, QuantityError, scale_to_si
-from clutchwork.declare.units import Scale, other_zero, parse
+from clutchwork.declare.units import Scale, other_zero, parse, turns
 
 _HEAD = re.compile(r"(.*?)\s*\[(.*)\]")
 # what heads write for "no unit"
@@ -29,7 +29,8 @@ class Head:
         if other_zero(self.unit):
             return scale_to_si(self.unit, "K", (), self.text)
         try:
-            return Scale(parse(self.unit).factor)
+            # as in files of other formats
+            return Scale(parse("rpm" if turns(self.unit) else self.unit).factor)
         except ValueError:
             remedy = "write one such as [bar], or leave it out where the values are in SI"
             try:
