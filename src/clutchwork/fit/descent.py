@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 
 # relative step of difference quotients, far above the error of the runs
 STEP = 1e-4
+# quotients of two steps that differ by more, of their size, are those of a jump
+JUMP = 0.5
 # how far starts lie from the first one, of the scale of a code
 SPREAD = 1.0
 SEED = 14
@@ -111,20 +113,29 @@ class Descent:
         return np.concatenate(blocks)
 
     def differences(self, number: int, u: Array) -> Array:
-        """The same of a record by differences of runs, central inside the bounds and one-sided at them."""
-        found = []
+        """The same of a record by differences of runs; zero where a sample jumps, which has no derivative.
+
+        Quotients of a jump grow as steps become shorter.
+        """
+        wide, narrow = (self._quotients(number, u, step) for step in (STEP, STEP / 3.0))
+        size = np.maximum(np.abs(wide), np.abs(narrow))
+        return np.where(np.abs(wide - narrow) > JUMP * size, 0.0, wide)
+
+    def _quotients(self, number: int, u: Array, relative: float) -> Array:
+        """Difference quotients, central inside the bounds and one-sided at them."""
+        found, here = [], self._residuals(number, self.numbers.values(u))
         for place in self.numbers.places(number):
-            step = STEP * max(self.numbers.scales[place], 0.0 if self.numbers.items[place].is_log else abs(u[place]))
-            above, below = u.copy(), u.copy()
-            above[place] = min(u[place] + step, self.upper[place])
-            below[place] = max(u[place] - step, self.lower[place])
-            ends = [self._residuals(number, self.numbers.values(one)) for one in (above, below)]
-            here = self._residuals(number, self.numbers.values(u)) if np.any(np.isnan(ends)) else ends[0]
-            # beside what a driveline refuses one side is there
-            for side, codes in enumerate((above, below)):
-                if np.any(np.isnan(ends[side])):
-                    ends[side], codes[place] = here, u[place]
-            found.append((ends[0] - ends[1]) / ((above[place] - below[place]) or 1.0))
+            item, scale = self.numbers.items[place], self.numbers.scales[place]
+            step = relative * max(scale, 0.0 if item.is_log else abs(float(u[place])))
+            ends, codes = [], []
+            for code in (min(u[place] + step, self.upper[place]), max(u[place] - step, self.lower[place])):
+                moved = np.where(np.arange(len(u)) == place, code, u)
+                side = self._residuals(number, self.numbers.values(moved))
+                # beside what a driveline refuses one side is there
+                there = bool(np.all(np.isfinite(side)))
+                ends.append(side if there else here)
+                codes.append(code if there else u[place])
+            found.append((ends[0] - ends[1]) / ((codes[0] - codes[1]) or 1.0))
         return np.array(found).T
 
     # ---------------------------------------------------------------------------------------------------------- search
