@@ -18,35 +18,43 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 # what may be left of the gradient, and of limits, in shares of their scales
 RESIDUAL, VIOLATION = 3e-7, 1e-8
-# steps that may bring nothing
-MOST_STALLED = 4
+# what a limit that is broken by its scale costs, in goals; and by how much of itself a point may be worse than the best
+PRICE, LOST = 10.0, 1.0
+# steps that may bring less than a share of the goal, or half of what is left of the gradient
+MOST_STALLED, LITTLE = 6, 1e-5
 
 
 class Ended(Exception):  # noqa: N818, it is caught where it is raised
-    """The search is at its end, at some scaled unknowns."""
-
-    def __init__(self, y: Array) -> None:
-        super().__init__()
-        self.y = y
+    """The search is at its end, or lost."""
 
 
 class Ending:
-    """Looks at each step of a solver; `Ended` where it was the last one."""
+    """Looks at each step of a solver; `Ended` where it was the last one, and `best` is the best of them."""
 
     def __init__(self, scaled: Scaled, tolerance: float) -> None:
         self.scaled, self.tolerance = scaled, tolerance
-        self.goal, self.residual, self.stalled = np.inf, np.inf, 0
+        self.best, self.residual, self.stalled = scaled.start, np.inf, 0
+        self.merit = scaled.goal(scaled.start) + PRICE * certificate(scaled, scaled.start).violation
+        self.begun = self.merit
 
     def look(self, y: Array) -> None:
         """At the scaled unknowns after a step."""
         if not self.scaled.point(y).is_fine:
             return
-        found = certificate(self.scaled, y)
-        if found.residual <= RESIDUAL and found.violation <= VIOLATION:
-            raise Ended(y.copy())
-        goal = self.scaled.goal(y)
-        better = goal < self.goal - self.tolerance or found.residual < 0.5 * self.residual
-        self.stalled = 0 if better or found.violation > VIOLATION else self.stalled + 1
-        self.goal, self.residual = min(goal, self.goal), min(found.residual, self.residual)
-        if self.stalled >= MOST_STALLED:
-            raise Ended(y.copy())
+        found, goal = certificate(self.scaled, y), self.scaled.goal(y)
+        # of the goal that there is, not of that at the start
+        residual = found.residual / (abs(goal) or 1.0)
+        if self.scaled.is_enough(y) or (residual <= RESIDUAL and found.violation <= VIOLATION):
+            self.best, self.merit = y.copy(), goal
+            raise Ended
+        merit = goal + PRICE * found.violation
+        close = found.violation <= VIOLATION and residual < 0.5 * self.residual
+        helps = merit < self.merit - LITTLE * abs(merit) or close
+        self.stalled = 0 if helps else self.stalled + 1
+        lost = merit > self.merit + LOST * abs(self.merit)
+        if merit < self.merit:
+            self.best, self.merit = y.copy(), merit
+        if found.violation <= VIOLATION:
+            self.residual = min(residual, self.residual)
+        if lost or self.stalled >= MOST_STALLED:
+            raise Ended

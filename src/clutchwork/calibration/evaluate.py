@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.calibration.moves import Moves
-from clutchwork.calibration.terms import Given
+from clutchwork.calibration.terms import Given, length
 from clutchwork.results.gradient import NoGradient
 
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 # solvers ask for values and gradients of a few points in turn
 REMEMBERED = 8
+# of differences where there is no gradient, in shares of the bounds: wider than what grazes
+WIDE = 1e-5
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,8 @@ class Point:
     x: Array
     values: Array  # shape (samples, rows)
     slopes: Array  # shape (samples, rows, unknowns)
-    fault: str = ""  # why there is no gradient here, empty where there is one
+    fault: str = ""  # why there is no value or no gradient here, empty where there is one
+    note: str = ""  # why the gradient is one of differences
 
     @property
     def is_fine(self) -> bool:
@@ -52,8 +55,10 @@ class Evaluator:
         self.spread = Moves(problem.scatter, problem.numbers)
         self.nominal = self.spread.start(problem.base)
         self.sums = (problem.goal, *(limit.what for limit in problem.limits))
-        place = {output: at for at, output in enumerate(problem.outputs)}
-        self.wanted = [np.array([place[one] for one in each.needs(problem.span)], dtype=np.intp) for each in self.sums]
+        ends = np.cumsum([length(one) for one in problem.outputs]).tolist()
+        place = {one: range(end - length(one), end) for one, end in zip(problem.outputs, ends, strict=True)}
+        needs = [[at for one in each.needs(problem.span) for at in place[one]] for each in self.sums]
+        self.wanted = [np.array(places, dtype=np.intp) for places in needs]
         self.places = {name: at for at, name in enumerate(problem.numbers)}
         self.points = OrderedDict[bytes, Point]()
         self.runs = 0
@@ -75,9 +80,12 @@ class Evaluator:
 
     def values(self, x: Array, samples: Sequence[Array]) -> Array:
         """Goal and limits of many samples, without gradients, shape (samples, rows)."""
-        numbers = self._numbers(x, samples)
         self.runs += len(samples)
-        found = np.asarray(self.function.batch(numbers)) if self.problem.outputs else np.zeros((len(samples), 0))
+        return self._plain(self._numbers(x, samples))
+
+    def _plain(self, numbers: Array) -> Array:
+        """Rows of many lines of numbers."""
+        found = np.asarray(self.function.batch(numbers)) if self.problem.outputs else np.zeros((len(numbers), 0))
         empty = np.zeros((found.shape[1], numbers.shape[1]))
         return np.array([self._rows(value, empty, own)[0] for value, own in zip(found, numbers, strict=True)])
 
@@ -90,26 +98,47 @@ class Evaluator:
         numbers = self._numbers(x, samples)
         self.runs += len(samples)
         try:
-            values, slopes = self._differentiated(numbers)
-        except (NoGradient, ModelError) as error:
+            values, slopes, note = self._differentiated(numbers)
+        except ModelError as error:
             return Point(x, np.zeros((0, 0)), np.zeros((0, 0, 0)), str(error))
         by_x = self.moves.slopes(self.problem.base, x)
         found, made = list[Array](), list[Array]()
         for value, slope, own, sample in zip(values, slopes, numbers, samples, strict=True):
             rows, by_numbers = self._rows(value, slope, own)
             found.append(rows)
-            made.append(by_numbers @ (self.spread.passed(sample)[:, None] * by_x))
+            smooth = bool(np.all(np.isfinite(slope)))
+            exact = by_numbers @ (self.spread.passed(sample)[:, None] * by_x)
+            made.append(exact if smooth else self._compared(x, sample))
+            note = note or ("" if smooth else "differences of runs took the place of a gradient")
         whole, by = np.array(found), np.array(made)
-        return Point(x, whole, by, self._fault(whole, by))
+        return Point(x, whole, by, self._fault(whole, by), note)
 
-    def _differentiated(self, numbers: Array) -> tuple[Any, Any]:
-        """Outputs and their derivatives by the numbers in each sample."""
+    def _compared(self, x: Array, sample: Array) -> Array:
+        """Derivatives of the rows where there is no gradient, as of a clutch that grazes: by runs beside it."""
+        problem, step = self.problem, WIDE * (self.problem.high - self.problem.low)
+        ahead, behind = np.minimum(x + step, problem.high), np.maximum(x - step, problem.low)
+        sides = [np.where(np.arange(len(x)) == k, side, x) for side in (ahead, behind) for k in range(len(x))]
+        numbers = np.concatenate([self._numbers(side, [sample]) for side in sides])
+        try:
+            rows = self._plain(numbers)
+        except ModelError:
+            return np.full((self.parts[-1].stop, len(x)), np.nan)
+        self.runs += len(sides)
+        made: Array = (rows[: len(x)] - rows[len(x) :]).T / (ahead - behind)
+        return made
+
+    def _differentiated(self, numbers: Array) -> tuple[Any, Any, str]:
+        """Outputs and their derivatives by the numbers in each sample, and why there are none."""
         if not self.problem.outputs:
-            return np.zeros((len(numbers), 0)), np.zeros((len(numbers), 0, numbers.shape[1]))
+            return np.zeros((len(numbers), 0)), np.zeros((len(numbers), 0, numbers.shape[1])), ""
         if len(numbers) > 1:
-            return self.function.batch_jacobian(numbers)  # type: ignore[no-any-return]
-        value, slope = self.function.value_and_jacobian(numbers[0])
-        return [value], [slope]
+            return *self.function.batch_jacobian(numbers), ""
+        try:
+            value, slope = self.function.value_and_jacobian(numbers[0])
+        except NoGradient as error:
+            value = self.function(numbers[0])
+            return [value], [np.full((len(value), numbers.shape[1]), np.nan)], error.problems[0]
+        return [value], [slope], ""
 
     def _rows(self, values: Array, slopes: Array, numbers: Array) -> tuple[Array, Array]:
         """Rows of the goal and of all limits."""

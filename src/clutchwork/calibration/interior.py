@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.extras import need
+from clutchwork.calibration.ending import Ending
 from clutchwork.calibration.rows import Block
 from clutchwork.calibration.scaled import REFUSED, Scaled
 from clutchwork.calibration.slsqp import whitened
@@ -52,7 +53,7 @@ class _Functions:
         return np.vstack([self.scaled.slopes(self.to_y(z), self.block) @ self.by_z, self.lines]).ravel()
 
 
-def ipopt(scaled: Scaled, tolerance: float, iterations: int) -> Array:
+def ipopt(scaled: Scaled, ending: Ending, iterations: int) -> Array:
     """The scaled unknowns where the search ended."""
     cyipopt = need("cyipopt", "ipopt", "solver='ipopt'")
     functions = _Functions(scaled, whitened(scaled))
@@ -64,7 +65,7 @@ def ipopt(scaled: Scaled, tolerance: float, iterations: int) -> Array:
     settings = {
         "hessian_approximation": "limited-memory",
         "max_iter": iterations,
-        "tol": float(np.sqrt(tolerance)),
+        "tol": float(np.sqrt(ending.tolerance)),
         "print_level": 0,
         "sb": "yes",
         "nlp_scaling_method": "none",

@@ -12,7 +12,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.calibration.numbers import bounds, number
-from clutchwork.calibration.terms import Given, Rows, Slope, Span, SquaredSlope, Term, UnitOf, is_computed, term
+from clutchwork.calibration.terms import Given, Rows, Slope, Span, SquaredSlope, Term, UnitOf, is_computed, length, term
 from clutchwork.declare.calls import explained
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ class Sum:
         values, slopes = np.zeros(1), np.zeros((1, len(given.numbers)))
         at = 0
         for one, weight in self.terms:
-            count = len(one.needs(given.span))
+            count = sum(map(length, one.needs(given.span)))
             own = given._replace(values=given.values[at : at + count], slopes=given.slopes[at : at + count])
             value, slope = one.rows(own)
             values, slopes = values + weight * value, slopes + weight * slope

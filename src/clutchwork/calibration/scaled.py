@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from clutchwork.calibration.evaluate import Evaluator, Point
 
 Array = NDArray[np.float64]
+# how far the first search goes, in shares of the bounds
+FIRST_REACH = 0.2
 # a value that no solver takes for an improvement, in scaled numbers
 REFUSED = 1e3
 
@@ -48,6 +50,7 @@ class Scaled:
         values = self.first.values[:, goal]
         self.goal_scale = float(np.max(np.abs(values))) or 1.0
         own = (start - self.problem.low) / self.width
+        self.reach = FIRST_REACH
         self.start = np.append(own, np.max(values) / self.goal_scale) if self.worst else own
 
     @property
@@ -83,6 +86,34 @@ class Scaled:
         self.point(y)
         slopes: Array = np.mean(self.last.slopes[: self.averaged, self.evaluator.parts[0].start], axis=0)
         return slopes * self.width / self.goal_scale
+
+    @property
+    def steepest(self) -> float:
+        """Size of the gradient of the goal at the start, of its worst value where it has several."""
+        if not self.worst:
+            return float(np.linalg.norm(self.gradient(self.start)))
+        part, point = self.evaluator.parts[0], self.point(self.start)
+        sample, row = np.unravel_index(np.argmax(point.values[:, part]), point.values[:, part].shape)
+        return float(np.linalg.norm(point.slopes[sample, part][row] * self.width)) / self.goal_scale
+
+    @property
+    def box(self) -> tuple[Array, Array]:
+        """How far a solver without a region of trust may go: to the bounds, and no further than `reach`."""
+        own = self.start[: len(self.width)]
+        if self.curvature is not None:
+            return -own, 1.0 - own
+        return np.maximum(-own, -self.reach), np.minimum(1.0 - own, self.reach)
+
+    def is_enough(self, y: Array) -> bool:  # noqa: ARG002, others do
+        """Whether a search may end there although it is not optimal."""
+        return False
+
+    def begin(self, y: Array, reach: float) -> None:
+        """Begin somewhere, and go no further than so much of the bounds, where no curvature is known."""
+        self.start, self.reach = y.copy(), reach
+        if self.worst:
+            part = self.evaluator.parts[0]
+            self.start[-1] = float(np.max(self.point(y).values[:, part])) / self.goal_scale
 
     @cached_property
     def curvature(self) -> Array | None:

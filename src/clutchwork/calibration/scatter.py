@@ -7,6 +7,7 @@ does. docs/theory/calibration.md (5)
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,12 +25,16 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Solve = Callable[[Scaled], Array]
-# samples that the solver begins with, nominal among them, and whose mean the goal is
+# samples that the solver begins with at most, nominal and corners among them, and whose mean the goal is
 FIRST = 8
+# how far later rounds go from what the one before found, in shares of the bounds
+LATER_REACH = 0.05
+# dimensions of which all corners are taken
+MOST_CORNERS = 4
 # samples that join in one round, and rounds
-MOST_JOIN, MOST_ROUNDS = 8, 8
-# of a limit, in shares of its scale
-TOLERANCE = 1e-6
+MOST_JOIN, MOST_ROUNDS = 4, 8
+# of a limit, in shares of its scale; and of the goal of a sample above the worst of those that are looked at
+TOLERANCE, WORSE = 1e-6, 1e-4
 
 
 @dataclass(frozen=True)
@@ -43,16 +48,27 @@ class Scatter:
     def of(cls, problem: Problem, count: int, seed: int, worst: bool) -> Scatter:
         """So many samples of a problem."""
         nominal = Moves(problem.scatter, problem.numbers).start(problem.base)
-        return cls((nominal, *drawn(problem.scatter, count - 1, seed)), worst)
+        ends = corners(problem.scatter)[: max(count - 1, 0)]
+        return cls((nominal, *ends, *drawn(problem.scatter, count - 1 - len(ends), seed)), worst)
 
     def first(self) -> Samples:
         """Those that the solver begins with."""
-        count = min(FIRST, len(self.pool))
+        corners = 2 ** len(self.pool[0])
+        count = min(FIRST, 1 + corners, len(self.pool))
         return Samples(self.pool[:count], count, self.worst)
+
+
+def corners(unknowns: Sequence[Unknown]) -> list[Array]:
+    """All ends of what scatters together, where that are not many: what gets worse all the way is worst there."""
+    if len(unknowns) > MOST_CORNERS:
+        return []
+    return [np.array(one) for one in product(*((one.low, one.high) for one in unknowns))]
 
 
 def drawn(unknowns: Sequence[Unknown], count: int, seed: int) -> tuple[Array, ...]:
     """Samples between the bounds of what scatters, spread evenly by a Sobol sequence."""
+    if count < 1:
+        return ()
     low, high = (np.array([getattr(one, side) for one in unknowns]) for side in ("low", "high"))
     return tuple(low + share * (high - low) for share in sobol(len(unknowns), count, seed))
 
@@ -73,6 +89,8 @@ def in_all(evaluator: Evaluator, scatter: Scatter, start: Array, solve: Solve) -
     samples, x, scales = scatter.first(), start, None
     for _ in range(MOST_ROUNDS):
         scaled = Scaled(evaluator, x, samples, scales)
+        if scales is not None:
+            scaled.begin(scaled.start, LATER_REACH)
         scales = scaled.scales
         x = scaled.to_x(solve(scaled))
         if len(samples.chosen) == len(scatter.pool):
@@ -86,7 +104,14 @@ def in_all(evaluator: Evaluator, scatter: Scatter, start: Array, solve: Solve) -
 
 def _broken(evaluator: Evaluator, scaled: Scaled, x: Array, pool: Sequence[Array]) -> list[Array]:
     """The samples that break limits most: the worst one of each limit, then the next."""
-    over = violations(evaluator, scaled, evaluator.values(x, pool))
+    values = evaluator.values(x, pool)
+    over = violations(evaluator, scaled, values)
+    if scaled.worst:
+        goal = evaluator.parts[0]
+        known = np.max(evaluator.at(x, scaled.samples).values[:, goal])
+        # of the worst of all samples none is left out
+        more = (np.max(values[:, goal], axis=1) - known) / scaled.goal_scale
+        over = np.column_stack([over, np.where(np.isfinite(more), np.maximum(more - WORSE, 0.0), np.inf)])
     chosen = {one.tobytes() for one in scaled.samples}
     order = np.argsort(-over, axis=0, kind="stable")
     found = dict[int, None]()

@@ -12,12 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
+from clutchwork.calibration.ending import Ending
 from clutchwork.calibration.evaluate import Evaluator, Point
 from clutchwork.calibration.linear import Linear
 from clutchwork.calibration.method import Solver
-from clutchwork.calibration.outcome import Outcome
+from clutchwork.calibration.optimal import certificate
+from clutchwork.calibration.outcome import FEASIBLE, Outcome
+from clutchwork.calibration.restoring import Restoring
 from clutchwork.calibration.rows import size_of
-from clutchwork.calibration.scaled import Samples, Scaled
+from clutchwork.calibration.scaled import FIRST_REACH, Samples, Scaled
 from clutchwork.calibration.scatter import Scatter, in_all, sobol, violations
 
 if TYPE_CHECKING:
@@ -25,6 +28,10 @@ if TYPE_CHECKING:
     from clutchwork.calibration.problem import Problem
 
 Array = NDArray[np.float64]
+# times that a solver begins anew while something of the gradient is left, and what counts as better
+MOST_AGAIN, ENOUGH, LITTLE = 12, 1e-6, 1e-4
+# how the box around a start grows and gets smaller, and the smallest one
+WIDER, SHORTER, SHORTEST = 2.0, 0.25, 1e-3
 # points that are run for each start, of which the best is taken
 PILOTS = 8
 
@@ -109,7 +116,31 @@ class Search:
         keeper.end(x, samples)
 
     def _solved(self, scaled: Scaled) -> Array:
-        return self.way.solver(scaled, self.way.tolerance, self.way.iterations)
+        """Where the solver ends; where it leaves limits broken, it sees to them alone, and goes on from there."""
+        y = self._rounds(scaled)
+        if certificate(scaled, y).violation <= FEASIBLE or not any(row.limit >= 0 for row in scaled.rows):
+            return y
+        limits = Restoring(scaled, y)
+        held = self._rounds(limits)
+        scaled.begin(held[: scaled.count], FIRST_REACH)
+        return self._rounds(scaled) if limits.is_enough(held) else scaled.start
+
+    def _rounds(self, scaled: Scaled) -> Array:
+        """Where the solver ends; it begins anew at the best point where more is to be had, within a box that fits."""
+        way, reach = self.way, scaled.reach
+        for _ in range(MOST_AGAIN):
+            ending = Ending(scaled, way.tolerance)
+            y = way.solver(scaled, ending, way.iterations)
+            moved = float(np.max(np.abs(y - scaled.start)[: len(scaled.width)]))
+            proof = certificate(scaled, y)
+            optimal = proof.residual <= ENOUGH * abs(scaled.goal(y)) and proof.violation <= FEASIBLE
+            if optimal or reach < SHORTEST or scaled.is_enough(y):
+                break
+            better = ending.begun - ending.merit > LITTLE * abs(ending.merit)
+            # further where the box was in the way, less far where nothing was found
+            reach *= WIDER if better and moved > 0.9 * reach else 1.0 if better else SHORTER
+            scaled.begin(y, reach)
+        return y
 
     def _samples(self) -> Samples:
         return Samples() if self.way.scatter is None else self.way.scatter.first()

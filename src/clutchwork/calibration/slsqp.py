@@ -5,6 +5,7 @@ D. Kraft, A software package for sequential quadratic programming, DFVLR-FB 88-2
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -16,11 +17,9 @@ from clutchwork.calibration.rows import Block
 from clutchwork.calibration.scaled import Scaled
 
 Array = NDArray[np.float64]
-# share of its bounds that an unknown is moved by in the first step, where nothing is known of curvatures
-FIRST_STEP = 0.2
 
 
-def slsqp(scaled: Scaled, tolerance: float, iterations: int) -> Array:
+def slsqp(scaled: Scaled, ending: Ending, iterations: int) -> Array:
     """The scaled unknowns where the search ended."""
     optimize = need("scipy.optimize", "calibrate", "calibrate")
     start, count = scaled.start, scaled.count
@@ -41,22 +40,21 @@ def slsqp(scaled: Scaled, tolerance: float, iterations: int) -> Array:
         for kind, block in zip(("eq", "ineq"), blocks, strict=True)
         if block.rows
     ]
-    own = len(scaled.width)
+    own, (low, high) = len(scaled.width), scaled.box
     plain = np.count_nonzero(by_z - np.diag(np.diag(by_z))) == 0
     box: Any = None
     if plain:
         scale = np.diag(by_z)[:own]
-        box = [*zip(-start[:own] / scale, (1.0 - start[:own]) / scale, strict=True), *[(None, None)] * (count - own)]
+        box = [*zip(low / scale, high / scale, strict=True), *[(None, None)] * (count - own)]
     else:
         unit = np.eye(count)[:own]
         matrix = np.vstack([matrix, unit, -unit])
-        ends = np.concatenate([ends, np.ones(own), np.zeros(own)])
+        ends = np.concatenate([ends, start[:own] + high, -start[:own] - low])
     if len(ends):
         lines, room = -matrix @ by_z, ends - matrix @ start
         constraints.append({"type": "ineq", "fun": lambda z: room + lines @ z, "jac": lambda _: lines})
-    ending = Ending(scaled, tolerance)
-    try:
-        found = optimize.minimize(
+    with suppress(Ended):
+        optimize.minimize(
             lambda z: scaled.goal(to_y(z)),
             np.zeros(count),
             jac=lambda z: scaled.gradient(to_y(z)) @ by_z,
@@ -67,22 +65,21 @@ def slsqp(scaled: Scaled, tolerance: float, iterations: int) -> Array:
             # it ends by what is left of the gradient
             options={"ftol": 1e-18, "maxiter": iterations},
         )
-    except Ended as end:
-        return end.y
-    return to_y(found.x)
+    return ending.best
 
 
 def whitened(scaled: Scaled) -> Array:
     """Scaled unknowns by those of the solver, in which the first guess of the curvature is one."""
     # docs/theory/calibration.md (2)
-    gradient = scaled.gradient(scaled.start)
-    size = float(np.linalg.norm(gradient)) / FIRST_STEP or 1.0
+    size = scaled.steepest / scaled.reach or 1.0
     if scaled.curvature is None:
-        plain: Array = np.eye(scaled.count) / np.sqrt(size)
-        return plain
+        made = np.full(scaled.count, 1.0 / np.sqrt(size))
+        # the bound of several values has no curvature of its own
+        made[len(scaled.width) :] = 10.0
+        return np.diag(made)
     known = scaled.curvature
     touched = np.diag(known) > 0.0
     more = np.where(touched, 1e-9 * np.max(np.diag(known)), size)
     lower = np.linalg.cholesky(known + np.diag(more))
-    made: Array = np.linalg.inv(lower).T
-    return made
+    inverse: Array = np.linalg.inv(lower).T
+    return inverse

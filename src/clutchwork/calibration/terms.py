@@ -44,6 +44,11 @@ class Given(NamedTuple):
     span: Span
 
 
+def length(output: Any) -> int:
+    """How many numbers an output of a run has."""
+    return len(output.times) if isinstance(output, AtTimes) else 1
+
+
 class UnitOf(Protocol):
     """Units of a model."""
 
@@ -67,7 +72,7 @@ class Term(Protocol):
         """What messages call it."""
 
     def needs(self, span: Span) -> list[Any]:
-        """The outputs of a run that it is made of, each one number."""
+        """The outputs of a run that it is made of."""
 
     def unit(self, units: UnitOf) -> str:
         """Its unit."""
@@ -88,9 +93,8 @@ class Plain:
         return str(self.output.name)
 
     def needs(self, span: Span) -> list[Any]:  # noqa: ARG002, others do
-        """Itself, each instant on its own."""
-        one = self.output
-        return [AtTimes(one.signal, (time,)) for time in one.times] if isinstance(one, AtTimes) else [one]
+        """Itself."""
+        return [self.output]
 
     def unit(self, units: UnitOf) -> str:
         """That of the output."""
@@ -120,7 +124,7 @@ class Jerk:
         first, last = max(first, span.begin), min(last, span.end)
         count = int((last - first) / (0.5 * self.window) * (1.0 + 1e-12))
         times = np.minimum(first + 0.5 * self.window * np.arange(count + 1), last)
-        return [AtTimes(f"{self.shaft}.speed", (float(time),)) for time in times]
+        return [AtTimes(f"{self.shaft}.speed", tuple(times.tolist()))]
 
     def unit(self, units: UnitOf) -> str:
         """Of its speed, over seconds squared."""

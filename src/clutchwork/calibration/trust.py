@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.extras import need
+from clutchwork.calibration.ending import Ending
 from clutchwork.calibration.rows import Block
 from clutchwork.calibration.scaled import Scaled
 from clutchwork.calibration.slsqp import whitened
@@ -20,7 +21,7 @@ from clutchwork.calibration.slsqp import whitened
 Array = NDArray[np.float64]
 
 
-def trust_constr(scaled: Scaled, tolerance: float, iterations: int) -> Array:
+def trust_constr(scaled: Scaled, ending: Ending, iterations: int) -> Array:
     """The scaled unknowns where the search ended."""
     optimize = need("scipy.optimize", "calibrate", "calibrate")
     start, by_z = scaled.start, whitened(scaled)
@@ -48,8 +49,8 @@ def trust_constr(scaled: Scaled, tolerance: float, iterations: int) -> Array:
             )
         )
     with warnings.catch_warnings():
-        # of a goal that is linear, whose curvature is zero as it should be
-        warnings.filterwarnings("ignore", "delta_grad == 0.0", UserWarning)
+        # of goals that are linear, and of limits that depend on each other: both are as they should be
+        warnings.simplefilter("ignore", UserWarning)
         found = optimize.minimize(
             lambda z: scaled.goal(to_y(z)),
             np.zeros(scaled.count),
@@ -58,9 +59,9 @@ def trust_constr(scaled: Scaled, tolerance: float, iterations: int) -> Array:
             constraints=limits,
             method="trust-constr",
             options={
-                "gtol": 1e-4 * tolerance,
-                "xtol": 10.0 * tolerance,
-                "barrier_tol": 10.0 * tolerance,
+                "gtol": 1e-4 * ending.tolerance,
+                "xtol": 10.0 * ending.tolerance,
+                "barrier_tol": 10.0 * ending.tolerance,
                 "maxiter": iterations,
             },
         )

@@ -53,7 +53,8 @@ class Verified:
             ends = [f"{one:.6g}" if np.isfinite(one) else "" for one in (limit.lower, limit.upper)]
             seen = [f"{one:.6g}" for one in (np.min(values), np.max(values))]
             lines.append([limit.name, *ends, *seen, str(int(np.count_nonzero(self.broken[:, number])))])
-        return f"all limits hold in {good} of {count} samples\n\n{columns(lines, right=(1, 2, 3, 4, 5))}"
+        goal = f"goal {np.min(self.goals):.6g} ... {np.max(self.goals):.6g}"
+        return f"all limits hold in {good} of {count} samples, {goal}\n\n{columns(lines, right=(1, 2, 3, 4, 5))}"
 
 
 def verify(found: Calibration, count: int, seed: int, threads: int | None) -> Verified:

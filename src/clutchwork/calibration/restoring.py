@@ -1,0 +1,71 @@
+"""Limits first: where they are far from being held, the worst of them is made least before the goal counts."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.calibration.rows import Block, Row
+from clutchwork.calibration.scaled import REFUSED, Samples, Scaled
+
+Array = NDArray[np.float64]
+# limits count as held with so much to spare, in shares of their scale
+SPARE = 1e-3
+
+
+class Restoring(Scaled):
+    """The same unknowns and limits; the goal is by how much the worst limit is broken, one unknown more."""
+
+    def __init__(self, other: Scaled, y: Array) -> None:
+        samples = Samples(tuple(other.samples), other.averaged, True)
+        super().__init__(other.evaluator, other.to_x(y), samples, other.scales)
+        self.goal_scale = 1.0
+        self.begin(self.start, self.reach)
+
+    def begin(self, y: Array, reach: float) -> None:
+        """Begin somewhere, and go no further than so much of the bounds."""
+        self.start, self.reach = y.copy(), reach
+        self.start[-1] = self._worst(y)
+
+    def _worst(self, y: Array) -> float:
+        """By how much the worst limit is broken."""
+        self.point(y)
+        return -float(np.min(self._block.values(self.last, y), initial=np.inf))
+
+    def is_enough(self, y: Array) -> bool:
+        """Whether all limits hold."""
+        return self._worst(y) <= -SPARE
+
+    def goal(self, y: Array) -> float:
+        """How far limits may be broken."""
+        return float(y[-1]) if self.point(y).is_fine else REFUSED + abs(float(y[-1]))
+
+    @property
+    def steepest(self) -> float:
+        """Size of the gradient of the worst limit at the start."""
+        self.point(self.start)
+        worst = int(np.argmin(self._block.values(self.last, self.start)))
+        return float(np.linalg.norm(self._block.slopes(self.last, self.width, self.count)[worst]))
+
+    @cached_property
+    def rows(self) -> list[Row]:
+        """All limits that need a run; an equation is two inequalities."""
+        limits = (one for one in super().rows if one.limit >= 0)
+        return [one._replace(sign=sign) for one in limits for sign in ((1.0, -1.0) if one.sign == 0.0 else (one.sign,))]
+
+    @cached_property
+    def _block(self) -> Block:
+        return Block(self.rows)
+
+    def values(self, y: Array, block: Block) -> Array:
+        """What must not be negative: room up to the bounds, and what may be broken."""
+        made: Array = super().values(y, block) + y[-1]
+        return made
+
+    def slopes(self, y: Array, block: Block) -> Array:
+        """Their derivatives."""
+        made = super().slopes(y, block)
+        made[:, -1] = 1.0
+        return made
