@@ -22,6 +22,8 @@ RESIDUAL, VIOLATION = 3e-7, 1e-8
 PRICE, LOST = 10.0, 1.0
 # steps that may bring less than a share of the goal, or half of what is left of the gradient
 MOST_STALLED, LITTLE = 6, 1e-5
+# runs for each sample, differences in place of gradients counted as one each
+MOST_RUNS = 150
 
 
 class Ended(Exception):  # noqa: N818, it is caught where it is raised
@@ -35,7 +37,7 @@ class Ending:
         self.scaled, self.tolerance = scaled, tolerance
         self.best, self.residual, self.stalled = scaled.start, np.inf, 0
         self.merit = scaled.goal(scaled.start) + PRICE * certificate(scaled, scaled.start).violation
-        self.begun = self.merit
+        self.last = scaled.evaluator.runs + MOST_RUNS * max(len(scaled.samples), 1)
 
     def look(self, y: Array) -> None:
         """At the scaled unknowns after a step."""
@@ -56,5 +58,5 @@ class Ending:
             self.best, self.merit = y.copy(), merit
         if found.violation <= VIOLATION:
             self.residual = min(residual, self.residual)
-        if lost or self.stalled >= MOST_STALLED:
+        if lost or self.stalled >= MOST_STALLED or self.scaled.evaluator.runs >= self.last:
             raise Ended

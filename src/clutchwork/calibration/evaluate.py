@@ -76,12 +76,21 @@ class Evaluator:
             if len(self.points) > REMEMBERED:
                 self.points.popitem(last=False)
             self.seen(self.points[key])
+        self.points.move_to_end(key)
         return self.points[key]
 
     def values(self, x: Array, samples: Sequence[Array]) -> Array:
         """Goal and limits of many samples, without gradients, shape (samples, rows)."""
         self.runs += len(samples)
         return self._plain(self._numbers(x, samples))
+
+    def tried(self, x: Array, samples: Sequence[Array]) -> Point:
+        """A point without gradients."""
+        try:
+            values = self.values(x, list(samples) or [self.nominal])
+        except ModelError as error:
+            return Point(x, np.zeros((0, 0)), np.zeros((0, 0, 0)), str(error))
+        return Point(x, values, np.zeros((0, 0, 0)), self._fault(values, values[..., None]))
 
     def _plain(self, numbers: Array) -> Array:
         """Rows of many lines of numbers."""

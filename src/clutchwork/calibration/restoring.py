@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.calibration.rows import Block, Row
-from clutchwork.calibration.scaled import REFUSED, Samples, Scaled
+from clutchwork.calibration.scaled import Samples, Scaled
+
+if TYPE_CHECKING:
+    from clutchwork.calibration.evaluate import Point
 
 Array = NDArray[np.float64]
 # limits count as held with so much to spare, in shares of their scale
@@ -24,30 +28,13 @@ class Restoring(Scaled):
         self.goal_scale = 1.0
         self.begin(self.start, self.reach)
 
-    def begin(self, y: Array, reach: float) -> None:
-        """Begin somewhere, and go no further than so much of the bounds."""
-        self.start, self.reach = y.copy(), reach
-        self.start[-1] = self._worst(y)
-
-    def _worst(self, y: Array) -> float:
-        """By how much the worst limit is broken."""
-        self.point(y)
-        return -float(np.min(self._block.values(self.last, y), initial=np.inf))
+    def lifted(self, y: Array, found: Point) -> Array:
+        """The same unknowns, and by how much the worst limit is broken."""
+        return np.append(y[:-1], -np.min(self._block.values(found, y), initial=np.inf)) if found.is_fine else y.copy()
 
     def is_enough(self, y: Array) -> bool:
         """Whether all limits hold."""
-        return self._worst(y) <= -SPARE
-
-    def goal(self, y: Array) -> float:
-        """How far limits may be broken."""
-        return float(y[-1]) if self.point(y).is_fine else REFUSED + abs(float(y[-1]))
-
-    @property
-    def steepest(self) -> float:
-        """Size of the gradient of the worst limit at the start."""
-        self.point(self.start)
-        worst = int(np.argmin(self._block.values(self.last, self.start)))
-        return float(np.linalg.norm(self._block.slopes(self.last, self.width, self.count)[worst]))
+        return bool(y[-1] <= -SPARE)
 
     @cached_property
     def rows(self) -> list[Row]:
@@ -59,9 +46,9 @@ class Restoring(Scaled):
     def _block(self) -> Block:
         return Block(self.rows)
 
-    def values(self, y: Array, block: Block) -> Array:
+    def values_at(self, found: Point, y: Array, block: Block) -> Array:
         """What must not be negative: room up to the bounds, and what may be broken."""
-        made: Array = super().values(y, block) + y[-1]
+        made: Array = super().values_at(found, y, block) + y[-1]
         return made
 
     def slopes(self, y: Array, block: Block) -> Array:

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 # what is left of a gradient, in shares of the goal over the ranges of the unknowns
-OPTIMAL = 1e-4
+OPTIMAL = 1e-3
 
 
 class CalibrationError(ClutchworkError, RuntimeError):

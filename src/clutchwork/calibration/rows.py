@@ -50,7 +50,8 @@ class Block:
         self.rows = tuple(rows)
         self.samples, self.places = table[:, 0].astype(np.intp), table[:, 1].astype(np.intp)
         self.bounds, self.scales = table[:, 2], table[:, 4]
-        self.signs = np.where(table[:, 3] == 0.0, -1.0, table[:, 3])
+        self.equal = table[:, 3] == 0.0
+        self.signs = np.where(self.equal, -1.0, table[:, 3])
         self.goal = table[:, 5] < 0.0
 
     def values(self, point: Point, y: Array) -> Array:

@@ -70,14 +70,22 @@ class Scaled:
             self.last = found
         return found
 
+    def tried(self, y: Array) -> Point:
+        """Values without a gradient, for much less work."""
+        return self.evaluator.tried(self.to_x(y), self.samples)
+
     # ------------------------------------------------------------------------------------------------------------ goal
 
     def goal(self, y: Array) -> float:
         """The goal; large where the run has no value or no gradient, so that a solver goes back."""
-        found, part = self.point(y), self.evaluator.parts[0]
-        if self.worst:
-            return float(y[-1]) if found.is_fine else REFUSED + abs(float(y[-1]))
-        return float(np.mean(found.values[: self.averaged, part])) / self.goal_scale if found.is_fine else REFUSED
+        return self.goal_at(self.point(y), y)
+
+    def goal_at(self, found: Point, y: Array) -> float:
+        """The goal at a point that is known."""
+        if not found.is_fine:
+            return REFUSED + abs(float(y[-1]))
+        values = found.values[: self.averaged, self.evaluator.parts[0]]
+        return float(y[-1]) if self.worst else float(np.mean(values)) / self.goal_scale
 
     def gradient(self, y: Array) -> Array:
         """Its derivatives."""
@@ -110,10 +118,14 @@ class Scaled:
 
     def begin(self, y: Array, reach: float) -> None:
         """Begin somewhere, and go no further than so much of the bounds, where no curvature is known."""
-        self.start, self.reach = y.copy(), reach
-        if self.worst:
-            part = self.evaluator.parts[0]
-            self.start[-1] = float(np.max(self.point(y).values[:, part])) / self.goal_scale
+        self.start, self.reach = self.lifted(y, self.point(y)), reach
+
+    def lifted(self, y: Array, found: Point) -> Array:
+        """The same unknowns, and the least bound of the values of the goal where it has several."""
+        made = y.copy()
+        if self.worst and found.is_fine:
+            made[-1] = float(np.max(found.values[:, self.evaluator.parts[0]])) / self.goal_scale
+        return made
 
     @cached_property
     def curvature(self) -> Array | None:
@@ -164,7 +176,11 @@ class Scaled:
     def values(self, y: Array, block: Block) -> Array:
         """What must not be negative, or must be zero in equations."""
         self.point(y)
-        return block.values(self.last, y)
+        return self.values_at(self.last, y, block)
+
+    def values_at(self, found: Point, y: Array, block: Block) -> Array:
+        """The same at a point that is known."""
+        return block.values(found, y)
 
     def slopes(self, y: Array, block: Block) -> Array:
         """Their derivatives."""

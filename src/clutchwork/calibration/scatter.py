@@ -34,7 +34,7 @@ MOST_CORNERS = 4
 # samples that join in one round, and rounds
 MOST_JOIN, MOST_ROUNDS = 4, 8
 # of a limit, in shares of its scale; and of the goal of a sample above the worst of those that are looked at
-TOLERANCE, WORSE = 1e-6, 1e-4
+TOLERANCE, WORSE = 1e-6, 1e-2
 
 
 @dataclass(frozen=True)

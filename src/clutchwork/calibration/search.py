@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
+from clutchwork.calibration.boxes import walked
 from clutchwork.calibration.ending import Ending
 from clutchwork.calibration.evaluate import Evaluator, Point
 from clutchwork.calibration.linear import Linear
@@ -28,10 +29,12 @@ if TYPE_CHECKING:
     from clutchwork.calibration.problem import Problem
 
 Array = NDArray[np.float64]
-# times that a solver begins anew while something of the gradient is left, and what counts as better
-MOST_AGAIN, ENOUGH, LITTLE = 12, 1e-6, 1e-4
-# how the box around a start grows and gets smaller, and the smallest one
-WIDER, SHORTER, SHORTEST = 2.0, 0.25, 1e-3
+# times that a search begins anew, what may be left of the gradient, and what counts as better, in shares of the goal
+MOST_AGAIN, ENOUGH, LITTLE = 3, 1e-6, 1e-3
+# the same where steps in boxes end, in a corner
+CORNER = 1e-4
+# box of a solver that begins where steps became small, in shares of the bounds
+SHORTEST = 1e-2
 # points that are run for each start, of which the best is taken
 PILOTS = 8
 
@@ -116,31 +119,42 @@ class Search:
         keeper.end(x, samples)
 
     def _solved(self, scaled: Scaled) -> Array:
-        """Where the solver ends; where it leaves limits broken, it sees to them alone, and goes on from there."""
-        y = self._rounds(scaled)
-        if certificate(scaled, y).violation <= FEASIBLE or not any(row.limit >= 0 for row in scaled.rows):
-            return y
-        limits = Restoring(scaled, y)
-        held = self._rounds(limits)
-        scaled.begin(held[: scaled.count], FIRST_REACH)
-        return self._rounds(scaled) if limits.is_enough(held) else scaled.start
-
-    def _rounds(self, scaled: Scaled) -> Array:
-        """Where the solver ends; it begins anew at the best point where more is to be had, within a box that fits."""
-        way, reach = self.way, scaled.reach
-        for _ in range(MOST_AGAIN):
-            ending = Ending(scaled, way.tolerance)
-            y = way.solver(scaled, ending, way.iterations)
-            moved = float(np.max(np.abs(y - scaled.start)[: len(scaled.width)]))
-            proof = certificate(scaled, y)
-            optimal = proof.residual <= ENOUGH * abs(scaled.goal(y)) and proof.violation <= FEASIBLE
-            if optimal or reach < SHORTEST or scaled.is_enough(y):
+        """Where the search ends: the solver where all is smooth, limits first, then boxes where there are corners."""
+        if not scaled.worst:
+            y = self._smooth(scaled)
+            if self._left(scaled, y) <= ENOUGH:
+                return y
+            scaled.begin(y, scaled.reach)
+        held, y = self._held(scaled)
+        for _ in range(MOST_AGAIN if held else 0):
+            y, reach = walked(scaled, y, scaled.reach)
+            before, left = scaled.goal(y), self._left(scaled, y)
+            if left <= CORNER:
                 break
-            better = ending.begun - ending.merit > LITTLE * abs(ending.merit)
-            # further where the box was in the way, less far where nothing was found
-            reach *= WIDER if better and moved > 0.9 * reach else 1.0 if better else SHORTER
-            scaled.begin(y, reach)
+            scaled.begin(y, max(reach, SHORTEST))
+            y = self._smooth(scaled)
+            if self._left(scaled, y) <= ENOUGH or before - scaled.goal(y) <= LITTLE * abs(before):
+                break
         return y
+
+    def _smooth(self, scaled: Scaled) -> Array:
+        """Where the solver ends."""
+        return self.way.solver(scaled, Ending(scaled, self.way.tolerance), self.way.iterations)
+
+    def _left(self, scaled: Scaled, y: Array) -> float:
+        """What is left of the gradient, in shares of the goal; infinite where limits are broken."""
+        proof = certificate(scaled, y)
+        return proof.residual / (abs(scaled.goal(y)) or 1.0) if proof.violation <= FEASIBLE else np.inf
+
+    def _held(self, scaled: Scaled) -> tuple[bool, Array]:
+        """Unknowns at which all limits hold; where none are found, those that break them least."""
+        y = scaled.start
+        if certificate(scaled, y).violation <= FEASIBLE:
+            return True, y
+        limits = Restoring(scaled, y)
+        y, _ = walked(limits, limits.start, FIRST_REACH)
+        scaled.begin(y[: scaled.count], FIRST_REACH)
+        return limits.is_enough(y), scaled.start
 
     def _samples(self) -> Samples:
         return Samples() if self.way.scatter is None else self.way.scatter.first()
