@@ -16,9 +16,11 @@ import calibrate_shift  # noqa: E402
 
 
 def write(folder: Path) -> list[Path]:
-    """Calibrate the shift of the eight-speed box, with fewer samples than the example, and draw it before and after."""
+    """Calibrate the shift of the eight-speed box for the linings of the drawing, draw it before and after, and the front."""
     folder.mkdir(parents=True, exist_ok=True)
-    path = folder / "calibrate_shift.png"
+    path, front = folder / "calibrate_shift.png", folder / "calibrate_shift_front.png"
     shift = calibrate_shift.eight_speed()
-    calibrate_shift.calibrated(shift, samples=16).plot(*shift.shown, path=path)
-    return [path]
+    nominal = calibrate_shift.calibrated(shift)
+    nominal.front(f"{shift.clutches[0]}.heat", shift.heats).plot(front)
+    nominal.plot(*shift.shown, path=path)
+    return [path, front]

@@ -2,7 +2,7 @@
 
 The largest of many values, as a jerk is, has its least value in a corner where several of them meet, and a run has
 corners where an event passes an instant that counts. K. Madsen, An algorithm for minimax solution of overdetermined
-systems of non-linear equations, 1975, doi:10.1093/imamat/16.3.321. docs/theory/calibration.md (6)
+systems of non-linear equations, J. Inst. Maths Applics 16, 1975. docs/theory/calibration.md (6)
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ PRICE, MOST_PRICE = 10.0, 1e4
 IDLE = 1e-6
 
 
-def walked(scaled: Scaled, y: Array, reach: float) -> tuple[Array, float]:
+def walked(scaled: Scaled, y: Array, reach: float, most: int = MOST_RUNS) -> tuple[Array, float]:
     """Better scaled unknowns, and the box that the last step had."""
-    price, last = PRICE, scaled.evaluator.runs + MOST_RUNS * max(len(scaled.samples), 1)
+    price, last = PRICE, scaled.evaluator.runs + most * max(len(scaled.samples), 1)
     walk = _Walk(scaled, y, reach)
     costs = list[float]()
     for _ in range(MOST_STEPS):
@@ -122,9 +122,7 @@ class _Walk:
         scaled, y, block = self.scaled, self.y, self.block
         own, count = len(scaled.width), scaled.count
         matrix, ends = scaled.linear
-        # rows that the box cannot reach are left out
-        change = self.reach * np.sum(np.abs(slopes[:, :own]), axis=1)
-        near = block.equal | (values <= change + (np.max(change, initial=0.0) if count > own else self.broken))
+        near = scaled.within(block, values, slopes, self.reach)
         equal = near & block.equal
         lines = np.vstack([-slopes[near], slopes[equal], matrix])
         room = np.concatenate([values[near], -values[equal], ends - matrix @ y])

@@ -16,7 +16,8 @@ from clutchwork.calibration.method import SOLVERS
 from clutchwork.calibration.problem import Mistakes, Problem, problem, refuse_bounds
 from clutchwork.calibration.result import Asked, Calibration, CalibrationInterrupted, found_by
 from clutchwork.calibration.scatter import Scatter
-from clutchwork.calibration.search import Search, Way
+from clutchwork.calibration.search import Search
+from clutchwork.calibration.solving import Way
 from clutchwork.calibration.terms import Span
 from clutchwork.calibration.threads import one_thread
 from clutchwork.declare.calls import explained

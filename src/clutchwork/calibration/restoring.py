@@ -22,9 +22,9 @@ SPARE = 1e-3
 class Restoring(Scaled):
     """The same unknowns and limits; the goal is by how much the worst limit is broken, one unknown more."""
 
-    def __init__(self, other: Scaled, y: Array) -> None:
+    def __init__(self, other: Scaled, x: Array) -> None:
         samples = Samples(tuple(other.samples), other.averaged, True)
-        super().__init__(other.evaluator, other.to_x(y), samples, other.scales)
+        super().__init__(other.evaluator, x, samples, other.scales)
         self.goal_scale = 1.0
         self.begin(self.start, self.reach)
 

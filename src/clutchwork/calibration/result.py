@@ -93,6 +93,7 @@ class Calibration:
     outcomes: tuple[Outcome, ...]
     samples: tuple[Array, ...]  # of production that decided it
     finished: bool  # not interrupted
+    corner: str = ""  # why the gradient there is one of differences, empty where it is not
 
     # ---------------------------------------------------------------------------------------------------------- values
 
@@ -230,14 +231,14 @@ def found_by(search: Search, asked: Asked) -> Calibration:
     evaluator = Evaluator(problem, search.function)
     scaled = Scaled(evaluator, best.x, Samples(best.samples, averaged, worst), best.scales)
     proof = certificate(scaled, scaled.start)
-    before, after = (evaluator.values(x, [evaluator.nominal])[0] for x in (problem.start, best.x))
+    before, after = evaluator.values(problem.start, [evaluator.nominal])[0], scaled.first
     held = tuple(
-        _held(limit, before[part], after[part], proof, number)
+        _held(limit, before[part], after.values[:, part], proof, number)
         for number, (limit, part) in enumerate(zip(problem.limits, evaluator.parts[1:], strict=True))
     )
     goals = float(np.max(before[evaluator.parts[0]])), best.goal
     finished = len(outcomes) == search.way.starts and all(one.ended for one in outcomes)
-    return Calibration(problem, asked, best.x, goals, held, proof, outcomes, best.samples, finished)
+    return Calibration(problem, asked, best.x, goals, held, proof, outcomes, best.samples, finished, after.note)
 
 
 def _held(limit: Settled, before: Array, after: Array, proof: Certificate, number: int) -> Held:

@@ -182,6 +182,15 @@ class Scaled:
         """The same at a point that is known."""
         return block.values(found, y)
 
+    def within(self, block: Block, values: Array, slopes: Array, reach: float) -> NDArray[np.bool_]:
+        """Rows that matter within a box, as far as their gradients say."""
+        own = len(self.width)
+        change = reach * np.sum(np.abs(slopes[:, :own]), axis=1)
+        # the bound of several values moves too, and so do limits that are broken
+        more = np.max(change, initial=0.0) if self.count > own else -np.min(values, initial=0.0)
+        made: NDArray[np.bool_] = block.equal | (values <= change + more)
+        return made
+
     def slopes(self, y: Array, block: Block) -> Array:
         """Their derivatives."""
         self.point(y)

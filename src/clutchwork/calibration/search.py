@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from threading import Event
@@ -11,45 +11,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.calibration.boxes import walked
-from clutchwork.calibration.ending import Ending
 from clutchwork.calibration.evaluate import Evaluator, Point
 from clutchwork.calibration.linear import Linear
-from clutchwork.calibration.method import Solver
-from clutchwork.calibration.optimal import certificate
-from clutchwork.calibration.outcome import FEASIBLE, Outcome
-from clutchwork.calibration.restoring import Restoring
-from clutchwork.calibration.rows import size_of
-from clutchwork.calibration.scaled import FIRST_REACH, Samples, Scaled
-from clutchwork.calibration.scatter import Scatter, in_all, sobol, violations
+from clutchwork.calibration.outcome import Outcome
+from clutchwork.calibration.scaled import Samples, Scaled
+from clutchwork.calibration.scatter import in_all, sobol, violations
+from clutchwork.calibration.solving import PILOTS, Solving, Way, best_of
 
 if TYPE_CHECKING:
     from clutchwork.calibration.memory import Memory
     from clutchwork.calibration.problem import Problem
 
 Array = NDArray[np.float64]
-# times that a search begins anew, what may be left of the gradient, and what counts as better, in shares of the goal
-MOST_AGAIN, ENOUGH, LITTLE = 3, 1e-6, 1e-3
-# the same where steps in boxes end, in a corner
-CORNER = 1e-4
-# box of a solver that begins where steps became small, in shares of the bounds
-SHORTEST = 1e-2
-# points that are run for each start, of which the best is taken
-PILOTS = 8
-
-
-@dataclass(frozen=True)
-class Way:
-    """How to search."""
-
-    solver: Solver
-    tolerance: float
-    iterations: int
-    starts: int
-    threads: int
-    seed: int
-    scatter: Scatter | None
 
 
 class Stopped(Exception):  # noqa: N818, it is caught where it is raised
@@ -63,6 +36,7 @@ class Search:
         self, problem: Problem, function: object, way: Way, memory: Memory, told: Callable[[int], None] | None
     ) -> None:
         self.problem, self.function, self.way, self.memory, self.told = problem, function, way, memory, told
+        self.solving = Solving(way)
         self.found = dict[int, Outcome]()
         self.stop, self.asked = Event(), 0
 
@@ -99,7 +73,7 @@ class Search:
         shares = sobol(len(problem.unknowns), PILOTS * more, way.seed)
         flat = Linear(problem)
         points = [flat.nearest(problem.low + share * flat.width) for share in shares]
-        yield from _best(evaluator, points, more)
+        yield from best_of(evaluator, points, more)
 
     def _from(self, number: int, start: Array) -> None:
         evaluator = Evaluator(self.problem, self.function)
@@ -113,48 +87,10 @@ class Search:
         if self.way.scatter is None:
             scaled = Scaled(evaluator, x, Samples(), before.scales if before else None)
             keeper.watch(scaled)
-            keeper.end(scaled.to_x(self._solved(scaled)), Samples())
+            keeper.end(scaled.to_x(self.solving.solved(scaled)), Samples())
             return
-        x, samples = in_all(evaluator, self.way.scatter, x, keeper.watched(self._solved))
+        x, samples = in_all(evaluator, self.way.scatter, x, keeper.watched(self.solving.solved))
         keeper.end(x, samples)
-
-    def _solved(self, scaled: Scaled) -> Array:
-        """Where the search ends: the solver where all is smooth, limits first, then boxes where there are corners."""
-        if not scaled.worst:
-            y = self._smooth(scaled)
-            if self._left(scaled, y) <= ENOUGH:
-                return y
-            scaled.begin(y, scaled.reach)
-        held, y = self._held(scaled)
-        for _ in range(MOST_AGAIN if held else 0):
-            y, reach = walked(scaled, y, scaled.reach)
-            before, left = scaled.goal(y), self._left(scaled, y)
-            if left <= CORNER:
-                break
-            scaled.begin(y, max(reach, SHORTEST))
-            y = self._smooth(scaled)
-            if self._left(scaled, y) <= ENOUGH or before - scaled.goal(y) <= LITTLE * abs(before):
-                break
-        return y
-
-    def _smooth(self, scaled: Scaled) -> Array:
-        """Where the solver ends."""
-        return self.way.solver(scaled, Ending(scaled, self.way.tolerance), self.way.iterations)
-
-    def _left(self, scaled: Scaled, y: Array) -> float:
-        """What is left of the gradient, in shares of the goal; infinite where limits are broken."""
-        proof = certificate(scaled, y)
-        return proof.residual / (abs(scaled.goal(y)) or 1.0) if proof.violation <= FEASIBLE else np.inf
-
-    def _held(self, scaled: Scaled) -> tuple[bool, Array]:
-        """Unknowns at which all limits hold; where none are found, those that break them least."""
-        y = scaled.start
-        if certificate(scaled, y).violation <= FEASIBLE:
-            return True, y
-        limits = Restoring(scaled, y)
-        y, _ = walked(limits, limits.start, FIRST_REACH)
-        scaled.begin(y[: scaled.count], FIRST_REACH)
-        return limits.is_enough(y), scaled.start
 
     def _samples(self) -> Samples:
         return Samples() if self.way.scatter is None else self.way.scatter.first()
@@ -230,15 +166,3 @@ def _clearly_better(one: Outcome, other: Outcome) -> bool:
     if not one.is_feasible or not other.is_feasible:
         return one.rank < other.rank
     return one.goal < other.goal - 1e-6 * abs(other.goal)
-
-
-def _best(evaluator: Evaluator, points: Sequence[Array], count: int) -> list[Array]:
-    """The points that break limits least, then those with the least goal; those without a value come last."""
-    values = np.concatenate([evaluator.values(point, [evaluator.nominal]) for point in points])
-    over = np.zeros(len(points))
-    for limit, part in zip(evaluator.problem.limits, evaluator.parts[1:], strict=True):
-        own, size = values[:, part], size_of(limit) or 1.0
-        over += np.max(np.maximum(own - limit.upper, limit.lower - own), axis=1, initial=0.0) / size
-    goal = np.max(values[:, evaluator.parts[0]], axis=1)
-    order = np.lexsort((goal, np.where(np.isfinite(over + goal), over, np.inf)))
-    return [points[place] for place in order[:count]]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.extras import need
 from clutchwork.calibration.ending import Ended, Ending
-from clutchwork.calibration.rows import Block
+from clutchwork.calibration.rows import Block, Row
 from clutchwork.calibration.scaled import Scaled
 
 Array = NDArray[np.float64]
@@ -25,7 +25,8 @@ def slsqp(scaled: Scaled, ending: Ending, iterations: int) -> Array:
     start, count = scaled.start, scaled.count
     by_z = whitened(scaled)
     matrix, ends = scaled.linear
-    blocks = [Block([one for one in scaled.rows if (one.sign == 0.0) == equal]) for equal in (True, False)]
+    rows = _within(scaled)
+    blocks = [Block([one for one in rows if (one.sign == 0.0) == equal]) for equal in (True, False)]
 
     def to_y(z: Array) -> Array:
         made: Array = start + by_z @ z
@@ -66,6 +67,15 @@ def slsqp(scaled: Scaled, ending: Ending, iterations: int) -> Array:
             options={"ftol": 1e-18, "maxiter": iterations},
         )
     return ending.best
+
+
+def _within(scaled: Scaled) -> list[Row]:
+    """Rows that matter within the box, with as much again for what gradients change: thousands take long."""
+    if scaled.curvature is not None:
+        return scaled.rows
+    block, y = Block(scaled.rows), scaled.start
+    near = scaled.within(block, scaled.values(y, block), scaled.slopes(y, block), 2.0 * scaled.reach)
+    return [one for one, matters in zip(block.rows, near, strict=True) if matters]
 
 
 def whitened(scaled: Scaled) -> Array:

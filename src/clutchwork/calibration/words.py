@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 # values of a table with more lines are shown without the middle
 MOST_VALUES = 24
+# of a limit, in shares of itself
+ROUND_OFF = 1e-9
 
 
 class Told(Protocol):
@@ -58,6 +60,10 @@ class Told(Protocol):
     @property
     def finished(self) -> bool:
         """Whether the search was not interrupted."""
+
+    @property
+    def corner(self) -> str:
+        """Why the gradient is one of differences."""
 
     @property
     def feasible(self) -> bool:
@@ -157,14 +163,18 @@ def faults(found: Told) -> Iterator[str]:
     if not found.feasible:
         for one in found.limits:
             low, high = one.after
-            if low < one.lower or high > one.upper:
+            out = max(one.lower - low, high - one.upper)
+            if out > ROUND_OFF * max(abs(low), abs(high)):
+                by = f"{_number(out)} {one.unit}".rstrip()
                 yield (
-                    f"{one.name} is {_range(one.after)} {one.unit}".rstrip() + f", outside of its bounds "
-                    f"{_bounds(one)}: widen them or those of the free numbers, or give more starts"
+                    f"{one.name} is {_range(one.after)} {one.unit}".rstrip() + f" at best, by {by} outside of its "
+                    f"bounds {_bounds(one)}: widen them or those of the free numbers, or give more starts"
                 )
     elif found.finished and not found.solved:
         left = f"what is left of the gradient is {found.certificate.residual:.2g} of the goal"
         yield f"{left}: the search stopped before the least one; give more iterations or starts, or another solver"
+        if found.corner:
+            yield f"the goal has a corner there, where no gradient is zero: {found.corner}"
     for start in found.outcomes:
         if start.fault:
             yield f"start {start.number + 1} could not be used: {start.fault}"

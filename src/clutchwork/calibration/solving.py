@@ -1,0 +1,128 @@
+"""From one start to its end: the solver where all is smooth, limits first, boxes where there are corners."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.calibration.boxes import walked
+from clutchwork.calibration.ending import Ending
+from clutchwork.calibration.method import Solver
+from clutchwork.calibration.optimal import certificate
+from clutchwork.calibration.outcome import FEASIBLE
+from clutchwork.calibration.restoring import Restoring
+from clutchwork.calibration.rows import size_of
+from clutchwork.calibration.scaled import FIRST_REACH, Scaled
+from clutchwork.calibration.scatter import Scatter, sobol
+
+if TYPE_CHECKING:
+    from clutchwork.calibration.evaluate import Evaluator
+
+Array = NDArray[np.float64]
+# times that a search begins anew, what may be left of the gradient, and what counts as better, in shares of the goal
+MOST_AGAIN, ENOUGH, LITTLE = 3, 1e-6, 1e-3
+# the same where steps in boxes end, in a corner
+CORNER = 1e-4
+# runs for each sample that may be spent on limits alone, twice
+RESTORING = 70
+# limits that are broken by less, in shares of their scale, are seen to on the way
+NEAR = 0.1
+# box of a solver that begins where steps became small, in shares of the bounds
+SHORTEST = 1e-2
+# points that are run for each start, of which the best is taken
+PILOTS = 8
+
+
+@dataclass(frozen=True)
+class Way:
+    """How to search."""
+
+    solver: Solver
+    tolerance: float
+    iterations: int
+    starts: int
+    threads: int
+    seed: int
+    scatter: Scatter | None
+
+
+@dataclass(frozen=True)
+class Solving:
+    """The way from a start to its end."""
+
+    way: Way
+
+    def solved(self, scaled: Scaled) -> Array:
+        """Where the search ends: the solver where all is smooth, limits first, then boxes where there are corners."""
+        if not scaled.worst or scaled.reach == FIRST_REACH:
+            y = self._smooth(scaled)
+            if self._left(scaled, y) <= ENOUGH:
+                return y
+            scaled.begin(y, scaled.reach)
+        if self._broken(scaled, scaled.start) <= NEAR and self._broken(scaled, y := self._cornered(scaled)) <= FEASIBLE:
+            return y
+        return self._cornered(scaled) if self._held(scaled) else scaled.start
+
+    def _cornered(self, scaled: Scaled) -> Array:
+        """Where boxes and the solver in turn end."""
+        y = scaled.start
+        for _ in range(MOST_AGAIN):
+            y, reach = walked(scaled, y, scaled.reach)
+            before, left = scaled.goal(y), self._left(scaled, y)
+            if left <= CORNER:
+                break
+            scaled.begin(y, max(reach, SHORTEST))
+            y = self._smooth(scaled)
+            if self._left(scaled, y) <= ENOUGH or before - scaled.goal(y) <= LITTLE * abs(before):
+                break
+        return y
+
+    def _smooth(self, scaled: Scaled) -> Array:
+        """Where the solver ends."""
+        return self.way.solver(scaled, Ending(scaled, self.way.tolerance), self.way.iterations)
+
+    def _left(self, scaled: Scaled, y: Array) -> float:
+        """What is left of the gradient, in shares of the goal; infinite where limits are broken."""
+        proof = certificate(scaled, y)
+        return proof.residual / (abs(scaled.goal(y)) or 1.0) if proof.violation <= FEASIBLE else np.inf
+
+    def _broken(self, scaled: Scaled, y: Array) -> float:
+        """By how much the worst limit is broken."""
+        return certificate(scaled, y).violation
+
+    def _held(self, scaled: Scaled) -> bool:
+        """Whether all limits hold somewhere; the search begins there, or where they are broken least."""
+        best, least = scaled.start, np.inf
+        for x in self._restored_from(scaled):
+            limits = Restoring(scaled, x)
+            y, _ = walked(limits, limits.start, FIRST_REACH, RESTORING)
+            if y[-1] < least:
+                best, least = y[: scaled.count], y[-1]
+            if limits.is_enough(y):
+                break
+        scaled.begin(best, FIRST_REACH)
+        return limits.is_enough(y)
+
+    def _restored_from(self, scaled: Scaled) -> Iterator[Array]:
+        """The start, and where that leads nowhere the best of points that are spread over the bounds."""
+        problem = scaled.problem
+        yield scaled.to_x(scaled.start)
+        shares = sobol(len(problem.unknowns), PILOTS, self.way.seed)
+        points = [scaled.flat.nearest(problem.low + share * scaled.flat.width) for share in shares]
+        yield from best_of(scaled.evaluator, points, 1)
+
+
+def best_of(evaluator: Evaluator, points: Sequence[Array], count: int) -> list[Array]:
+    """The points that break limits least, then those with the least goal; those without a value come last."""
+    values = np.concatenate([evaluator.values(point, [evaluator.nominal]) for point in points])
+    over = np.zeros(len(points))
+    for limit, part in zip(evaluator.problem.limits, evaluator.parts[1:], strict=True):
+        own, size = values[:, part], size_of(limit) or 1.0
+        over += np.max(np.maximum(own - limit.upper, limit.lower - own), axis=1, initial=0.0) / size
+    goal = np.max(values[:, evaluator.parts[0]], axis=1)
+    order = np.lexsort((goal, np.where(np.isfinite(over + goal), over, np.inf)))
+    return [points[place] for place in order[:count]]
