@@ -121,7 +121,7 @@ def calibrated(shift: Shift) -> cw.Calibration:
     return cw.calibrate(shift.system, shift.t_end, **given, **RUNS)
 
 
-def robust(shift: Shift, system: cw.System, samples: int = 32) -> cw.Calibration:
+def robust(shift: Shift, system: cw.System, samples: int = 64) -> cw.Calibration:
     """The pressures that keep all limits in all samples of production and have the least jerk of the worst of them."""
     limits = [*shift.limits, cw.limit(shift.jerk, upper=shift.worst)]
     production = {"scatter": shift.linings, "samples": samples, "robust": "worst", "threads": 2}
@@ -141,11 +141,12 @@ def main() -> None:
         front = nominal.front(f"{shift.clutches[0]}.heat", shift.heats)
         print(f"jerk over heat, {time.perf_counter() - began:.1f} s\n\n{front}\n")
         front.plot(folder / f"{shift.name}_front.png")
+        nominal.plot(*shift.shown, path=folder / f"{shift.name}.png")
         began = time.perf_counter()
         found = robust(shift, nominal.system)
         print(f"{shift.name}, linings within 10 %, {time.perf_counter() - began:.1f} s\n\n{found}\n")
         print(f"{found.verify(1000)}\n")
-        found.plot(*shift.shown, path=folder / f"{shift.name}.png")
+        found.plot(*shift.shown, path=folder / f"{shift.name}_robust.png")
     print(f"pictures in {folder}")
 
 

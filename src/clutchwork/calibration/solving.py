@@ -73,7 +73,8 @@ class Solving:
         for _ in range(MOST_AGAIN):
             y, reach = walked(scaled, y, scaled.reach)
             before, left = scaled.goal(y), self._left(scaled, y)
-            if left <= CORNER:
+            # the worst of several samples is in a corner, where a solver for smooth goals finds no more
+            if left <= CORNER or (scaled.worst and len(scaled.samples) > 1):
                 break
             scaled.begin(y, max(reach, SHORTEST))
             y = self._smooth(scaled)

@@ -172,7 +172,10 @@ def faults(found: Told) -> Iterator[str]:
                 )
     elif found.finished and not found.solved:
         left = f"what is left of the gradient is {found.certificate.residual:.2g} of the goal"
-        yield f"{left}: the search stopped before the least one; give more iterations or starts, or another solver"
+        yield (
+            f"{left}: the least one is in a corner, as where an event passes an instant that counts, or the "
+            "search stopped before it; give more iterations or starts, or another solver"
+        )
         if found.corner:
             yield f"the goal has a corner there, where no gradient is zero: {found.corner}"
     for start in found.outcomes:
