@@ -21,6 +21,6 @@ def write(folder: Path) -> list[Path]:
     path, front = folder / "calibrate_shift.png", folder / "calibrate_shift_front.png"
     shift = calibrate_shift.eight_speed()
     nominal = calibrate_shift.calibrated(shift)
-    nominal.front(f"{shift.clutches[0]}.heat", shift.heats).plot(front)
+    nominal.front(f"{shift.clutches[0]}.heat", shift.heats[::2]).plot(front)
     nominal.plot(*shift.shown, path=path)
     return [path, front]
