@@ -3,6 +3,7 @@
 #   make test     all tests: C++ core under sanitizers, then Python
 #   make check    format, lint, types, import contracts, spelling
 #   make bench    speed against peers; ARGS="--write" puts the table into docs/benchmarks.md
+#   make wasm     the core as WebAssembly: src/clutchwork/page/static/core.wasm
 #   make wheel    a wheel for other machines like this one, tried without a compiler: dist/
 #   make docs     the documentation: build/docs/index.html
 #   make setup    the environment alone
@@ -25,16 +26,17 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 JOBS ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 
 # what the compiled core and the type stub are made from; other Python files take effect without a build
-CORE_SOURCES := $(shell find CMakeLists.txt cpp interfaces $(addprefix src/clutchwork/,base declare elements laws signals face/names.py) \
+CORE_SOURCES := $(shell find CMakeLists.txt cpp interfaces/python interfaces/wasm $(addprefix src/clutchwork/,base declare elements laws signals face/names.py) \
 	-name '*.py' -o -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.txt' 2>/dev/null) \
 	$(wildcard tools/gen_registry.py tools/registry/*.py tools/gen_stubs.py)
-CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*.cpp' 'interfaces/*.hpp' 'tests/cpp/*.cpp' 'tests/cpp/*.hpp')
+WASM := src/clutchwork/page/static/core.wasm
+CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*.cpp' 'interfaces/*.hpp' 'tests/cpp/*.cpp' 'tests/cpp/*.hpp' 'tests/wasm/*.cpp')
 
-.PHONY: help setup demo test test-cpp test-python check format bench wheel docs picture clean
+.PHONY: help setup demo test test-cpp test-python check format bench wasm wheel docs picture clean
 .DELETE_ON_ERROR:
 
 help:
-	@sed -n '2,9p' Makefile | cut -c 3-
+	@sed -n '2,10p' Makefile | cut -c 3-
 
 # ---------------------------------------------------------------- environment
 
@@ -48,7 +50,7 @@ $(STAMPS)/venv: tools/prerequisites.sh
 	@touch $@
 
 # a stamp for each purpose, named as its extra in pyproject.toml
-EXTRAS := build plot test check docs bench wheel
+EXTRAS := build plot test check docs bench wasm wheel
 $(EXTRAS:%=$(STAMPS)/%): $(STAMPS)/%: $(STAMPS)/venv pyproject.toml tools/extras.py
 	@echo "installing what '$*' needs"
 	@$(BIN)/python tools/extras.py $* | $(PIP) install --no-compile --requirement /dev/stdin
@@ -66,7 +68,7 @@ demo: $(STAMPS)/package $(STAMPS)/plot
 	@$(BIN)/clutchwork demo
 
 # both parts run, a failure of either fails the target, and pytest has the last word
-test: $(STAMPS)/package $(STAMPS)/test
+test: $(STAMPS)/package $(STAMPS)/test $(WASM)
 	@cpp=0; $(MAKE) --no-print-directory test-cpp || cpp=$$?; \
 	if [ $$cpp -ne 0 ]; then echo "the C++ tests FAILED; the Python tests follow"; fi; \
 	$(PYTEST) && exit $$cpp
@@ -80,7 +82,7 @@ test-cpp: $(STAMPS)/build
 	@$(BIN)/cmake --build build/cpp --parallel $(JOBS) >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
 	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure
 
-test-python: $(STAMPS)/package $(STAMPS)/test
+test-python: $(STAMPS)/package $(STAMPS)/test $(WASM)
 	@$(PYTEST)
 
 # every checker runs, so that one call shows all there is to fix
@@ -107,8 +109,14 @@ docs: $(STAMPS)/package $(STAMPS)/docs
 	@$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/docs
 	@echo "build/docs/index.html"
 
+wasm: $(WASM)
+
+$(WASM): $(STAMPS)/wasm $(CORE_SOURCES) tools/build_wasm.py
+	@echo "compiling the core to WebAssembly (half a minute)"
+	@JOBS=$(JOBS) $(BIN)/python tools/build_wasm.py
+
 # repaired to a manylinux tag on Linux, then tried in an environment of its own
-wheel: $(STAMPS)/wheel
+wheel: $(STAMPS)/wheel $(WASM)
 	@rm -rf build/wheel && mkdir -p build/wheel dist
 	@echo "building the wheel"
 	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH" \

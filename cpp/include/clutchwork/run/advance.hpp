@@ -46,7 +46,8 @@ Status dispatch(Workspace<T>& ws, double t_end, Sink& sink) {
   } else if constexpr (NS > small_states) {
     return dispatch<T, NZ + 1, 0>(ws, t_end, sink);
   } else {
-    if (ws.reduced.nz == NZ && ws.sys.states == NS) return run_phase<SmallForm<T, NZ, NS>>(ws, t_end, sink);
+    if constexpr (has_small_form(NZ, NS))
+      if (ws.reduced.nz == NZ && ws.sys.states == NS) return run_phase<SmallForm<T, NZ, NS>>(ws, t_end, sink);
     return dispatch<T, NZ, NS + 1>(ws, t_end, sink);
   }
 }

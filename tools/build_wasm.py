@@ -1,0 +1,150 @@
+"""Compile the core to WebAssembly, from the sources of the native one; ziglang brings compiler and libm.
+
+`build_wasm.py` writes src/clutchwork/page/static/core.wasm. `build_wasm.py --native OUT` writes a program of the same
+sources, compiler and libm that runs here: tests compare the bits. docs/guide/wasm.md
+"""
+
+from __future__ import annotations
+
+import argparse
+import gzip
+import os
+import platform
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+MADE = ROOT / "build" / "wasm"
+WASM = ROOT / "src" / "clutchwork" / "page" / "static" / "core.wasm"
+HEADER = ROOT / "cpp" / "include" / "clutchwork" / "c_api.h"
+
+# exact forms, as speeds and states: the one that shifts and launches are in most often; the sparse form runs the others
+FORMS = "FORM(2, 1)"
+CORE = [ROOT / "cpp" / "src" / f"{name}.cpp" for name in ("c_api", "components", "phases_sparse", "phases_full")]
+SOURCES = [*CORE, ROOT / "interfaces" / "wasm" / "small_forms.cpp"]
+# what a step spends its time in is inlined by force, as in the native build
+HOT = {"phases_sparse", "small_forms"}
+# what a page has no use for: groups of runs, linearisation, derivatives
+LEFT_OUT = re.compile(r"cw_(advance_group|group_size|local|local_size|tangents_\w+|adjoint_\w+)")
+FLAGS = [
+    "-std=c++20",
+    "-g0",
+    "-ffp-contract=off",
+    "-fno-math-errno",
+    "-fno-exceptions",
+    "-fno-rtti",
+    "-fvisibility=hidden",
+]
+SECTION = "clutchwork"
+
+
+class Target(NamedTuple):
+    """For what it is compiled, and how."""
+
+    name: str
+    triple: str
+    flags: tuple[str, ...]
+
+
+# small rather than fast, and as a whole: every part of the core is there once
+TO_WASM = Target("wasm32", "wasm32-wasi", ("-Os", "-flto"))
+# bits do not depend on it, so what is quick to compile will do
+TO_NATIVE = Target("native", f"{platform.machine()}-linux-musl", ("-O1",))
+
+
+def exports() -> list[str]:
+    """Functions of the C interface that the module has."""
+    declared = re.findall(r"\b(cw_\w+)\(", HEADER.read_text(encoding="utf-8"))
+    return [name for name in dict.fromkeys(declared) if not LEFT_OUT.fullmatch(name)]
+
+
+def zig(*arguments: object) -> None:
+    """Call the compiler; SystemExit with what it said where it fails."""
+    command = [sys.executable, "-m", "ziglang", "c++", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - the compiler
+    if done.returncode != 0:
+        raise SystemExit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
+
+
+def generated() -> Path:
+    """The folder of generated headers."""
+    folder = MADE / "include" / "clutchwork"
+    folder.mkdir(parents=True, exist_ok=True)
+    generator = ROOT / "tools" / "gen_registry.py"
+    subprocess.run([sys.executable, "-I", "-S", generator, ROOT, folder], check=True)  # noqa: S603 - our own tool
+    return folder.parent
+
+
+def compiled(target: Target, sources: list[Path]) -> list[Path]:
+    """Objects of all sources, made side by side."""
+    places = [ROOT / "cpp" / "include", ROOT / "cpp" / "src", generated()]
+    includes = [f"-I{place}" for place in places]
+    forms = f"-DCLUTCHWORK_SMALL_FORMS(FORM)={FORMS}"
+    folder = MADE / target.name
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def one(source: Path) -> Path:
+        made = folder / f"{source.stem}.o"
+        inlined = () if source.stem in HOT else ("-DCLUTCHWORK_INLINE=inline",)
+        zig("-target", target.triple, *FLAGS, *target.flags, *inlined, forms, *includes, "-c", source, "-o", made)
+        return made
+
+    # the longest first
+    order = sorted(sources, key=lambda source: source.stem not in {*HOT, "phases_full"})
+    with ThreadPoolExecutor(int(os.environ.get("JOBS") or os.cpu_count() or 2)) as pool:
+        return list(pool.map(one, order))
+
+
+def marked(module: bytes) -> bytes:
+    """The module and its schema hash in a section of its own, which programs read that cannot run it."""
+    layout = (MADE / "include" / "clutchwork" / "layout.gen.hpp").read_text(encoding="utf-8")
+    found = re.search(r"schema_hash = (-?\d+)ll;", layout)
+    if found is None:
+        raise SystemExit("layout.gen.hpp has no schema_hash: correct tools/build_wasm.py")
+    name, content = SECTION.encode(), found[1].encode()
+    section = bytes([len(name)]) + name + content
+    return module + b"\0" + bytes([len(section)]) + section
+
+
+def wasm() -> Iterator[str]:
+    """Make core.wasm; yields what to tell."""
+    began = time.monotonic()
+    objects = compiled(TO_WASM, SOURCES)
+    names = [f"-Wl,--export={name}" for name in (*exports(), "__heap_base")]
+    linked = MADE / "core.wasm"
+    flags = ("-mexec-model=reactor", "-Wl,--no-entry", "-Wl,--gc-sections", "-Wl,--strip-all")
+    zig("-target", TO_WASM.triple, *TO_WASM.flags, *flags, *names, *objects, "-o", linked)
+    module = marked(linked.read_bytes())
+    WASM.parent.mkdir(parents=True, exist_ok=True)
+    WASM.write_bytes(module)
+    packed = len(gzip.compress(module, 9))
+    took = time.monotonic() - began
+    yield f"{WASM.relative_to(ROOT)}: {len(module) / 1e3:.0f} kB, {packed / 1e3:.0f} kB as gzip, {took:.0f} s"
+
+
+def native(out: Path) -> None:
+    """Make the program that tests compare with."""
+    objects = compiled(TO_NATIVE, [*SOURCES, ROOT / "tests" / "wasm" / "native.cpp"])
+    out.parent.mkdir(parents=True, exist_ok=True)
+    zig("-target", TO_NATIVE.triple, *TO_NATIVE.flags, *objects, "-o", out)
+
+
+def main() -> None:
+    """What the command line asks for."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0] if __doc__ else "")
+    parser.add_argument("--native", type=Path, help="write the program for this machine here")
+    given = parser.parse_args()
+    if given.native is not None:
+        native(given.native)
+    else:
+        print("\n".join(wasm()))
+
+
+if __name__ == "__main__":
+    main()
