@@ -13,6 +13,8 @@ from support.amount import amount
 pytestmark = pytest.mark.slow
 
 ELEMENTS = samples.declared(*samples.ELEMENT_ROLES)
+# guards that are the least of several, stops that are struck together, a speed that is round-off
+SEEN = {"laws": (24,), "stops": (22,), "contacts": (24,)}
 
 
 def report(case, seed, count):
@@ -26,7 +28,7 @@ def report(case, seed, count):
 @pytest.mark.parametrize("kind", gradient_cases.KINDS)
 def test_random_drivelines(kind):
     compared, refused, wrong = 0, list[str](), list[str]()
-    for seed in range(amount(6)):
+    for seed in dict.fromkeys([*range(amount(6)), *SEEN.get(kind, ())]):
         found = report(gradient_cases.KINDS[kind](seed), seed, 2)
         compared, refused = compared + found.compared, [*refused, *found.refused]
         wrong += [f"seed {seed}: {text}" for text in found.wrong]

@@ -69,6 +69,13 @@ def scales(run: cw.Trajectory, outputs: dict) -> np.ndarray:
         elif hasattr(one, "shaft"):
             found.append(max(abs(float(one.of(run))), 1e-12))
         else:
-            size = float(np.max(np.abs(run[one.kept_as(run) if hasattr(one, "kept_as") else one.signal]), initial=0.0))
-            found += [max(size, 1e-12)] * len(getattr(one, "times", (0,)))
+            size = _size(run, one.kept_as(run) if hasattr(one, "kept_as") else one.signal)
+            found += [size] * len(getattr(one, "times", (0,)))
     return np.array(found)
+
+
+def _size(run: cw.Trajectory, signal: str) -> float:
+    """The size of a signal; of one that is round-off beside others of its unit, a small part of theirs."""
+    own = float(np.max(np.abs(run[signal]), initial=0.0))
+    alike = [name for name in run.names if run.units[name] == run.units[signal]]
+    return max([own, 1e-12, *(1e-9 * float(np.max(np.abs(run[name]), initial=0.0)) for name in alike)])

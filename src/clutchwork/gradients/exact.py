@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.gradients.grazing import crowded, decided, noted, refused, together
+from clutchwork.gradients.grazing import crowded, decided, noted, refused, struck_together, together
 from clutchwork.gradients.measures import Asked, Measure, measures
 from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.runs import Run, Runs
@@ -139,6 +139,7 @@ class Exact:
         primal, sizes = run.primal, float(np.max(self._sizes(x), initial=0.0))
         yield from refused(self.task.system, decided(primal.grazes, primal.events), until, sizes)
         yield from crowded(primal.events, self.runs.wanted.contacts, until)
+        yield from struck_together(primal.events, self.runs.wanted.contacts, until)
 
 
 def _refuse(problems: list[str]) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import wiring
-from clutchwork.declare.layout import EVENT
+from clutchwork.declare.layout import CAUSES, EVENT
 from clutchwork.results.forms import LOCKED
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ PIECES, TOUCHED = (6, 9), 1e-5
 CROWD, CROWDED = 6, 1e-4
 # kinds of guards that decide about contacts, by their numbers in the core: slips, capacities, sets, spares, loads
 DECIDED = (1, 2, 3, 4, 5)
+IMPACT = next(number for number, (name, _) in CAUSES.items() if name == "impact")
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
 
@@ -78,6 +79,17 @@ def crowded(events: Array, contacts: Sequence[str], until: float) -> Iterator[st
         if len(close):
             why = f"locks and lets go {CROWD} times within {CROWDED:g} s at {times[close[0]]:.9g} s"
             yield f"{name} {why}; give the parts beside it damping, or its law more static friction"
+
+
+def struck_together(events: Array, contacts: Sequence[str], until: float) -> Iterator[str]:
+    """Stops that are struck at one instant, of which one bounces: the order of the blows decides."""
+    hit = events[(events[:, AT["cause"]] == IMPACT) & (events[:, AT["time"]] <= until)]
+    times, bounces = hit[:, AT["time"]], hit[:, AT["to"]] != LOCKED
+    close = (np.diff(times) <= ONE_INSTANT * 1e-3) & (np.diff(hit[:, AT["contact"]]) != 0.0)
+    for place in np.flatnonzero(close & (bounces[1:] | bounces[:-1])):
+        names = " and ".join(contacts[int(number)] for number in hit[place : place + 2, AT["contact"]])
+        yield f"{names} are struck at one instant, {times[place]:.9g} s, and bounce; give them different gaps"
+        return
 
 
 def noted(system: System, grazes: Array, events: Array) -> Iterator[str]:

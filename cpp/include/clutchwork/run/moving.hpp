@@ -55,9 +55,10 @@ T level_of(const Workspace<T>& ws, const LineGuard& guard) {
   return own ? T(guard.sign) * T(ws.sys.contact_tolerance[c]) : T(guard.level);
 }
 
-/// The guard that was hit at (t, y): zero at the event.
+/// The guard that was hit at (t, y): zero at the event. Of a law or a process it is the least of several, that of
+/// `who`.
 template <class Form, class T = typename Form::Scalar>
-T guard_at(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y) {
+T guard_at(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y, int& who) {
   Workspace<T>& ws = form.ws;
   const int nz = form.nz(), ne = int(ws.sys.elements);
   ws.in.time = -infinity;
@@ -87,7 +88,6 @@ T guard_at(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y) {
       T rate[most_ways];
       const T still[most_ways] = {};
       for (int w = 0; w < b.ways; ++w) rate[w] = form.rate(hit.index + w, y) + offset_rate(ws, hit.index + w);
-      int who = hit.who;
       return law_margin(ws, b, rate, still, y + nz, step.f0() + nz, who).v;
     }
     case Hit::fault:
@@ -99,7 +99,6 @@ T guard_at(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y) {
         const int k = ws.branch_of[d];
         return k < 0 || k >= ws.n_branches ? T(0) : form.rate(k, y) + offset_rate(ws, k);
       };
-      int who = hit.who;
       return process_margin(ws, hit.index, t, y + nz, step.f0() + nz, rate, who).v;
     }
     case Hit::flip: {
@@ -284,19 +283,36 @@ T knot_shift(Workspace<T>& ws) {
   return shift;
 }
 
+/// Time derivative of the guard that was hit, by differences along the motion, close enough that no other is less.
+template <class Form, class T = typename Form::Scalar>
+double guard_rate(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
+  constexpr double closest = 1e-5;
+  T* probe = step.k(1);
+  double rate = 0;
+  for (double share = 1; share > 0.5 * closest; share *= 0.1) {
+    const double reach = 0.01 * share * larger(step.h, 1e-12);
+    bool own = true;
+    auto plain = [&](double along) {
+      for (int i = 0; i < form.n(); ++i) probe[i] = T(value(step.y0()[i]) + along * reach * value(velocity[i]));
+      int who = hit.who;
+      const double found = value(guard_at(form, step, hit, form.ws.time + along * reach, probe, who));
+      own = own && who == hit.who;
+      return found;
+    };
+    rate = (8 * (plain(1) - plain(-1)) - (plain(2) - plain(-2))) / (12 * reach);
+    if (own) break;
+  }
+  return rate;
+}
+
 /// How a hit moves: minus the derivative of its guard at a fixed instant over its time derivative.
 /// docs/theory/gradients.md (3)
 template <class Form, class T = typename Form::Scalar>
 T hit_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
   Workspace<T>& ws = form.ws;
-  T* probe = step.k(1);
-  const double reach = 0.01 * larger(step.h, 1e-12);
-  auto plain = [&](double along) {
-    for (int i = 0; i < form.n(); ++i) probe[i] = T(value(step.y0()[i]) + along * reach * value(velocity[i]));
-    return value(guard_at(form, step, hit, ws.time + along * reach, probe));
-  };
-  const double rate = (8 * (plain(1) - plain(-1)) - (plain(2) - plain(-2))) / (12 * reach);
-  const T guard = guard_at(form, step, hit, ws.time, step.y0());
+  const double rate = guard_rate(form, step, hit, velocity);
+  int who = hit.who;
+  const T guard = guard_at(form, step, hit, ws.time, step.y0(), who);
   const T shift = rate != 0 ? without_value(guard) * T(-1 / rate) : T(0);
   note_graze(ws, int(hit.what), component_of(ws, hit), abs(rate) / guard_scale(form, hit, step.y0()), shift);
   return shift;
