@@ -5,6 +5,7 @@
 #   make bench    speed against peers; ARGS="--write" puts the table into docs/benchmarks.md
 #   make wasm     the core as WebAssembly: src/clutchwork/page/static/core.wasm
 #   make wheel    a wheel for other machines like this one, tried without a compiler: dist/
+#   make page     the script of pages that compute (needs node): src/clutchwork/page/static/
 #   make docs     the documentation: build/docs/index.html
 #   make setup    the environment alone
 #   make clean    removes .venv, build and out
@@ -30,9 +31,13 @@ CORE_SOURCES := $(shell find CMakeLists.txt cpp interfaces/python interfaces/was
 	-name '*.py' -o -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.txt' 2>/dev/null) \
 	$(wildcard tools/gen_registry.py tools/registry/*.py tools/gen_stubs.py)
 WASM := src/clutchwork/page/static/core.wasm
+# the page that computes: bundled where node is there
+NODE := $(shell command -v npm 2>/dev/null)
+PAGE := $(if $(NODE),build/page/stamp)
+PAGE_SOURCES := $(wildcard interfaces/page/*.* interfaces/page/src/*)
 CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*.cpp' 'interfaces/*.hpp' 'tests/cpp/*.cpp' 'tests/cpp/*.hpp' 'tests/wasm/*.cpp')
 
-.PHONY: help setup demo test test-cpp test-python check format bench wasm wheel docs picture clean
+.PHONY: help setup demo test test-cpp test-python page test-page check-page check format bench wasm wheel docs picture clean
 .DELETE_ON_ERROR:
 
 help:
@@ -68,10 +73,11 @@ demo: $(STAMPS)/package $(STAMPS)/plot
 	@$(BIN)/clutchwork demo
 
 # both parts run, a failure of either fails the target, and pytest has the last word
-test: $(STAMPS)/package $(STAMPS)/test $(WASM)
-	@cpp=0; $(MAKE) --no-print-directory test-cpp || cpp=$$?; \
-	if [ $$cpp -ne 0 ]; then echo "the C++ tests FAILED; the Python tests follow"; fi; \
-	$(PYTEST) && exit $$cpp
+test: $(STAMPS)/package $(STAMPS)/test $(WASM) $(PAGE)
+	@failed=0; $(MAKE) --no-print-directory test-cpp || failed=$$?; \
+	if [ $$failed -ne 0 ]; then echo "the C++ tests FAILED; the Python tests follow"; fi; \
+	if [ -n "$(NODE)" ]; then $(MAKE) --no-print-directory test-page || failed=1; fi; \
+	$(PYTEST) && exit $$failed
 
 test-cpp: $(STAMPS)/build
 	@mkdir -p build
@@ -82,7 +88,25 @@ test-cpp: $(STAMPS)/build
 	@$(BIN)/cmake --build build/cpp --parallel $(JOBS) >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
 	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure
 
-test-python: $(STAMPS)/package $(STAMPS)/test $(WASM)
+# the script of pages, into the package
+page: build/page/stamp
+
+interfaces/page/node_modules/.package-lock.json: interfaces/page/package-lock.json
+	@echo "installing what the page is made with"
+	@cd interfaces/page && npm ci --silent && touch node_modules/.package-lock.json
+
+build/page/stamp: interfaces/page/node_modules/.package-lock.json $(PAGE_SOURCES)
+	@cd interfaces/page && npm run --silent build
+	@touch $@
+
+test-# the script of pages, into the package
+page: build/page/stamp
+	@cd interfaces/page && npm run --silent test
+
+check-page: interfaces/page/node_modules/.package-lock.json
+	@cd interfaces/page && npm run --silent types && npm run --silent lint
+
+test-python: $(STAMPS)/package $(STAMPS)/test $(WASM) $(PAGE)
 	@$(PYTEST)
 
 # every checker runs, so that one call shows all there is to fix
@@ -95,6 +119,7 @@ check: $(STAMPS)/package $(STAMPS)/check
 	try $(BIN)/codespell; \
 	try $(BIN)/clang-format --dry-run --Werror $(CPP_FILES); \
 	try $(BIN)/lizard --languages cpp --length 60 --CCN 25 --warnings_only cpp interfaces; \
+	if [ -n "$(NODE)" ]; then try $(MAKE) --no-print-directory check-page; fi; \
 	if [ -n "$$bad" ]; then echo "make check found something:$$bad"; exit 1; fi; echo "make check: all is well"
 
 format: $(STAMPS)/check
@@ -136,4 +161,4 @@ picture: $(STAMPS)/package $(STAMPS)/plot
 	@$(BIN)/clutchwork draw examples/six_speed/model.toml --at 2.5 --out docs/_static/six_speed.svg
 
 clean:
-	rm -rf $(VENV) build out docs/reference
+	rm -rf $(VENV) build out docs/reference interfaces/page/node_modules src/clutchwork/page/static

@@ -24,7 +24,10 @@ PAGES = [
     *ROOT.glob("decisions/*.md"),
 ]
 SOURCES = [
-    path for folder in ("src", "cpp", "tests", "interfaces") for path in (ROOT / folder).rglob("*") if path.is_file()
+    path
+    for folder in ("src", "cpp", "tests", "interfaces")
+    for path in (ROOT / folder).rglob("*")
+    if path.is_file() and not {"node_modules", "static"} & set(path.parts)
 ]
 
 

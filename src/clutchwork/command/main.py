@@ -28,7 +28,7 @@ from clutchwork.command import check, completion, new, plot, reference, run
 __all__ = ["EXIT_CODES", "INTERRUPTED", "STOPPED", "main", "parser"]
 
 # rooms with a command of their own, in command.py
-ROOMS = ("schematic", "diagrams", "sweeps", "linear", "rig", "fit", "codegen")
+ROOMS = ("schematic", "diagrams", "sweeps", "linear", "rig", "fit", "codegen", "page")
 ABOUT = "Simulates drivelines with clutches and brakes: engagements, launches, gear shifts."
 EXAMPLES = (
     ("clutchwork demo", "see what it does: a gearbox launches and shifts"),

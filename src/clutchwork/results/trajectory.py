@@ -220,6 +220,27 @@ class Trajectory(Exports):
         found: Gradient = above("run.gradient", self, of, by)
         return found
 
+    @explained("run.page", path="'shift.html'", drag="['F1.pressure']", sliders="['c1.gain']", show="['*.speed']")
+    def page(
+        self,
+        path: str | Path,
+        *,
+        drag: Sequence[str] | str | None = None,
+        sliders: Sequence[str] | str | None = None,
+        show: Sequence[str] | str | None = None,
+    ) -> Path:
+        """Write a page that computes: one HTML file, in which a reader moves pressures and numbers of this run.
+
+        Parameters: path, of the file; drag, signals whose knots are dragged, by default pressures that vary; sliders,
+        numbers as in `System.changed`, with ends where half and twice are not meant: "c1.gain=2e-4:8e-4"; show, curves
+        by name or wildcard, by default speeds, slips, torques, heats and temperatures. Returns the path.
+
+        The page runs the model from its begin, with these options; UseError names what cannot be changed in it. It
+        needs no network and no installation, and sends nothing anywhere. docs/guide/page.md
+        """
+        written: Path = above("run.page", self, path, drag, sliders, show)
+        return written
+
     @cached_property
     def dependent(self) -> tuple[DependentPhase, ...]:
         """When contacts were locked whose directions depend on each other, so that the torque of each is a convention.

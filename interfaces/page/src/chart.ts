@@ -1,0 +1,168 @@
+// One panel of curves: uPlot, with the curves of the start behind them, the cursor, and what was not reached greyed.
+import uPlot from "uplot";
+import type { App, Part } from "./app";
+import type { Result } from "./core";
+import type { PanelData } from "./data";
+import { colour, curveColour, element } from "./dom";
+import { number, shownUnit } from "./format";
+import { evaluated } from "./forms";
+
+const HEIGHT = 190;
+const SYNC = 8;
+
+export class Chart implements Part {
+  readonly root: HTMLElement;
+  readonly plot: uPlot;
+  private readonly cursor = element("div", { class: "cursor" });
+  private readonly beyond = element("div", { class: "beyond", hidden: true });
+  private readonly values: HTMLElement[] = [];
+  private readonly shown: boolean[];
+  private readonly start: Float64Array[];
+  private readonly factor: number;
+  private range: [number, number] = [0, 1];
+  private visible = true;
+  private stale = false;
+  private now: Float64Array[] = [];
+
+  constructor(
+    private readonly app: App,
+    private readonly panel: PanelData,
+  ) {
+    const [factor, word] = shownUnit(panel.unit);
+    this.factor = factor;
+    this.shown = panel.names.map(() => true);
+    this.start = this.curves(app.first);
+    const place = element("div", { class: "plot" });
+    const title = element("h3", {}, panel.title, element("span", { class: "unit" }, word ? ` in ${word}` : ""));
+    this.root = element("figure", { class: "panel", "aria-label": `${panel.title}: ${panel.names.join(", ")}` }, title, this.legend(), place);
+    this.plot = new uPlot(this.options(), [[], ...panel.names.map(() => [])] as unknown as uPlot.AlignedData, place);
+    this.plot.over.append(this.beyond, this.cursor);
+    this.plot.over.addEventListener("pointermove", (event) => this.hover(event));
+    this.plot.over.addEventListener("pointerdown", (event) => this.hover(event));
+    new ResizeObserver(() => this.resize(place)).observe(place);
+    new IntersectionObserver((entries) => {
+      this.visible = entries.some((entry) => entry.isIntersecting);
+      if (this.visible && this.stale) this.update(this.app.run);
+    }, { rootMargin: "60px" }).observe(place);
+    this.update(app.run);
+  }
+
+  update(run: Result): void {
+    this.stale = !this.visible;
+    if (this.stale) return;
+    this.now = this.curves(run);
+    this.range = this.fitting();
+    this.plot.setData([run.times, ...this.now] as uPlot.AlignedData);
+    const from = this.plot.valToPos(run.reached, "x");
+    this.beyond.hidden = run.status === 0;
+    if (run.status !== 0) this.beyond.style.left = `${from}px`;
+    this.at(this.app.time);
+  }
+
+  at(time: number): void {
+    this.cursor.style.transform = `translateX(${this.plot.valToPos(time, "x")}px)`;
+    const row = this.app.row();
+    this.values.forEach((value, i) => (value.textContent = number(this.now[i]?.[row] ?? NaN)));
+  }
+
+  recolour(): void {
+    this.plot.redraw(false);
+  }
+
+  private curves(run: Result): Float64Array[] {
+    return this.panel.names.map((name) => {
+      const made = evaluated(this.app.data.signals[name]!.form, run);
+      if (this.factor !== 1) for (let i = 0; i < made.length; i++) made[i]! *= this.factor;
+      return made;
+    });
+  }
+
+  private legend(): HTMLElement {
+    const list = element("ul", { class: "legend" });
+    this.panel.names.forEach((name, i) => {
+      const value = element("output", { class: "value" });
+      this.values.push(value);
+      const key = element("button", { type: "button", "aria-pressed": "true", class: `key c${i % 8}`, title: `show or hide ${name}` }, element("span", { class: "swatch" }), name);
+      key.addEventListener("click", () => {
+        this.shown[i] = !this.shown[i];
+        key.setAttribute("aria-pressed", `${this.shown[i]}`);
+        this.plot.setSeries(i + 1, { show: this.shown[i]! });
+      });
+      list.append(element("li", {}, key, value));
+    });
+    return list;
+  }
+
+  private options(): uPlot.Options {
+    const axis: uPlot.Axis = { stroke: () => colour("text"), grid: { stroke: () => colour("grid"), width: 1 }, ticks: { show: false }, font: "12px system-ui, sans-serif" };
+    return {
+      width: 400,
+      height: HEIGHT,
+      legend: { show: false },
+      cursor: { show: false },
+      padding: [8, SYNC, 0, 0],
+      scales: { x: { time: false, range: () => [this.app.data.tStart, this.app.data.tEnd] }, y: { range: () => this.range } },
+      axes: [
+        { ...axis, size: 26, values: (_, ticks) => ticks.map((tick) => `${number(tick)}`) },
+        { ...axis, size: 58, values: (_, ticks) => ticks.map((tick) => number(tick)) },
+      ],
+      series: [{}, ...this.panel.names.map((name, i): uPlot.Series => ({ label: name, stroke: () => curveColour(i), width: 1.6, points: { show: false } }))],
+      hooks: { drawAxes: [(plot) => this.ghost(plot)] },
+    };
+  }
+
+  /** The curves of the start. */
+  private ghost(plot: uPlot): void {
+    if (this.app.run === this.app.first) return;
+    const { ctx } = plot;
+    const times = this.app.first.times;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(plot.bbox.left, plot.bbox.top, plot.bbox.width, plot.bbox.height);
+    ctx.clip();
+    ctx.globalAlpha = 0.35;
+    ctx.lineWidth = devicePixelRatio;
+    ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
+    const x0 = plot.valToPos(0, "x", true);
+    const xScale = plot.valToPos(1, "x", true) - x0;
+    const y0 = plot.valToPos(0, "y", true);
+    const yScale = plot.valToPos(1, "y", true) - y0;
+    this.start.forEach((values, i) => {
+      if (!this.shown[i]) return;
+      ctx.strokeStyle = curveColour(i);
+      ctx.beginPath();
+      for (let k = 0; k < values.length; k++) ctx.lineTo(x0 + xScale * times[k]!, y0 + yScale * values[k]!);
+      ctx.stroke();
+    });
+    ctx.restore();
+  }
+
+  /** Ends of the axis: they stay while the curves fit well, so that dragging does not shake them. */
+  private fitting(): [number, number] {
+    let low = Infinity;
+    let high = -Infinity;
+    for (const curve of [...this.start, ...this.now]) {
+      for (const value of curve) {
+        if (value < low) low = value;
+        if (value > high) high = value;
+      }
+    }
+    if (!(low <= high)) return [0, 1];
+    const room = 0.06 * (high - low) || 0.1 * Math.abs(high) || 1;
+    const [before, after] = this.range;
+    const fits = before <= low && high <= after && after - before < 2.5 * (high - low);
+    return fits ? this.range : [low - room, high + room];
+  }
+
+  private hover(event: PointerEvent): void {
+    const box = this.plot.over.getBoundingClientRect();
+    this.app.look(this.plot.posToVal(event.clientX - box.left, "x"));
+  }
+
+  private resize(place: HTMLElement): void {
+    const width = Math.max(place.clientWidth, 120);
+    if (width === this.plot.width) return;
+    this.plot.setSize({ width, height: HEIGHT });
+    this.at(this.app.time);
+  }
+}

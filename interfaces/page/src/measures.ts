@@ -1,0 +1,115 @@
+// What a run comes to: states of contacts over time, events and results in words.
+import type { CoreEvent, Result } from "./core";
+import type { ContactData, PageData } from "./data";
+import { seconds } from "./format";
+import { evaluated } from "./forms";
+
+export type State = "locked" | "slipping" | "open";
+
+export interface Stroke {
+  from: number;
+  to: number;
+  state: State;
+}
+
+export interface Measure {
+  name: string;
+  unit: string;
+  value: number | null;
+  missing: string;
+}
+
+const [TIME, CONTACT, FROM, TO, CAUSE] = [0, 1, 2, 3, 4];
+const NOTHING = 1e-9;
+
+/** How a contact is over time. */
+export function strokes(contact: ContactData, run: Result): Stroke[] {
+  const torque = evaluated(contact.torque, run);
+  const made: Stroke[] = [];
+  for (let i = 0; i < run.count; i++) {
+    const mode = run.rows[i * run.size + contact.mode]!;
+    const state: State = mode === 0 ? "locked" : Math.abs(mode) === 1 && Math.abs(torque[i]!) > NOTHING ? "slipping" : "open";
+    const last = made[made.length - 1];
+    if (last) last.to = run.times[i]!;
+    if (last?.state !== state) made.push({ from: run.times[i]!, to: run.times[i]!, state });
+  }
+  return made.filter((one) => one.to > one.from || made.length === 1);
+}
+
+export function eventTime(event: CoreEvent): number {
+  return event[TIME]!;
+}
+
+/** An event in words. */
+export function sentence(data: PageData, event: CoreEvent): string {
+  const name = nameOf(data, event[CONTACT]!);
+  const [, cause] = data.causes[`${event[CAUSE]!}`] ?? ["", ""];
+  const what = `${name} ${deed(event[FROM]!, event[TO]!)}`.trim();
+  return cause ? `${what}: ${cause}` : what;
+}
+
+function deed(from: number, to: number): string {
+  if (to === 0) return from === 0 ? "stays locked" : "locks";
+  if (from === 0) return to === 2 ? "opens" : "breaks away";
+  if (to === 2) return "opens";
+  return from === 2 ? "closes" : "slips the other way";
+}
+
+function nameOf(data: PageData, number: number): string {
+  return data.contacts.find((contact) => contact.number === number)?.name ?? "";
+}
+
+/** Heat of every contact, when it locks, and how the output feels. */
+export function measures(data: PageData, run: Result): Measure[] {
+  const made: Measure[] = [];
+  let total = 0;
+  for (const contact of data.contacts) {
+    if (!contact.heat) continue;
+    const heat = evaluated(contact.heat, run).at(-1) ?? 0;
+    total += heat;
+    if (Math.abs(heat) > 0.05) made.push({ name: `Heat of ${contact.name}`, unit: "J", value: heat, missing: "" });
+  }
+  if (made.length > 1) made.push({ name: "Heat of all contacts", unit: "J", value: total, missing: "" });
+  for (const contact of data.contacts) {
+    const locks = run.events.filter((event) => event[CONTACT] === contact.number && event[TO] === 0 && event[FROM] !== 0);
+    const last = locks.at(-1);
+    const held = run.rows[contact.mode] === 0;
+    if (last) made.push({ name: `${contact.name} locks at`, unit: "s", value: last[TIME]!, missing: "" });
+    else if (!held && !neverActs(contact, run)) made.push({ name: `${contact.name} locks at`, unit: "s", value: null, missing: "never" });
+  }
+  return [...made, ...felt(data, run)];
+}
+
+function neverActs(contact: ContactData, run: Result): boolean {
+  return evaluated(contact.torque, run).every((torque) => Math.abs(torque) <= NOTHING);
+}
+
+function felt(data: PageData, run: Result): Measure[] {
+  const made: Measure[] = [];
+  for (const [word, title] of [
+    ["acceleration", "Largest acceleration of"],
+    ["jerk", "Largest jerk of"],
+  ] as const) {
+    const signal = data.signals[`${data.output}.${word}`];
+    if (!signal) continue;
+    const value = evaluated(signal.form, run).reduce((most, one) => Math.max(most, Math.abs(one)), 0);
+    made.push({ name: `${title} ${data.output}`, unit: signal.unit, value, missing: "" });
+  }
+  return made;
+}
+
+/** Why a run ended early, in words; empty where it reached its end. */
+export function ending(data: PageData, run: Result): string {
+  if (run.status === 0) return "";
+  const [, reason, remedy] = data.statuses[run.status] ?? ["", "the run ended", ""];
+  const where = data.components[run.component];
+  const about = where ? ` at ${where}` : "";
+  return `The run stops at ${seconds(run.reached)}${about}: ${reason}${remedy ? `; ${remedy}` : ""}.`;
+}
+
+/** Contacts that locked at the start of the page, and now do not. */
+export function unlocked(data: PageData, first: Result, now: Result): string[] {
+  const ever = (run: Result, contact: ContactData): boolean =>
+    run.rows[contact.mode] === 0 || run.events.some((event) => event[CONTACT] === contact.number && event[TO] === 0);
+  return data.contacts.filter((one) => ever(first, one) && !ever(now, one)).map((one) => one.name);
+}

@@ -1,0 +1,81 @@
+// Events with their times, and what the run comes to, beside the start.
+import type { App, Part } from "./app";
+import type { Result } from "./core";
+import { element } from "./dom";
+import { number, quantity, seconds } from "./format";
+import { ending, eventTime, measures, sentence, unlocked } from "./measures";
+
+const MOST_EVENTS = 60;
+
+export class Events implements Part {
+  readonly root: HTMLElement;
+  private readonly list = element("ol", { class: "events" });
+
+  constructor(private readonly app: App) {
+    this.root = element("section", { class: "panel", "aria-label": "events" }, element("h2", {}, "What happens"), this.list);
+    this.update(app.run, true);
+  }
+
+  update(run: Result, settled: boolean): void {
+    if (!settled) return;
+    const items = run.events.slice(0, MOST_EVENTS).map((event) => {
+      const time = eventTime(event);
+      const go = element("button", { type: "button", class: "time", title: "look at this time" }, seconds(time));
+      go.addEventListener("click", () => this.app.look(time));
+      return element("li", {}, go, ` ${sentence(this.app.data, event)}`);
+    });
+    if (run.events.length > MOST_EVENTS) items.push(element("li", {}, `and ${run.events.length - MOST_EVENTS} more`));
+    if (!items.length) items.push(element("li", {}, "No contact changes its state."));
+    this.list.replaceChildren(...items);
+  }
+}
+
+export class Results implements Part {
+  readonly root: HTMLElement;
+  private readonly body = element("tbody");
+  private readonly first: Map<string, number | null>;
+
+  constructor(private readonly app: App) {
+    this.first = new Map(measures(app.data, app.first).map((one) => [one.name, one.value]));
+    const head = element("thead", {}, element("tr", {}, ...["", "now", "at the start", "change"].map((word) => element("th", { scope: "col" }, word))));
+    this.root = element("section", { class: "panel", "aria-label": "results" }, element("h2", {}, "What it comes to"), element("div", { class: "wide" }, element("table", {}, head, this.body)));
+    this.update(app.run);
+  }
+
+  update(run: Result): void {
+    const known = measures(this.app.data, run);
+    const lines = known.map((one) => {
+      const before = this.first.get(one.name);
+      const change = one.value !== null && before ? `${signed((100 * (one.value - before)) / Math.abs(before))} %` : "";
+      const cells = [one.value === null ? one.missing : quantity(one.value, one.unit), before === undefined || before === null ? "never" : quantity(before, one.unit), change];
+      const row = element("tr", {}, element("th", { scope: "row" }, one.name), ...cells.map((cell) => element("td", {}, cell)));
+      if (one.value === null) row.className = "missing";
+      return row;
+    });
+    this.body.replaceChildren(...lines);
+  }
+}
+
+/** What is wrong with the run, said to everybody. */
+export class Verdict implements Part {
+  readonly root = element("p", { role: "status", class: "verdict" });
+
+  constructor(private readonly app: App) {
+    this.update(app.run, true);
+  }
+
+  update(run: Result, settled: boolean): void {
+    const { data, first } = this.app;
+    const open = unlocked(data, first, run);
+    const never = open.length ? `${open.join(" and ")} never ${open.length > 1 ? "lock" : "locks"}.` : "";
+    const said = [ending(data, run), never].filter(Boolean).join(" ");
+    this.root.classList.toggle("bad", said !== "");
+    if (said) this.root.textContent = said;
+    else if (settled || this.root.classList.contains("bad")) this.root.textContent = `${run.events.length} events; runs to ${number(run.reached)} s.`;
+  }
+}
+
+function signed(value: number): string {
+  if (Math.abs(value) < 0.005) return "0";
+  return (value > 0 ? "+" : "") + number(value, 3);
+}

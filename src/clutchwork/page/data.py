@@ -1,0 +1,138 @@
+"""All that a page holds as plain data: bytes of the System, names, forms, knots, numbers to turn, pictures."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base.classes import dataclass
+from clutchwork.declare.core import core
+from clutchwork.declare.layout import CAUSES, MODES, STATUS
+from clutchwork.page.copied import paths
+from clutchwork.page.forms import plain
+from clutchwork.page.knots import Dragged, chosen, refuse_controllers, roomy, with_tables
+from clutchwork.page.levers import levers
+from clutchwork.page.live import live
+from clutchwork.page.live import plain as plain_live
+from clutchwork.page.signals import listed, output_of, panels, plain_panels
+from clutchwork.page.sliders import sliders
+from clutchwork.results.channels import Channels, channels
+from clutchwork.results.forms import Slip
+from clutchwork.sweeps.words import Layout
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.declare.options import Options
+
+# steps after which a run of a page stops: it must end before the next picture
+MOST_STEPS = 30_000
+FORMAT = 1
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a page shows, and what its reader may change; None: what is usual."""
+
+    drag: Sequence[str] | None = None
+    sliders: Sequence[str] | None = None
+    show: Sequence[str] | None = None
+
+
+def data_of(system: System, t_end: float, options: Options, wanted: Wanted) -> dict[str, Any]:
+    """The data of a page."""
+    refuse_controllers(system)
+    made, dragged = with_tables(system, chosen(system, wanted.drag, t_end))
+    spacious, room = roomy(made, dragged)
+    names = [one.name for one in dragged]
+    turned = sliders(made, wanted.sliders, names, lambda one: roomy(one, dragged)[0].to_bytes())
+    wires, known = wiring(spacious), channels(spacious, options.angles, options.work)
+    output = output_of(spacious, wires)
+    shown = panels(known, wires, wanted.show, output)
+    picture = _live(spacious, known, wires)
+    names += [name for panel in shown for name in panel.names]
+    names += [name for name in picture["signals"] if name in known] if picture else []
+    return {
+        "format": FORMAT,
+        "name": system.name,
+        "schema": str(core().schema_hash()),
+        "system": b64encode(spacious.to_bytes()).decode(),
+        "rowSize": wires.row_size,
+        "tStart": options.t_start,
+        "tEnd": t_end,
+        "options": _options(options),
+        "places": _places(spacious),
+        "tables": [_table(one, spacious, room) for one in dragged],
+        "sliders": [one.plain() for one in turned],
+        "signals": listed(known, [name for name in names if name in known or name.endswith(".jerk")]),
+        "panels": plain_panels(shown),
+        "contacts": list(_contacts(wires, known)),
+        "components": [part.name for part in (*wires.elements, *wires.contacts)],
+        "output": output,
+        "schematic": picture,
+        "levers": levers(wires),
+        "modes": {str(number): word for number, word in MODES.items()},
+        "causes": {str(number): list(words) for number, words in CAUSES.items()},
+        "statuses": [list(words) for words in STATUS],
+        "model": _model(made),
+        "paths": paths(made, dragged, turned),
+    }
+
+
+def _options(options: Options) -> dict[str, float]:
+    """Options of the core as numbers; infinity, which JSON has not, is left to the core."""
+    found = options.core_options() | {"max_steps": float(min(options.max_steps, MOST_STEPS))}
+    return {name: float(value) for name, value in found.items() if abs(value) < float("inf")}
+
+
+def _places(system: System) -> dict[str, int]:
+    """Where arrays begin in the bytes."""
+    starts = Layout.of(system).starts
+    return {
+        name: starts[name] for name in ("input_first", "input_count", "input_value", "segment_time", "segment_coef")
+    }
+
+
+def _table(one: Dragged, system: System, room: dict[int, int]) -> dict[str, Any]:
+    first = system.arrays["input_first"]
+    inputs = [{"number": n, "first": int(first[n]), "room": room[n]} for n in one.inputs]
+    points = [list(point) for point in one.points]
+    return {
+        "name": one.name,
+        "unit": one.unit,
+        "points": points,
+        "lower": one.lower,
+        "upper": one.upper,
+        "inputs": inputs,
+    }
+
+
+def _contacts(wires: Wiring, known: Channels) -> Any:
+    start = int(wires.columns["contact_mode"].start)
+    for number, branch in enumerate(wires.contacts):
+        if f"{branch.name}.slip" not in known:
+            continue
+        slip, heat = known[f"{branch.name}.slip"].evaluate, known.get(f"{branch.name}.heat")
+        yield {
+            "name": branch.name,
+            "number": number,
+            "mode": start + number,
+            "torque": plain(known[f"{branch.name}.torque"].evaluate),
+            "slip": plain(slip) if isinstance(slip, Slip) else None,
+            "heat": plain(heat.evaluate) if heat else None,
+        }
+
+
+def _live(system: System, known: Channels, wires: Wiring) -> dict[str, Any] | None:
+    """The schematic; None where its packages are missing."""
+    if system.source is None:
+        return None
+    try:
+        return plain_live(live(system.source, known, [branch.name for branch in wires.contacts]))
+    except ImportError:
+        return None
+
+
+def _model(made: System) -> dict[str, Any] | None:
+    return dict(made.model) or None

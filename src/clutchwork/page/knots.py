@@ -1,0 +1,189 @@
+"""Signals whose knots the reader of a page drags: made tables, with room for more knots in the bytes of the System."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from clutchwork.assembly.records import frozen
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UseError, near
+from clutchwork.declare.node import Signal
+from clutchwork.declare.schema import Role
+from clutchwork.model.changes import SIGNALS, all_names, field_of, named, target, unit_of
+from clutchwork.results.selection import meant
+from clutchwork.signals.table import Table
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+
+Points = list[tuple[float, float]]
+
+# tables that are dragged where nothing is asked for, plots of them; knots of one, and those that may be added
+MOST_TABLES, MOST_PLOTS, MOST_KNOTS, MORE = 4, 2, 200, 8
+
+
+@dataclass(frozen=True)
+class Dragged:
+    """A table that is dragged."""
+
+    name: str
+    unit: str
+    points: Points
+    lower: float | None  # what its declaration allows
+    upper: float | None
+    inputs: tuple[int, ...]  # signals of the System that it is
+
+
+def tables(system: System) -> dict[str, Points]:
+    """Knots of all signals that are straight between knots, by name."""
+    found = dict[str, Points]()
+    if system.source is None:
+        return found
+    owners = named(system.source)
+    for name in all_names(system.source):
+        aim = target(owners, name)
+        value, spec = field_of(aim) if aim else (None, None)
+        if spec is not None and spec.what in SIGNALS and isinstance(value, Real) and not isinstance(value, bool):
+            found[name] = [(0.0, float(value))]
+        elif isinstance(value, Signal) and (points := knots_of(value)):
+            found[name] = points
+    return found
+
+
+def knots_of(signal: Signal) -> Points:
+    """The knots of a signal; nothing where it is not straight between knots, or has too many."""
+    if type(signal).segments is Table.segments:
+        points = [(float(x), float(y)) for x, y in vars(signal)["points"]]
+        return points if len(points) <= MOST_KNOTS else []
+    try:
+        pieces = signal.segments()
+    except NotImplementedError:
+        return []
+    if not pieces or signal.repeats() or len(pieces) > MOST_KNOTS or any(any(piece[3:]) for piece in pieces):
+        return []
+    made = list[tuple[float, float]]()
+    for one, following in pairwise(pieces):
+        end = one.c0 + one.c1 * (following.start - one.start)
+        made += [(one.start, one.c0), (following.start, end)]
+    last = pieces[-1]
+    # the last piece rises for ever: no table does
+    return [] if last.c1 else list(dict.fromkeys([*made, (last.start, last.c0)]))
+
+
+def chosen(system: System, wanted: Sequence[str] | None, t_end: float) -> dict[str, Points]:
+    """The tables that are dragged: those that are asked for, or pressures and the like that vary."""
+    known = tables(system)
+    if wanted is None:
+        return _usual(system, known, t_end)
+    found, problems = dict[str, Points](), list[str]()
+    for one in wanted:
+        names = meant(one, known)
+        if not names:
+            rest = "signals that can be dragged: " + (", ".join(known) or "none")
+            problems.append(f"drag: {one!r} is no signal that is straight between knots{near(one, known, rest)}")
+        found.update({name: known[name] for name in names})
+    if problems:
+        raise UseError("page", problems)
+    return {name: spread(points, t_end) for name, points in found.items()}
+
+
+def _usual(system: System, known: dict[str, Points], t_end: float) -> dict[str, Points]:
+    """Signals that vary within the run, pressures and what presses contacts first; else constant ones of contacts."""
+    owners = named(system.source) if system.source else {}
+    units = {name: _unit(owners, name) for name in known}
+    pressing = {name for name in known if units[name] == "Pa" or _is_of_contact(owners, name)}
+    varying = [name for name, points in known.items() if _varies(points, t_end)]
+    ranked = sorted(varying, key=lambda name: (units[name] != "Pa", name not in pressing))
+    if ranked and units[ranked[0]] == "Pa":
+        ranked = [name for name in ranked if units[name] == "Pa"]
+    ranked = ranked or sorted(pressing, key=list(known).index) or list(known)
+    plots = list(dict.fromkeys(units[name] for name in ranked))[:MOST_PLOTS]
+    return {name: spread(known[name], t_end) for name in [n for n in ranked if units[n] in plots][:MOST_TABLES]}
+
+
+def _is_of_contact(owners: Any, name: str) -> bool:
+    aim = target(owners, name)
+    return getattr(aim.owner if aim else None, "role", None) is Role.CONTACT
+
+
+def _unit(owners: Any, name: str) -> str:
+    aim = target(owners, name)
+    return unit_of(aim) if aim else ""
+
+
+def _varies(points: Points, t_end: float) -> bool:
+    return len({y for x, y in points if x <= t_end}) > 1
+
+
+def spread(points: Points, t_end: float) -> Points:
+    """At least two knots, so that there is something to drag."""
+    return points if len(points) > 1 else [(0.0, points[0][1]), (t_end, points[0][1])]
+
+
+def with_tables(system: System, wanted: dict[str, Points]) -> tuple[System, list[Dragged]]:
+    """The System whose signals are these tables, and where they stand in it."""
+    made = system.changed({name: Table(points) for name, points in wanted.items()}) if wanted else system
+    found, problems, owners = list[Dragged](), list[str](), named(made.source) if made.source else {}
+    for name, points in wanted.items():
+        beside = made.changed({name: Table(_moved(points))})
+        inputs = _differing(made, beside)
+        if inputs is None:
+            problems.append(f"drag: {name} is more than a signal of its own in this driveline; drag another one")
+            continue
+        aim = target(owners, name)
+        spec = field_of(aim)[1] if aim else None
+        bounds = (getattr(spec, "at_least", None), getattr(spec, "at_most", None))
+        found.append(Dragged(name, unit_of(aim) if aim else "", points, *bounds, tuple(inputs)))
+    if problems:
+        raise UseError("page", problems)
+    return made, found
+
+
+def _moved(points: Points) -> Points:
+    size = max(abs(y) for _, y in points) or 1.0
+    return [(x, y + 0.01 * size * (1.0 + i / len(points))) for i, (x, y) in enumerate(points)]
+
+
+def _differing(made: System, beside: System) -> list[int] | None:
+    """Signals that a table is; None where it is something else as well."""
+    own = ("segment_time", "segment_coef", "input_value")
+    for name, array in made.arrays.items():
+        other = beside.arrays[name]
+        if array.shape != other.shape or (name not in own and not np.array_equal(array, other)):
+            return None
+    pairs = zip(made.inputs, beside.inputs, strict=True)
+    return [i for i, (one, other) in enumerate(pairs) if one.signal != other.signal] or None
+
+
+def roomy(system: System, dragged: Sequence[Dragged]) -> tuple[System, dict[int, int]]:
+    """The System with room for more pieces of the signals that are dragged, and how many each may have."""
+    room = {number: len(one.points) + 1 + MORE for one in dragged for number in one.inputs}
+    arrays = dict(system.arrays)
+    first, count = arrays["input_first"].copy(), arrays["input_count"]
+    times, coefficients, place = list[Any](), list[Any](), 0
+    for number, size in enumerate(count.tolist()):
+        here = slice(int(first[number]), int(first[number]) + size)
+        more = room.get(number, size) - size
+        times.append(np.concatenate([arrays["segment_time"][here], np.zeros(more)]))
+        coefficients.append(np.concatenate([arrays["segment_coef"][here], np.zeros((more, 12))]))
+        first[number], place = place, place + size + more
+    arrays["input_first"] = first
+    if times:
+        arrays |= {"segment_time": np.concatenate(times), "segment_coef": np.concatenate(coefficients)}
+    return replace(system, arrays=frozen(arrays)), room
+
+
+def refuse_controllers(system: System) -> None:
+    """A page has no Python: signals that a function gives cannot be in it."""
+    from clutchwork.run.control import controllers
+
+    names = [one.name for one in controllers(system.inputs)]
+    if names:
+        fault, remedy = "is given by a Python function, which no page can call", "give it a table"
+        raise UseError("page", [f"{name} {fault}: {remedy}" for name in names])

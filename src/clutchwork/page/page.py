@@ -1,0 +1,52 @@
+"""Pages of models and of runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.base.errors import UseError
+from clutchwork.base.paths import made, path_fault
+from clutchwork.base.shown import shown
+from clutchwork.page.data import Wanted, data_of
+from clutchwork.page.html import html
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.declare.options import Options
+    from clutchwork.results.trajectory import Trajectory
+
+ENDINGS = (".html", ".htm")
+
+
+def page_of(run: Trajectory, path: Any, drag: Any, sliders: Any, show: Any) -> Path:
+    """What `run.page` does: write the page of a run; its path."""
+    problems = list(_problems(path, drag=drag, sliders=sliders, show=show))
+    if problems:
+        raise UseError("run.page", problems)
+    wanted = Wanted(_list(drag), _list(sliders), _list(show))
+    target = made(path)
+    target.write_text(page(run.system, run.t_end, run.options, wanted), encoding="utf-8")
+    return target
+
+
+def page(system: System, t_end: float, options: Options, wanted: Wanted) -> str:
+    """The page of a System as HTML."""
+    return html(data_of(system, t_end, options, wanted), system.name or "driveline")
+
+
+def _list(given: Any) -> Sequence[str] | None:
+    return None if given is None else [given] if isinstance(given, str) else list(given)
+
+
+def _problems(path: Any, **lists: Any) -> Any:
+    fault = path_fault(path, "shift.html")
+    if fault:
+        yield fault
+    elif Path(path).suffix.lower() not in ENDINGS:
+        yield f"{shown(str(path))} does not end in .html: a page is one file of HTML"
+    for name, given in lists.items():
+        words = [given] if isinstance(given, str) else given
+        if words is not None and not (isinstance(words, list | tuple) and all(isinstance(word, str) for word in words)):
+            yield f"{name} is {shown(given)}: give names, such as {name}=['F1.*']"

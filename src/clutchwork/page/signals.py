@@ -1,0 +1,132 @@
+"""Which signals a page shows, in panels by unit, and the output whose acceleration and jerk it shows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.base.classes import dataclass
+from clutchwork.declare.node import Domain
+from clutchwork.page.forms import plain
+from clutchwork.results.channels import Channel, Channels
+from clutchwork.results.forms import Mode
+from clutchwork.results.selection import chosen
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.assembly.wiring import Wiring
+
+# curves in one panel where nothing is asked for, panels, and signals of a page
+MOST_USUAL, MOST_SHOWN = 8, 60
+TITLES = {
+    "rad/s": "Speed",
+    "m/s": "Speed",
+    "N m": "Torque",
+    "N": "Force",
+    "W": "Power",
+    "J": "Heat and work",
+    "K": "Temperature",
+    "degC": "Temperature",
+    "Pa": "Pressure",
+    "rad": "Angle",
+    "m": "Position",
+    "rad/s2": "Acceleration",
+    "m/s2": "Acceleration",
+    "rad/s3": "Jerk",
+    "m/s3": "Jerk",
+}
+JERK = {"rad/s2": "rad/s3", "m/s2": "m/s3"}
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Curves over one axis."""
+
+    title: str
+    unit: str
+    names: tuple[str, ...]
+
+
+def output_of(system: System, wiring: Wiring) -> str:
+    """The shaft or mass whose motion is felt: a vehicle, the output of a gearbox, or the last one."""
+    masses = [node.name for node in wiring.nodes if node.domain is Domain.TRANSLATION and node.inertia]
+    if masses:
+        return masses[-1]
+    if system.gearboxes:
+        return system.gearboxes[-1].output
+    own = {node.name for node in system.source.nodes} if system.source else {node.name for node in wiring.nodes}
+    heavy = [node.name for node in wiring.nodes if node.inertia and node.name in own]
+    return heavy[-1] if heavy else wiring.nodes[-1].name if wiring.nodes else ""
+
+
+def panels(known: Channels, wiring: Wiring, wanted: Sequence[str] | None, output: str) -> list[Panel]:
+    """What is shown: what is asked for, or speeds, slips, torques, heats and temperatures; the output last."""
+    if wanted is None:
+        found = _usual(known, wiring)
+    else:
+        names = [name for name in chosen(wanted, known, known.fault, "page") if _is_number(known[name])]
+        found = _by_unit(known, names[:MOST_SHOWN])
+    felt = f"{output}.acceleration"
+    if felt in known:
+        unit = known[felt].unit
+        found = [one for one in found if one.names != (felt,)]
+        found.append(Panel("Acceleration of the output", unit, (felt,)))
+        if unit in JERK:
+            found.append(Panel("Jerk of the output", JERK[unit], (f"{output}.jerk",)))
+    return found
+
+
+def _usual(known: Channels, wiring: Wiring) -> list[Panel]:
+    nodes = [node.name for node in wiring.nodes]
+    speeds = [name for node in nodes if (name := f"{node}.speed") in known]
+    contacts = [branch.name for branch in wiring.contacts if f"{branch.name}.slip" in known]
+    names = {
+        "Speed": _evenly(speeds),
+        "Slip": [f"{name}.slip" for name in contacts],
+        "Torque": [f"{name}.torque" for name in contacts] or [n for n in known if n.endswith(".torque")],
+        "Heat": [name for contact in contacts if (name := f"{contact}.heat") in known],
+        "Temperature": [name for name in known if known[name].unit in ("K", "degC")],
+    }
+    return [
+        Panel(title if len(parts) == 1 else f"{title} [{part.unit}]", part.unit, part.names)
+        for title, some in names.items()
+        for parts in [_by_unit(known, some[:MOST_USUAL])]
+        for part in parts
+    ]
+
+
+def _evenly(names: list[str]) -> list[str]:
+    """The first and the last, and some between where there are many."""
+    if len(names) <= MOST_USUAL:
+        return names
+    step = (len(names) - 1) / (MOST_USUAL - 1)
+    return list(dict.fromkeys(names[round(number * step)] for number in range(MOST_USUAL)))
+
+
+def _by_unit(known: Channels, names: Sequence[str]) -> list[Panel]:
+    groups = dict[str, list[str]]()
+    for name in names:
+        groups.setdefault(known[name].unit, []).append(name)
+    return [Panel(TITLES.get(unit, "Value"), unit, tuple(some)) for unit, some in groups.items()]
+
+
+def _is_number(channel: Channel) -> bool:
+    """Whether it can be drawn; modes are shown as bars."""
+    return not isinstance(channel.evaluate, Mode)
+
+
+def listed(known: Channels, names: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Units and forms of signals by name; a jerk is the slope of an acceleration."""
+    found = dict[str, dict[str, Any]]()
+    for name in dict.fromkeys(names):
+        if name in known:
+            found[name] = {"unit": known[name].unit, "form": plain(known[name].evaluate)}
+        elif name.endswith(".jerk"):
+            channel = known[name.removesuffix("jerk") + "acceleration"]
+            found[name] = {"unit": JERK[channel.unit], "form": ["d", plain(channel.evaluate)]}
+    return found
+
+
+def plain_panels(found: Sequence[Panel]) -> list[Mapping[str, Any]]:
+    """As a page has them."""
+    return [{"title": one.title, "unit": one.unit, "names": list(one.names)} for one in found]

@@ -1,0 +1,136 @@
+"""Pages: one file each for every example, small, with a policy, names escaped; what cannot be on one is said."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+from base64 import b64decode, b64encode
+from gzip import decompress
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import clutchwork as cw
+from clutchwork.command.main import main
+from clutchwork.page import html, static
+from clutchwork.page.data import Wanted, data_of
+from support.project import ROOT
+
+MODELS = sorted((ROOT / "examples").rglob("model.toml"))
+NASTY = "</script><img src=x onerror=alert(1)>\"'&<!--"
+
+
+def braked(name: str = "braked", shaft: str = "disc", pressure: Any = 2e5) -> cw.Driveline:
+    """A disc that is braked by a pressure."""
+    d = cw.Driveline(name)
+    disc = d.shaft(shaft, inertia=1.0, speed=10.0)
+    d.add(cw.Brake("b", shaft=disc, friction=cw.Coulomb(static=0.3, kinetic=0.2), gain=1e-4, pressure=pressure))
+    return d
+
+
+def content(text: str) -> dict[str, Any]:
+    """The data inside of a page."""
+    found = re.search(r'id="data">([^<]*)</script>', text)
+    assert found
+    made: dict[str, Any] = json.loads(decompress(b64decode(found[1])))
+    return made
+
+
+@pytest.mark.parametrize("model", MODELS, ids=[model.parent.name for model in MODELS])
+@pytest.mark.usefixtures("built")
+def test_every_example_has_a_page(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "shift.html"
+    assert main(["page", str(model), "--out", str(out)]) == 0
+    assert capsys.readouterr().out == f"wrote {out}\n"
+    text = out.read_text(encoding="utf-8")
+    data = content(text)
+    assert len(text.encode()) <= html.LONGEST
+    assert data["panels"]
+    assert data["schematic"]
+    assert not re.search(r"https?://(?!www\.w3\.org)", re.sub(r'id="(data|core)">[^<]*', "", text))
+
+
+@pytest.mark.usefixtures("built")
+def test_a_page_runs_nothing_but_its_own_script() -> None:
+    run = braked().simulate(1.0)
+    text = html.html(data_of(run.system, 1.0, run.options, Wanted()), "braked")
+    (policy,) = re.findall(r'Content-Security-Policy" content="([^"]*)"', text)
+    assert policy.startswith("default-src 'none'; script-src 'sha256-")
+    assert "unsafe-inline" not in policy
+    assert "'unsafe-eval'" not in policy
+    for tag in ("script", "style"):
+        (body,) = re.findall(rf"<{tag}>(.*?)</{tag}>", text, re.DOTALL)
+        assert b64encode(sha256(body.encode()).digest()).decode() in policy
+        assert not re.search(r"\beval\(|new Function\(", body)
+    assert not re.search(
+        r"\son\w+=|javascript:| style=", re.sub(r"<(script|style)[ >].*?</\1>", "", text, flags=re.DOTALL)
+    )
+
+
+@pytest.mark.usefixtures("built")
+def test_names_are_words_whatever_they_hold(tmp_path: Path) -> None:
+    path = braked(NASTY, f"disc {NASTY}".replace(".", "")).simulate(1.0).page(tmp_path / "x.html")
+    text = path.read_text(encoding="utf-8")
+    assert "<img" not in text
+    assert text.count("<script") == text.count("</script>") == 3
+    assert "<img" not in content(text)["schematic"]["svg"]
+    assert content(text)["name"] == NASTY
+
+
+def test_numbers_of_a_table_are_those_that_are_dragged() -> None:
+    system = braked(pressure=cw.Table([(0.0, 0.0), (0.5, 2e5)])).assemble()
+    data = data_of(system, 1.0, cw.Options(), Wanted())
+    (table,) = data["tables"]
+    assert (table["name"], table["unit"], table["points"]) == ("b.pressure", "Pa", [[0.0, 0.0], [0.5, 2e5]])
+    assert [slider["name"] for slider in data["sliders"]] == ["b.gain", "b.friction.kinetic", "b.friction.static"]
+    assert data["paths"]["b.pressure"] == [["element", 0, "pressure", "points"]]
+    assert data["paths"]["b.friction.static"] == [["element", 0, "friction", "static"]]
+
+
+def test_a_constant_pressure_has_two_knots() -> None:
+    data = data_of(braked().assemble(), 1.0, cw.Options(), Wanted())
+    assert data["tables"][0]["points"] == [[0.0, 2e5], [1.0, 2e5]]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "said"),
+    [
+        ({"drag": ["b.pressur"]}, "drag: 'b.pressur' is no signal that is straight between knots"),
+        ({"sliders": ["b.gainn"]}, "slider: .*gainn"),
+        ({"sliders": ["b.gain=3:1"]}, "b.gain: '3:1' is no range"),
+        ({"sliders": ["disc.inertia", "disc.inertia=1:2"]}, "change the same numbers"),
+        ({"show": ["nothing.*"]}, "nothing"),
+    ],
+)
+def test_what_cannot_be_on_a_page_is_said(wanted: dict[str, Any], said: str) -> None:
+    with pytest.raises((cw.UseError, cw.UnknownName), match=said):
+        data_of(braked().assemble(), 1.0, cw.Options(), Wanted(**wanted))
+
+
+def test_a_controller_in_python_has_no_page() -> None:
+    from clutchwork.page.knots import refuse_controllers
+
+    system = braked(pressure=cw.Sampled(lambda t, now: 1e5, 0.1)).assemble()
+    with pytest.raises(cw.UseError, match="no page can call"):
+        refuse_controllers(system)
+
+
+def test_without_the_built_files_it_says_what_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(static, "FOLDER", tmp_path)
+    with pytest.raises(static.PageError, match="make wasm page"):
+        braked().simulate(1.0).page(tmp_path / "x.html")
+
+
+def test_a_path_must_be_one_of_html() -> None:
+    with pytest.raises(cw.UseError, match="html"):
+        braked().simulate(1.0).page("x.pdf")
+
+
+def test_the_licence_of_what_is_inside_is_there() -> None:
+    command = ["git", "-C", str(ROOT), "ls-files", "interfaces/page/package-lock.json"]
+    lock = subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
+    if lock:
+        assert "resolved" not in (ROOT / lock).read_text(encoding="utf-8")
