@@ -89,6 +89,7 @@ test-cpp: $(STAMPS)/build
 	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure
 
 # the script of pages, into the package
+# the script of pages, into the package
 page: build/page/stamp
 
 interfaces/page/node_modules/.package-lock.json: interfaces/page/package-lock.json
@@ -99,8 +100,7 @@ build/page/stamp: interfaces/page/node_modules/.package-lock.json $(PAGE_SOURCES
 	@cd interfaces/page && npm run --silent build
 	@touch $@
 
-test-# the script of pages, into the package
-page: build/page/stamp
+test-page: build/page/stamp
 	@cd interfaces/page && npm run --silent test
 
 check-page: interfaces/page/node_modules/.package-lock.json

@@ -98,9 +98,9 @@ def test_a_constant_pressure_has_two_knots() -> None:
 @pytest.mark.parametrize(
     ("wanted", "said"),
     [
-        ({"drag": ["b.pressur"]}, "drag: 'b.pressur' is no signal that is straight between knots"),
+        ({"drag": ["b.pressur"]}, "drag: 'b.pressur' cannot be dragged"),
         ({"sliders": ["b.gainn"]}, "slider: .*gainn"),
-        ({"sliders": ["b.gain=3:1"]}, "b.gain: '3:1' is no range"),
+        ({"sliders": ["b.gain=3:1"]}, "b.gain: '3:1' are not two ends"),
         ({"sliders": ["disc.inertia", "disc.inertia=1:2"]}, "change the same numbers"),
         ({"show": ["nothing.*"]}, "nothing"),
     ],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +22,10 @@ from support.project import ROOT
 
 MODELS = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").rglob("model.toml"))
 SIX_SPEED = "examples/six_speed/model.toml"
-# most positions; where the last bits, in which mathematical libraries differ, tip the size of a step: the tolerance
-CLOSE, TOLERANCE = 1e-9, 1e-6
+# tolerance of the solver, and what may be between page and Python: the core of a page has fewer exact forms and
+# another mathematical library, so that steps differ within the tolerance
+TIGHT, CLOSE = {"rtol": 1e-11, "atol": 1e-13}, 1e-9
+USUAL, APART = {"rtol": 1e-6, "atol": 1e-8}, 3e-5
 POINTS, PASSING = 401, 7
 
 
@@ -71,21 +74,21 @@ def changes(data: dict[str, Any], job: dict[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("size", [0.2, 1.5], ids=["dragged", "anywhere"])
+@pytest.mark.parametrize("allowed", [(TIGHT, CLOSE), (USUAL, APART)], ids=["tight", "usual"])
 @pytest.mark.parametrize("model", MODELS, ids=[Path(model).parent.name for model in MODELS])
-def test_a_page_is_python_with_the_same_knots(model: str, size: float, engine: Any) -> None:
+def test_a_page_is_python_with_the_same_knots(model: str, allowed: Any, size: float, engine: Any) -> None:
+    tolerance, most = allowed
     system = system_of(model)
     data = page_data(system)
+    data["options"] |= tolerance
     times = np.linspace(data["tStart"], data["tEnd"], POINTS)
     units = {name: one["unit"] for name, one in data["signals"].items() if not name.endswith(".jerk")}
     asked = list(jobs(data, 5, size, times=times.tolist(), signals=list(units)))
-    apart = list[float]()
     for job, found in zip(asked, engine(data, asked), strict=True):
-        run = cw.simulate(system.changed(changes(data, job)), times=times)
+        run = cw.simulate(system.changed(changes(data, job)), times=times, **tolerance)
         assert (found["status"], found["count"]) == (0, POINTS)
         assert acts(event[1:5] for event in found["events"]) == acts(codes(run, event) for event in run.events)
-        apart.append(max(difference(run, found["signals"], name, units) for name in units))
-    assert np.median(apart) <= CLOSE
-    assert max(apart) <= TOLERANCE
+        assert max(difference(run, found["signals"], name, units) for name in units) <= most
 
 
 def difference(run: cw.Trajectory, signals: dict[str, Any], name: str, units: dict[str, str]) -> float:
@@ -121,27 +124,33 @@ def test_every_position_of_the_knots_ends_with_a_status(engine: Any) -> None:
 
 def test_what_is_copied_is_what_is_shown(engine: Any, tmp_path: Any) -> None:
     system = system_of(SIX_SPEED)
+    system = replace(system, settings={**system.settings, **TIGHT})
     data = page_data(system, sliders=["F1.gain", "w1.inertia"])
     *_, asked = jobs(data, 1, 0.5, copies=True, times=[3.9], signals=["w8.speed"])
     (found,) = engine(data, [asked])
     path = tmp_path / "model.toml"
     path.write_text(found["toml"], encoding="utf-8")
     (tmp_path / "copied.py").write_text(found["python"], encoding="utf-8")
-    written = cw.Driveline.load(path).simulate(times=[3.9])["w8.speed"][-1]
+    written = cw.Driveline.load(path).simulate(times=[3.9], **TIGHT)["w8.speed"][-1]
     known: dict[str, Any] = {}
-    program = found["python"].replace('"model.toml"', repr(str(ROOT / SIX_SPEED))).replace("print(run.events)", "")
+    program = (
+        found["python"]
+        .replace('"model.toml"', repr(str(ROOT / SIX_SPEED)))
+        .replace("print(run.events)", f"run = cw.simulate(system, times=[3.9], **{TIGHT})")
+    )
     exec(program, known)
     assert found["signals"]["w8.speed"][0] == pytest.approx(written, rel=CLOSE)
-    assert known["run"].at([3.9])["w8.speed"][-1] == pytest.approx(written, rel=CLOSE)
+    assert known["run"]["w8.speed"][-1] == pytest.approx(written, rel=CLOSE)
 
 
 def test_a_slider_with_stops_has_the_words_of_python(engine: Any) -> None:
     """An inertia goes into the mass matrix with others: its stops are those that Python computed."""
     system = system_of(SIX_SPEED)
+    system = replace(system, settings={**system.settings, **TIGHT})
     data = page_data(system, sliders=["w1.inertia=10:40"])
     (slider,) = data["sliders"]
     assert not slider["direct"]
     asked = [{"values": {"0": value}, "times": [4.0], "signals": ["w1.speed"]} for value in slider["values"][::8]]
     for job, found in zip(asked, engine(data, asked), strict=True):
-        run = cw.simulate(system.changed(changes(data, job)), times=[4.0])
+        run = cw.simulate(system.changed(changes(data, job)), times=[4.0], **TIGHT)
         assert found["signals"]["w1.speed"][0] == pytest.approx(run["w1.speed"][-1], rel=CLOSE)

@@ -106,7 +106,7 @@ export class Chart implements Part {
         { ...axis, size: 26, values: (_, ticks) => ticks.map((tick) => `${number(tick)}`) },
         { ...axis, size: 58, values: (_, ticks) => ticks.map((tick) => number(tick)) },
       ],
-      series: [{}, ...this.panel.names.map((name, i): uPlot.Series => ({ label: name, stroke: () => curveColour(i), width: 1.6, points: { show: false } }))],
+      series: [{}, ...this.panel.names.map((name, i): uPlot.Series => ({ label: name, stroke: () => curveColour(i), width: 1.6, pxAlign: 0, points: { show: false } }))],
       hooks: { drawAxes: [(plot) => this.ghost(plot)] },
     };
   }

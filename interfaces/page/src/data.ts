@@ -54,7 +54,7 @@ export interface PanelData {
   names: string[];
 }
 
-export type Places = Record<"input_first" | "input_count" | "input_value" | "segment_time" | "segment_coef", number>;
+export type Places = Record<"input_value" | "segment_time" | "segment_coef", number>;
 
 export type Plain = string | number | boolean | null | Plain[] | { [key: string]: Plain };
 

@@ -4,6 +4,9 @@ import type { Knot, Places, TableData } from "./data";
 /** A piece: its start, value there, and slope. */
 export type Piece = [number, number, number];
 
+// between pieces that no run reaches [s]
+const NEVER = 1e9;
+
 export function pieces(knots: readonly Knot[]): Piece[] {
   const made: Piece[] = [];
   const first = knots[0]!;
@@ -28,11 +31,13 @@ export function valueAt(knots: readonly Knot[], time: number): number {
 /** Write the pieces of a table into the bytes of a System; false where there is no room. */
 export function written(bytes: DataView, places: Places, table: TableData, knots: readonly Knot[]): boolean {
   const made = pieces(knots);
+  const [last, value] = made[made.length - 1]!;
   for (const input of table.inputs) {
     if (made.length > input.room) return false;
-    bytes.setInt32(places.input_count + 4 * input.number, made.length, true);
+    // what is not needed begins long after every run
+    const all = [...made, ...Array.from({ length: input.room - made.length }, (_, k): Piece => [last + NEVER * (k + 1), value, 0])];
     bytes.setFloat64(places.input_value + 8 * input.number, valueAt(knots, 0), true);
-    made.forEach(([start, value, rise], i) => {
+    all.forEach(([start, value, rise], i) => {
       const number = input.first + i;
       bytes.setFloat64(places.segment_time + 8 * number, start, true);
       const coefficients = places.segment_coef + 96 * number;

@@ -25,9 +25,9 @@ test("a table is straight between its knots and constant outside", () => {
 
 test("pieces are written where the signal has its room", () => {
   const bytes = new DataView(new ArrayBuffer(2000));
-  const places = { input_first: 0, input_count: 8, input_value: 16, segment_time: 100, segment_coef: 300 };
+  const places = { input_value: 16, segment_time: 100, segment_coef: 300 };
   assert.ok(written(bytes, places, TABLE, TABLE.points));
-  assert.equal(bytes.getInt32(12, true), 3);
+  assert.equal(bytes.getFloat64(100 + 8 * 6, true), 2 + 2e9);
   assert.equal(bytes.getFloat64(100 + 8 * 3, true), 1);
   assert.equal(bytes.getFloat64(300 + 96 * 2 + 8, true), 2);
   assert.ok(!written(bytes, places, TABLE, [[0, 0], [1, 1], [2, 2], [3, 3], [4, 4], [5, 5]]));

@@ -81,7 +81,7 @@ def data_of(system: System, t_end: float, options: Options, wanted: Wanted) -> d
 
 
 def _options(options: Options) -> dict[str, float]:
-    """Options of the core as numbers; infinity, which JSON has not, is left to the core."""
+    """Options of the core as numbers; infinity is left to the core, for JSON has no word for it."""
     found = options.core_options() | {"max_steps": float(min(options.max_steps, MOST_STEPS))}
     return {name: float(value) for name, value in found.items() if abs(value) < float("inf")}
 
@@ -89,9 +89,7 @@ def _options(options: Options) -> dict[str, float]:
 def _places(system: System) -> dict[str, int]:
     """Where arrays begin in the bytes."""
     starts = Layout.of(system).starts
-    return {
-        name: starts[name] for name in ("input_first", "input_count", "input_value", "segment_time", "segment_coef")
-    }
+    return {name: starts[name] for name in ("input_value", "segment_time", "segment_coef")}
 
 
 def _table(one: Dragged, system: System, room: dict[int, int]) -> dict[str, Any]:

@@ -26,6 +26,8 @@ Points = list[tuple[float, float]]
 
 # tables that are dragged where nothing is asked for, plots of them; knots of one, and those that may be added
 MOST_TABLES, MOST_PLOTS, MOST_KNOTS, MORE = 4, 2, 200, 8
+# between pieces that no run reaches [s]
+NEVER = 1e9
 
 
 @dataclass(frozen=True)
@@ -85,8 +87,8 @@ def chosen(system: System, wanted: Sequence[str] | None, t_end: float) -> dict[s
     for one in wanted:
         names = meant(one, known)
         if not names:
-            rest = "signals that can be dragged: " + (", ".join(known) or "none")
-            problems.append(f"drag: {one!r} is no signal that is straight between knots{near(one, known, rest)}")
+            rest = "signals that are straight between knots: " + (", ".join(known) or "none")
+            problems.append(f"drag: {one!r} cannot be dragged{near(one, known, rest)}")
         found.update({name: known[name] for name in names})
     if problems:
         raise UseError("page", problems)
@@ -162,18 +164,22 @@ def _differing(made: System, beside: System) -> list[int] | None:
 
 
 def roomy(system: System, dragged: Sequence[Dragged]) -> tuple[System, dict[int, int]]:
-    """The System with room for more pieces of the signals that are dragged, and how many each may have."""
+    """The System with room for more pieces of the signals that are dragged, and how many each has.
+
+    What is not needed begins long after every run, with the last value.
+    """
     room = {number: len(one.points) + 1 + MORE for one in dragged for number in one.inputs}
     arrays = dict(system.arrays)
-    first, count = arrays["input_first"].copy(), arrays["input_count"]
-    times, coefficients, place = list[Any](), list[Any](), 0
-    for number, size in enumerate(count.tolist()):
-        here = slice(int(first[number]), int(first[number]) + size)
-        more = room.get(number, size) - size
-        times.append(np.concatenate([arrays["segment_time"][here], np.zeros(more)]))
-        coefficients.append(np.concatenate([arrays["segment_coef"][here], np.zeros((more, 12))]))
-        first[number], place = place, place + size + more
-    arrays["input_first"] = first
+    count, coefficients = arrays["input_count"].copy(), list[Any]()
+    times = np.split(arrays["segment_time"], arrays["input_first"][1:]) if len(count) else []
+    for number, starts in enumerate(times):
+        here = int(arrays["input_first"][number])
+        own = arrays["segment_coef"][here : here + len(starts)]
+        more = room.get(number, len(starts)) - len(starts)
+        times[number] = np.concatenate([starts, starts[-1:] + NEVER * np.arange(1, more + 1)])
+        coefficients.append(np.concatenate([own, np.repeat(own[-1:], more, axis=0)]))
+        count[number] = len(times[number])
+    arrays |= {"input_count": count, "input_first": np.cumsum(count, dtype=count.dtype) - count}
     if times:
         arrays |= {"segment_time": np.concatenate(times), "segment_coef": np.concatenate(coefficients)}
     return replace(system, arrays=frozen(arrays)), room

@@ -115,7 +115,7 @@ def _span(aim: Target, name: str, text: str, start: float, spec: Spec) -> tuple[
     if text:
         ends = [_number(aim, part) for part in text.split(":")]
         if len(ends) != 2 or not ends[0] < ends[1] or not all(map(isfinite, ends)):
-            raise ValueError(f"{name}: {text!r} is no range; write {name}=2e-4:8e-4, the lower end first")
+            raise ValueError(f"{name}: {text!r} are not two ends; write {name}=2e-4:8e-4, the lower end first")
         return ends[0], ends[1]
     if not start:
         raise ValueError(f"{name} is 0: give the ends of its slider, {name}=0:10")
