@@ -55,7 +55,7 @@ class Target(NamedTuple):
 # small rather than fast, and as a whole: every part of the core is there once
 TO_WASM = Target("wasm32", "wasm32-wasi", ("-Os", "-flto"))
 # bits do not depend on it, so what is quick to compile will do
-TO_NATIVE = Target("native", f"{platform.machine()}-linux-musl", ("-O1",))
+TO_NATIVE = Target("native", f"{platform.machine()}-linux-musl", ("-O1", "-ffunction-sections"))
 
 
 def exports() -> list[str]:
@@ -64,9 +64,9 @@ def exports() -> list[str]:
     return [name for name in dict.fromkeys(declared) if not LEFT_OUT.fullmatch(name)]
 
 
-def zig(*arguments: object) -> None:
+def zig(*arguments: object, mode: str = "c++") -> None:
     """Call the compiler; SystemExit with what it said where it fails."""
-    command = [sys.executable, "-m", "ziglang", "c++", *map(str, arguments)]
+    command = [sys.executable, "-m", "ziglang", mode, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - the compiler
     if done.returncode != 0:
         raise SystemExit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
@@ -119,7 +119,8 @@ def wasm() -> Iterator[str]:
     names = [f"-Wl,--export={name}" for name in (*exports(), "__heap_base")]
     linked = MADE / "core.wasm"
     flags = ("-mexec-model=reactor", "-Wl,--no-entry", "-Wl,--gc-sections", "-Wl,--strip-all")
-    zig("-target", TO_WASM.triple, *TO_WASM.flags, *flags, *names, *objects, "-o", linked)
+    # as C: the library of C++, which nothing needs, would be compiled first
+    zig("-target", TO_WASM.triple, *TO_WASM.flags, *flags, *names, *objects, "-o", linked, mode="cc")
     module = marked(linked.read_bytes())
     WASM.parent.mkdir(parents=True, exist_ok=True)
     WASM.write_bytes(module)
@@ -132,7 +133,7 @@ def native(out: Path) -> None:
     """Make the program that tests compare with."""
     objects = compiled(TO_NATIVE, [*SOURCES, ROOT / "tests" / "wasm" / "native.cpp"])
     out.parent.mkdir(parents=True, exist_ok=True)
-    zig("-target", TO_NATIVE.triple, *TO_NATIVE.flags, *objects, "-o", out)
+    zig("-target", TO_NATIVE.triple, *TO_NATIVE.flags, "-Wl,--gc-sections", *objects, "-o", out, mode="cc")
 
 
 def main() -> None:

@@ -54,6 +54,25 @@ void make_knot(Workspace<double>& ws) {
   for (std::int64_t i = 0; i < ws.sys.inputs; ++i) ws.in.signal[i].segment = 0, ws.in.signal[i].idle = false;
 }
 
+/// Left limits of all signals at the present time, before one of them gets other segments.
+void keep_left(Workspace<double>& ws) {
+  if (ws.started) inputs_at(ws, ws.time), input_slopes_at(ws, ws.time);
+}
+
+/// A signal goes on with its segments from the present time on, which has its left limit still.
+void follow(Workspace<double>& ws, int i) {
+  Signal& signal = ws.in.signal[i];
+  signal.given = signal.idle = false;
+  make_knot(ws);
+  signal.fresh = ws.started;
+  if (!ws.started) return;
+  rest_fresh(ws);
+  // a saved state stands on the segment of its time
+  const std::int64_t early = segments_of(ws, i).start.early(ws.time);
+  if (signal.segment < early) signal.segment = early;
+  seek(ws, i, ws.time);
+}
+
 /// Where rows go, for a call that advances a run; other than 0: what the call returns at once.
 int take_sink(Sink& sink, cw_run* run, double t_end, double* times, double* rows, std::int64_t n, int steps) {
   if (run == nullptr || !is_finite(t_end) || t_end < present(run->ws) || n < 0 || steps < 0) return -1;
@@ -75,13 +94,8 @@ saved::Measure measured(const cw_run* run) {
 struct Head {
   std::uint64_t word[state_head::words];
 
-  Head(const cw_run* run, const saved::Measure& m)
-      : word{state_head::name,
-             std::uint64_t(schema_hash),
-             m.layout,
-             run->fingerprint,
-             std::uint64_t(state_head::bytes + m.size),
-             0} {}
+  Head(const cw_run* run, const saved::Measure& m, std::int64_t size)
+      : word{state_head::name, std::uint64_t(schema_hash), m.layout, run->fingerprint, std::uint64_t(size), 0} {}
 };
 
 }  // namespace
@@ -135,11 +149,38 @@ int cw_set_input(cw_run* run, std::int64_t input, double value) {
 int cw_release_input(cw_run* run, std::int64_t input) {
   if (run == nullptr || input < 0 || input >= run->ws.sys.inputs || run->ws.sys.input_count[input] == 0) return 0;
   Signal& signal = run->ws.in.signal[input];
-  if (!signal.given) return 1;
-  signal.given = false;
-  make_knot(run->ws);
-  // a saved state stands on the segment of its time
-  if (run->ws.started) seek(run->ws, int(input), run->ws.time);
+  if (!signal.given && signal.set == 0) return 1;
+  keep_left(run->ws);
+  if (signal.set != 0) signal.segment = 0, signal.set = 0;
+  follow(run->ws, int(input));
+  return 1;
+}
+
+int cw_set_segments(cw_run* run, std::int64_t input, const double* times, const double* coefficients, std::int64_t n) {
+  if (run == nullptr || times == nullptr || coefficients == nullptr || input < 0 || input >= run->ws.sys.inputs)
+    return 0;
+  Workspace<double>& ws = run->ws;
+  const auto [start, coef] = segments_of(ws, int(input));
+  if (n < 1 || n > ws.sys.input_count[input] || !in_order(n, start.period, times)) return 0;
+  for (std::int64_t k = 0; k < n; ++k) {
+    if (!is_finite(times[k])) return 0;
+  }
+  for (std::int64_t k = 0; k < segment_size * n; ++k) {
+    if (!is_finite(coefficients[k])) return 0;
+  }
+  auto same = [](const double* a, const double* b, std::int64_t m) {
+    return std::memcmp(a, b, std::size_t(8 * m)) == 0;
+  };
+  Signal& signal = ws.in.signal[input];
+  if (!signal.given && n == start.n && same(times, start.times, n) && same(coefficients, coef, segment_size * n) &&
+      ws.in.next_knot > ws.time)
+    return 1;
+  keep_left(ws);
+  const std::int64_t first = ws.sys.input_first[input];
+  std::memmove(ws.in.set_time + first, times, std::size_t(8 * n));
+  std::memmove(ws.in.set_coef + segment_size * first, coefficients, std::size_t(8 * segment_size * n));
+  signal.set = int(n), signal.segment = 0;
+  follow(ws, int(input));
   return 1;
 }
 
@@ -256,18 +297,21 @@ std::int64_t cw_detail(const cw_run* run, double* value) {
 
 std::int64_t cw_detail_row(const cw_run* run) { return run == nullptr ? -1 : run->ws.detail.row; }
 
-std::int64_t cw_state_size(const cw_run* run) { return run == nullptr ? -1 : state_head::bytes + measured(run).size; }
+std::int64_t cw_state_size(const cw_run* run) {
+  return run == nullptr ? -1 : state_head::bytes + measured(run).size + saved::set_bytes(run->ws);
+}
 
 std::int64_t cw_save(const cw_run* run, void* bytes, std::int64_t room) {
   if (run == nullptr || bytes == nullptr) return -1;
   const saved::Measure m = measured(run);
-  const Head head(run, m);
-  const std::int64_t size = state_head::bytes + m.size;
+  const std::int64_t size = state_head::bytes + m.size + saved::set_bytes(run->ws);
+  const Head head(run, m, size);
   if (room < size) return -1;
   auto* to = static_cast<unsigned char*>(bytes);
   std::memcpy(to, head.word, sizeof head.word);
   saved::Writer writer(to + state_head::bytes);
   saved::describe(run->ws, writer);
+  saved::put_set(run->ws, writer.at);
   const std::uint64_t sum = state_head::checksum_of(to, size);
   std::memcpy(to + 8 * state_head::checksum, &sum, 8);
   return size;
@@ -277,13 +321,14 @@ int cw_restore(cw_run* run, const void* bytes, std::int64_t n) {
   if (run == nullptr || bytes == nullptr) return 0;
   const auto* from = static_cast<const unsigned char*>(bytes);
   const saved::Measure m = measured(run);
-  const Head head(run, m);
-  if (n != state_head::bytes + m.size || std::memcmp(from, head.word, 8 * state_head::checksum) != 0) return 0;
+  const Head head(run, m, n);
+  const std::int64_t set = state_head::bytes + m.size;
+  if (n < set || std::memcmp(from, head.word, 8 * state_head::checksum) != 0) return 0;
   const std::uint64_t sum = state_head::checksum_of(from, n);
   if (std::memcmp(from + 8 * state_head::checksum, &sum, 8) != 0) return 0;
-  saved::Check check(run->ws, from + state_head::bytes);
+  saved::Check check(run->ws, from + state_head::bytes, from + set, from + n);
   saved::describe(run->ws, check);
-  if (!check.good) return 0;
+  if (!check.complete()) return 0;
   const Poll poll = run->ws.poll;
   const bool expected = run->ws.in.expected;
   reset(run);

@@ -3,7 +3,8 @@
 #include "system_checks.hpp"
 
 /// Saved states: what a run is, without pointers and without indices that could be followed. One description,
-/// `describe`, serves to measure, write, check and read them. docs/guide/export.md
+/// `describe`, serves to measure, write, check and read them; the segments that were set follow it.
+/// docs/guide/export.md
 namespace clutchwork::saved {
 
 inline constexpr std::int64_t most = std::int64_t(1) << 60;
@@ -30,6 +31,23 @@ void describe(W& ws, A& a) {
   for (std::int64_t i = 0; i < s.inputs; ++i) a.cursor(int(i), ws.in.signal[i]);
   lay_out(ws, a);
   for (std::int64_t i = 0; i < 3 * nd + nc; ++i) a.number(ws.guard.line[i].level);
+}
+
+/// Calls f(signal, n) for every signal that has n segments which were set.
+template <class W, class F>
+void each_set(const W& ws, F&& f) {
+  for (int i = 0; i < int(ws.sys.inputs); ++i)
+    if (ws.in.signal[i].set > 0) f(i, std::int64_t(ws.in.signal[i].set));
+}
+
+/// Numbers of a segment in a saved state: its start, then what it is.
+inline constexpr std::int64_t set_size = 1 + segment_size;
+
+/// Bytes of all segments that were set.
+inline std::int64_t set_bytes(const Workspace<double>& ws) {
+  std::int64_t all = 0;
+  each_set(ws, [&](int, std::int64_t n) { all += n; });
+  return 8 * set_size * all;
 }
 
 /// What the visitors share: arrays and cursors as single words, of which Self takes `number` and `whole`.
@@ -60,7 +78,8 @@ struct Visitor {
   template <class S>
   void cursor(int, S& signal) {
     self().whole(signal.segment, 0, most), self().whole(signal.idle, 0, 1), self().number(signal.held);
-    self().whole(signal.given, 0, 1);
+    self().whole(signal.given, 0, 1), self().whole(signal.set, 0, (1ll << 31) - 1);
+    self().whole(signal.fresh, 0, 1);
   }
 
  private:
@@ -116,6 +135,7 @@ class Words {
     at_ += 8;
     return x;
   }
+  const unsigned char* at() const { return at_; }
 
  private:
   const unsigned char* at_;
@@ -133,12 +153,22 @@ struct Reader : Visitor<Reader> {
   }
 };
 
+/// Numbers of a state, wherever they stand.
+struct Doubles {
+  const unsigned char* from;
+  double operator[](std::int64_t k) const { return Words(from + 8 * k).next<double>(); }
+};
+
 /// Whether every value of a state is one that a run of this system may have; changes nothing.
 class Check : public Visitor<Check> {
  public:
   bool good = true;
 
-  Check(const Workspace<double>& ws, const unsigned char* from) : ws_(ws), words_(from) {}
+  /// The segments that were set stand from `set` up to `end`.
+  Check(const Workspace<double>& ws, const unsigned char* from, const unsigned char* set, const unsigned char* end)
+      : ws_(ws), words_(from), set_(set), end_(end) {}
+  /// Whether all of it was read.
+  bool complete() const { return good && set_ == end_; }
 
   void number(const double& at, double low = -infinity, double high = infinity) {
     const double x = words_.next<double>();
@@ -174,31 +204,44 @@ class Check : public Visitor<Check> {
     good = good && settable(words_.next<double>(), sys.input_value[i]) && k >= 0 && (idle == 0 || idle == 1);
     const auto given = words_.next<std::int64_t>();
     good = good && (given == 0 || (given == 1 && sys.input_count[i] > 0));
+    const auto set = words_.next<std::int64_t>();
+    const auto fresh = words_.next<std::int64_t>();
+    good = good && (fresh == 0 || fresh == 1) && set >= 0 && set <= sys.input_count[i] &&
+           set <= (end_ - set_) / (8 * set_size);
     if (!started_ || sys.input_count[i] == 0) good = good && k == 0 && idle == 0;
-    if (!good || !started_ || sys.input_count[i] == 0) return;
-    const bool repeats = sys.input_period[i] > 0;
-    if (given != 0) return left_behind(i, k);
-    good = idle != 0 ? repeats && k == 0 : repeats ? k < (std::int64_t(1) << 52) : k < sys.input_count[i];
     if (!good) return;
-    if (idle != 0) {
-      good = time_ <= segment_start(sys, i, k);
-      return;
-    }
-    const bool begun = k > 0 || repeats;
-    good = (!begun || segment_start(sys, i, k) <= time_) &&
-           (!segment_exists(sys, i, k + 1) || time_ <= segment_start(sys, i, k + 1));
+    const double period = sys.input_period[i];
+    if (set == 0) return stands(Starts<double, const double*>{sys.input_count[i], period, start_of(i)}, k, idle, given);
+    const Doubles times{set_};
+    set_ += 8 * set_size * set;
+    for (std::int64_t j = 0; j < set_size * set; ++j) good = good && times[j] - times[j] == 0;
+    good = good && in_order(set, period, times);
+    stands(Starts<double, Doubles>{set, period, times}, k, idle, given);
   }
 
  private:
   const Workspace<double>& ws_;
   Words words_;
+  const unsigned char *set_, *end_;
   double time_ = 0;
 
-  /// A signal that is held stands on a segment that it was on before.
-  void left_behind(int i, std::int64_t k) {
-    const System& sys = ws_.sys;
-    good = (sys.input_period[i] > 0 ? k < (std::int64_t(1) << 52) : k < sys.input_count[i]) &&
-           (k == 0 || segment_start(sys, i, k) <= time_);
+  const double* start_of(int i) const { return ws_.sys.segment_time + ws_.sys.input_first[i]; }
+
+  /// Whether segment k is where a signal can be, resting before its start or held.
+  template <class Times>
+  void stands(const Starts<double, Times>& start, std::int64_t k, std::int64_t idle, std::int64_t given) {
+    if (!good || !started_ || start.n == 0) return;
+    const bool repeats = start.period > 0;
+    const bool exists = repeats ? k < (std::int64_t(1) << 52) : k < start.n;
+    // held it stands on a segment that it was on before
+    if (given != 0) {
+      good = exists && (k == 0 || start(k) <= time_);
+    } else if (idle != 0) {
+      good = repeats && k == 0 && time_ <= start(k);
+    } else {
+      const bool begun = k > 0 || repeats;
+      good = exists && (!begun || start(k) <= time_) && (!start.exist(k + 1) || time_ <= start(k + 1));
+    }
   }
   bool started_ = false;
   std::int64_t events_ = 0;
@@ -245,9 +288,26 @@ inline void place_cursors(Workspace<double>& ws) {
   for (int i = 0; i < ws.sys.inputs; ++i) {
     const Signal& signal = ws.in.signal[i];
     const bool begun = signal.segment > 0 || (ws.sys.input_period[i] > 0 && !signal.idle);
-    if (!is_held(ws, i) && begun) t = larger(t, segment_start(ws.sys, i, signal.segment));
+    if (!is_held(ws, i) && begun) t = larger(t, segments_of(ws, i).start(signal.segment));
   }
   load_inputs(ws, t);
+}
+
+/// The segments that were set, behind all else.
+inline void put_set(const Workspace<double>& ws, unsigned char* to) {
+  each_set(ws, [&](int i, std::int64_t n) {
+    const auto [start, coef] = segments_of(ws, i);
+    std::memcpy(to, start.times, std::size_t(8 * n)), std::memcpy(to + 8 * n, coef, std::size_t(8 * segment_size * n));
+    to += 8 * set_size * n;
+  });
+}
+inline void take_set(Workspace<double>& ws, const unsigned char* from) {
+  each_set(ws, [&](int i, std::int64_t n) {
+    const std::int64_t first = ws.sys.input_first[i];
+    std::memcpy(ws.in.set_time + first, from, std::size_t(8 * n));
+    std::memcpy(ws.in.set_coef + segment_size * first, from + 8 * n, std::size_t(8 * segment_size * n));
+    from += 8 * set_size * n;
+  });
 }
 
 /// Make the indices of a run anew from what is read: signals, modes, branches, guards. The numbers are read once more,
@@ -256,9 +316,10 @@ inline void resume(Workspace<double>& ws, const unsigned char* bytes) {
   auto read = [&] {
     Reader reader(bytes);
     describe(ws, reader);
+    return reader.words.at();
   };
   const System& sys = ws.sys;
-  read();
+  take_set(ws, read());
   if (!ws.started) return;
   if (!prepare_geometry(ws)) {
     ws.started = false;
@@ -273,6 +334,7 @@ inline void resume(Workspace<double>& ws, const unsigned char* bytes) {
   ws.options.method = ws.reduced.method;
   const bool entered = enter_mode(ws);
   read();
+  rest_fresh(ws);
   ws.fresh_phase = ws.fresh_phase || !entered;
 }
 

@@ -14,17 +14,23 @@ inline bool curve_fits(const System& s, std::int64_t at) {
   return first >= 0 && count >= 1 && first + count <= double(s.n_points);
 }
 
-/// Whether the segments of a signal stand in order and repeat no faster than a run could follow.
-inline bool signal_fits(const System& s, std::int64_t i) {
-  const std::int64_t first = s.input_first[i], count = s.input_count[i];
-  if (count < 0 || first < 0 || first + count > s.segments) return false;
-  for (std::int64_t k = first; k + 1 < first + count; ++k) {
-    if (!(s.segment_time[k] <= s.segment_time[k + 1])) return false;
+/// Whether n segments stand in order and repeat no faster than a run could follow.
+template <class Times>
+bool in_order(std::int64_t n, double period, const Times& times) {
+  for (std::int64_t k = 0; k + 1 < n; ++k) {
+    if (!(times[k] <= times[k + 1])) return false;
   }
-  const double period = s.input_period[i];
-  if (count == 0 || period <= 0) return true;
-  const double start = s.segment_time[first], end = s.segment_time[first + count - 1];
+  if (n == 0 || period <= 0) return true;
+  const double start = times[0], end = times[n - 1];
   return end - start <= period && start > -1e8 * period && abs(end) < 1e12 * period;
+}
+
+/// Whether the segments of a signal stand behind those of the signals before it, in order.
+inline bool signal_fits(const System& s, std::int64_t i, std::int64_t& next) {
+  const std::int64_t first = s.input_first[i], count = s.input_count[i];
+  if (count < 0 || first != next || first + count > s.segments) return false;
+  next += count;
+  return in_order(count, s.input_period[i], s.segment_time + first);
 }
 
 /// Calls curve(place) and choice(place, words) for every parameter that says where numbers stand, which of a few words
@@ -297,8 +303,8 @@ inline bool matrices_fit(const System& s) {
 inline bool in_range(const System& s) {
   bool good = offsets_in_range(s) && ways_fit(s) && loads_fit(s) && transmissions_fit(s) && shared_in_range(s) &&
               meters_in_range(s) && matrices_fit(s);
-  for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i);
-  std::int64_t all = 0, own = 0;
+  std::int64_t all = 0, own = 0, segments = 0;
+  for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i, segments);
   for (std::int64_t i = 0; good && i < s.elements; ++i, all += own) good = element_fits(s, i, own);
   for (std::int64_t i = 0; good && i < s.contacts; ++i, all += own) good = contact_fits(s, i, own);
   // states are nobody's twice

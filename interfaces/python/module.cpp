@@ -81,6 +81,12 @@ class Run {
   void release_input(std::int64_t input) {
     if (!cw_release_input(run_, input)) throw nb::value_error("unknown input, or one that is set from outside alone");
   }
+  void set_segments(std::int64_t input, Vector times, Matrix coefficients) {
+    const auto n = std::int64_t(times.shape(0));
+    if (std::int64_t(coefficients.shape(0)) != n || coefficients.shape(1) != 12 ||
+        !cw_set_segments(run_, input, times.data(), coefficients.data(), n))
+      throw nb::value_error("unknown input, too many segments, starts that fall, or a number that is not finite");
+  }
   void expect_inputs(bool expected) { cw_expect_inputs(run_, expected ? 1 : 0); }
   void set_param(std::int64_t offset, double value) {
     if (!cw_set_param(run_, offset, value))
@@ -238,6 +244,7 @@ NB_MODULE(_core, m) {
       .def("set_option", &Run::set_option, nb::arg("name"), nb::arg("value"))
       .def("set_input", &Run::set_input, nb::arg("index"), nb::arg("value"))
       .def("release_input", &Run::release_input, nb::arg("index"))
+      .def("set_segments", &Run::set_segments, nb::arg("index"), nb::arg("times"), nb::arg("coefficients"))
       .def("expect_inputs", &Run::expect_inputs, nb::arg("expected"))
       .def("set_param", &Run::set_param, nb::arg("offset"), nb::arg("value"))
       .def("is_settable", &Run::is_settable, nb::arg("offset"), nb::arg("value"))

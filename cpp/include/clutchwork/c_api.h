@@ -35,6 +35,16 @@ int cw_set_option(cw_run* run, const char* name, double value);
    signal, or the value is not finite. */
 int cw_set_input(cw_run* run, int64_t input, double value);
 
+/* Segments of a signal from the present time on, in place of those of the system and of a value that it holds. Segment
+   k starts at times[k] [s], not before the one in front of it; its 12 numbers c at coefficients + 12 k are, s seconds
+   after that start,
+     c0 + c1 s + c2 s^2 + c3 s^3 + c4 exp(-c7 s) sin(c5 s + c6) + c8 exp(-c11 s) sin(c9 s + c10).
+   The first one holds before its start too. A signal of the system that repeats keeps its period, in which all starts
+   lie. The run has a copy in its own memory, with room for as many segments as the system has for that signal, and so
+   has its saved state. What is past is not asked for: the segment of the present time may be the first one.
+   1: set; 0: no such signal, more segments than that or none, starts that fall, or a number that is not finite. */
+int cw_set_segments(cw_run* run, int64_t input, const double* times, const double* coefficients, int64_t n);
+
 /* Let a signal follow the system again. 1: done, also where it did so already; 0: no such signal, or one that is set
    from outside alone. */
 int cw_release_input(cw_run* run, int64_t input);
@@ -118,16 +128,16 @@ int64_t cw_detail(const cw_run* run, double* value);
 /* After not_finite: which number of a row is not finite; -1 when it was found elsewhere. */
 int64_t cw_detail_row(const cw_run* run);
 
-/* Complete state of a run, bit for bit: bytes of it (-1 for a null pointer); write them to memory of `room` bytes and
-   return their number (-1: refused because there is too little room, or a null pointer).
-   The bytes contain no pointers. They carry the versions of core and state, a fingerprint of the system, their size and
-   a checksum. */
+/* Complete state of a run, bit for bit: bytes of it, more while segments are set (-1 for a null pointer); write them to
+   memory of `room` bytes and return their number (-1: refused because there is too little room, or a null pointer). The
+   bytes contain no pointers. They carry the versions of core and state, a fingerprint of the system, their size and a
+   checksum. */
 int64_t cw_state_size(const cw_run* run);
 int64_t cw_save(const cw_run* run, void* bytes, int64_t room);
 
 /* Restore a run of the same system, in any memory, to the state in which cw_save was called: it continues with the same
-   bits. Options, inputs and parameters are restored too. 1: done; 0: refused and the run unchanged, because the state
-   belongs to another system or version, has another size, is damaged, or contains an impossible value. */
+   bits. Options, inputs, segments and parameters are restored too. 1: done; 0: refused and the run unchanged, because
+   the state belongs to another system or version, has another size, is damaged, or contains an impossible value. */
 int cw_restore(cw_run* run, const void* bytes, int64_t n);
 
 /* Kinetic coefficient at a slip and static coefficient of a law at its inputs (such as a temperature). 1: done; 0: no

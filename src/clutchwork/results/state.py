@@ -17,6 +17,7 @@ from clutchwork.base.kept import kept
 from clutchwork.base.shown import shortened, shown
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
+from clutchwork.results.held import Held, held_of, plain_held
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,7 +49,7 @@ class State:
     core: bytes = field(repr=False)  # as the compiled core saves it
     row: bytes = field(repr=False)  # output row at this instant
     left: bytes = field(default=b"", repr=False)  # the one before what was set there, which controllers see
-    held: Mapping[str, float] = field(default_factory=dict)  # signals that were set from outside
+    held: Held = field(default_factory=dict)  # signals that were set from outside
     changed: Mapping[str, Any] = field(default_factory=dict)  # parameters that were
 
     def __repr__(self) -> str:
@@ -78,7 +79,7 @@ class State:
         import json
 
         head = {"format": FORMAT, "time": self.time, "model": self.model, "fingerprint": self.fingerprint}
-        head |= {"held": dict(self.held), "changed": dict(self.changed)}
+        head |= {"held": plain_held(self.held), "changed": dict(self.changed)}
         return {"head": json.dumps(head).encode(), "core": self.core, "row": self.row, "left": self.left}
 
     @classmethod
@@ -152,4 +153,4 @@ def _read_head(data: bytes) -> dict[str, Any]:
     kinds = {"time": float, "model": str, "fingerprint": str, "held": dict, "changed": dict}
     if any(not isinstance(head.get(name), kind) for name, kind in kinds.items()):
         raise ValueError("its head is damaged")
-    return {name: head[name] for name in kinds}
+    return {name: head[name] for name in kinds} | {"held": held_of(head["held"])}

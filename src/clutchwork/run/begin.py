@@ -10,6 +10,7 @@ from clutchwork.base.shown import shown
 from clutchwork.declare.core import core
 from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, EVENTS_FULL, ROWS_FULL
+from clutchwork.results.held import Held
 from clutchwork.results.state import State, StateError, fingerprint
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def choose(run: Any, options: Options) -> None:
 def state_of(
     run: Any,
     system: System,
-    outside: tuple[Mapping[str, float], Mapping[str, Any]],
+    outside: tuple[Held, Mapping[str, Any]],
     row: bytes | None = None,
     left: bytes = b"",
 ) -> State:

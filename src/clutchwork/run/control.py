@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.results.channels import Channels
+from clutchwork.results.held import Held
 from clutchwork.results.trajectory import SimulationError
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ class Control:
     controllers: tuple[Controller, ...]
     channels: Callable[[], Channels]
     log: dict[float, Settings] = field(default_factory=dict)
-    held: Mapping[str, float] = field(default_factory=dict)  # from outside, since before the run
+    held: Held = field(default_factory=dict)  # from outside, since before the run
     changed: Mapping[str, Any] = field(default_factory=dict)
     first: NDArray[np.float64] | None = None  # the row that controllers see where a run goes on from a state
 
@@ -104,7 +105,7 @@ class Control:
         """Instants up to which the core may run: those of all controllers, then the end [s]."""
         return instants(self.controllers, begin, t_end)
 
-    def outside(self, number: int) -> tuple[Mapping[str, float], Mapping[str, Any]]:  # noqa: ARG002, they stay
+    def outside(self, number: int) -> tuple[Held, Mapping[str, Any]]:  # noqa: ARG002, they stay
         """Signals and parameters that are set from outside."""
         return self.held, self.changed
 

@@ -8,10 +8,14 @@ from functools import cached_property
 from math import isfinite
 from typing import Any, NamedTuple, Protocol
 
-from clutchwork.base.classes import dataclass
+import numpy as np
 
-Numbers = tuple[tuple[int, float], ...]
-KINDS = ("input", "release", "param", "control")
+from clutchwork.base.classes import dataclass
+from clutchwork.results.held import Held, held_of, plain_held, plain_value, value_of
+
+# by place, of a table its segments
+Numbers = tuple[tuple[int, Any], ...]
+KINDS = ("input", "release", "param", "control", "segments")
 
 
 class Course(Protocol):
@@ -23,7 +27,7 @@ class Course(Protocol):
     def act(self, run: Any, time: float, number: int) -> bool:
         """Set what is due before the stretch of a number; False when there is nothing to do."""
 
-    def outside(self, number: int) -> tuple[Mapping[str, float], Mapping[str, Any]]:
+    def outside(self, number: int) -> tuple[Held, Mapping[str, Any]]:
         """Signals and parameters that are set from outside after so many stretches."""
 
     def plain(self) -> dict[str, Any] | None:
@@ -31,9 +35,9 @@ class Course(Protocol):
 
 
 class Act(NamedTuple):
-    """One thing that was set: a signal, a signal that follows its model again, or a parameter."""
+    """One thing that was set: a signal, its segments, a signal that follows its model again, or a parameter."""
 
-    kind: str  # "input", "release", "param" or "control"
+    kind: str  # one of KINDS
     name: str
     value: Any  # None: that of the model
     numbers: Numbers  # what the core is given, by place
@@ -45,6 +49,9 @@ class Act(NamedTuple):
                 run.set_param(place, value)
             elif self.kind == "release":
                 run.release_input(place)
+            elif self.kind == "segments":
+                rows = np.array(value)
+                run.set_segments(place, rows[:, 0].copy(), rows[:, 1:].copy())
             else:
                 run.set_input(place, value)
 
@@ -53,7 +60,7 @@ class Act(NamedTuple):
 class Tape:
     """What was done to a run that was stepped, so that it can be repeated bit for bit."""
 
-    held: Mapping[str, float] = field(default_factory=dict)  # at its begin
+    held: Held = field(default_factory=dict)  # at its begin
     changed: Mapping[str, Any] = field(default_factory=dict)
     ends: list[float] = field(default_factory=list)  # of the stretches [s]
     # number of the stretch that it precedes, then the fields of an Act: plain tuples, which cost collectors nothing
@@ -65,7 +72,8 @@ class Tape:
 
     def plain(self) -> dict[str, Any]:
         """What a file holds of it."""
-        return {"held": dict(self.held), "changed": dict(self.changed), "ends": self.ends, "noted": self.noted}
+        noted = [(*line[:3], plain_value(line[3]), line[4]) for line in self.noted]
+        return {"held": plain_held(self.held), "changed": dict(self.changed), "ends": self.ends, "noted": noted}
 
     @classmethod
     def of_plain(cls, data: Any, inputs: int, params: int) -> Tape:
@@ -76,8 +84,9 @@ class Tape:
         ends = [float(end) for end in data["ends"]]
         if not all(isfinite(end) for end in ends) or ends != sorted(ends):
             raise ValueError("its steps are damaged")
-        held = {str(name): float(value) for name, value in data["held"].items()}
-        return cls(held, data["changed"], ends, [_noted(line, inputs, params) for line in data["noted"]])
+        return cls(
+            held_of(data["held"]), data["changed"], ends, [_noted(line, inputs, params) for line in data["noted"]]
+        )
 
     @cached_property
     def acts(self) -> dict[int, list[Act]]:
@@ -100,7 +109,7 @@ class Tape:
             one.apply(run)
         return bool(acts)
 
-    def outside(self, number: int) -> tuple[Mapping[str, float], Mapping[str, Any]]:
+    def outside(self, number: int) -> tuple[Held, Mapping[str, Any]]:
         """Signals and parameters that are set from outside after so many stretches."""
         held, changed = dict(self.held), dict(self.changed)
         for before, kind, name, value, _ in self.noted:
@@ -112,11 +121,20 @@ class Tape:
 def _noted(line: Any, inputs: int, params: int) -> tuple[int, str, str, Any, Numbers]:
     """An act and the number of the stretch that it precedes, as a file holds it."""
     number, kind, name, value, numbers = line
-    made = tuple((int(place), float(one)) for place, one in numbers)
+    table = kind == "segments"
+    made = tuple((int(place), tuple(map(_segment, one)) if table else float(one)) for place, one in numbers)
     most = params if kind == "param" else inputs
     if kind not in KINDS or not all(0 <= place < most for place, _ in made):
         raise ValueError("what was set is damaged")
-    return int(number), str(kind), str(name), value, made
+    return int(number), str(kind), str(name), value_of(value) if table else value, made
+
+
+def _segment(line: Any) -> tuple[float, ...]:
+    """A segment as a file holds it: its start and its twelve numbers."""
+    made = tuple(float(one) for one in line)
+    if len(made) != 13 or not all(map(isfinite, made)):
+        raise ValueError("a table that was set is damaged")
+    return made
 
 
 def put(known: dict[str, Any], name: str, value: Any) -> None:

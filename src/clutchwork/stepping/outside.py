@@ -13,8 +13,10 @@ from clutchwork.declare.quantity import has_unit
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.model.changes import Target, in_si, named, target
 from clutchwork.run.course import Act, put
+from clutchwork.signals.table import Table
 from clutchwork.stepping.parameters import NEW_RUN, NOTHING, Change, changed
 from clutchwork.stepping.signals import Settable, given_by_others, signals, unknown
+from clutchwork.stepping.tables import tabled
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -45,24 +47,24 @@ class Outside:
 
     def __init__(self, system: System) -> None:
         self.signals: dict[str, Settable] = signals(system)
-        self.held: dict[str, float] = {}
+        self.held: dict[str, float | Table] = {}
         self.changed: dict[str, Any] = {}
         self._base = self._present = system
 
-    def begin(self, state: State | None) -> tuple[dict[str, float], dict[str, Any]]:
+    def begin(self, state: State | None) -> tuple[dict[str, float | Table], dict[str, Any]]:
         """What is set in a state; nothing at the start of a model."""
         self.held = dict(state.held) if state else {}
         self.changed = dict(state.changed) if state else {}
         self._present = self._base.changed(self.changed) if self.changed else self._base
         return dict(self.held), dict(self.changed)
 
-    def plan(self, given: Mapping[Any, Any]) -> Plan:
-        """How values are set by name; None: that of the model again."""
+    def plan(self, given: Mapping[Any, Any], time: float) -> Plan:
+        """How values are set by name at a time [s]; None: that of the model again."""
         acts, problems, params = list[Act](), list[Problem](), dict[str, Any]()
         for name, value in given.items():
             linked = given_by_others(self._base, name) if isinstance(name, str) else unknown(self._base, name)
             if name in self.signals:
-                act, found = self._signal(name, value)
+                act, found = self._signal(name, value, time)
                 acts.append(act)
                 problems += found
             elif linked is not None:
@@ -78,8 +80,10 @@ class Outside:
             put(self.changed if act.kind == "param" else self.held, act.name, act.value)
         self._present = plan.present or self._present
 
-    def _signal(self, name: str, value: Any) -> tuple[Act, list[Problem]]:
+    def _signal(self, name: str, value: Any, time: float) -> tuple[Act, list[Problem]]:
         signal = self.signals[name]
+        if isinstance(value, Table):
+            return tabled(self._base, name, signal, value, time)
         if value is None:
             return self._released(name, signal.numbers), []
         number, problems = signal.read(value)

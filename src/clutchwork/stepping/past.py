@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from clutchwork.declare.layout import EVENT
 from clutchwork.results.events import Events, from_rows
+from clutchwork.results.held import Held
 from clutchwork.run.course import Numbers, Tape
 from clutchwork.run.failure import StoppedEarly
 from clutchwork.run.simulation import Job, trajectory
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from clutchwork.results.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-Outsides = tuple[Mapping[str, float], Mapping[str, Any]]
+Outsides = tuple[Held, Mapping[str, Any]]
 
 
 class Mark(NamedTuple):

@@ -194,8 +194,10 @@ class Simulator:
         """Set a signal or a parameter from the present time on, or several at once by name.
 
         A signal, such as "c1.pressure", holds the value [in its unit] in place of that of the model, until it is set
-        again or released. A parameter, such as "c1.gain" or "c1.friction.static", keeps it too; what a run cannot
-        change, such as an inertia, is refused. ModelError names all that is wrong at once, and nothing is set then.
+        again or released. It follows a `cw.Table` over the time of the run [s], from the present time on, which has at
+        most as many pieces ahead as the model has for that signal. A parameter, such as "c1.gain" or
+        "c1.friction.static", keeps its value too; what a run cannot change, such as an inertia, is refused. ModelError
+        names all that is wrong at once, and nothing is set then.
         """
         if isinstance(value, float) and isinstance(name, str):
             known, number = self._outside.signals.get(name), float(value)
@@ -228,7 +230,7 @@ class Simulator:
         self._set(dict.fromkeys(names or held))
 
     def _set(self, given: Mapping[Any, Any]) -> None:
-        plan = self._outside.plan(given)
+        plan = self._outside.plan(given, self._time)
         if self._failure is not None:
             raise self._failure
         if plan.problems:

@@ -4,10 +4,6 @@
 /// Signals over time: segments between knots, read through references so that a component finds its inputs in a row.
 namespace clutchwork {
 
-/// Numbers of a segment: a cubic and two waves, amplitude exp(-decay s) sin(omega s + phase). The second one is there
-/// only beside a first one: what has passed a filter is a wave and what is left of the start.
-inline constexpr int segment_size = 12;
-
 /// A wave of a segment, its numbers at w. G: a number of the model.
 template <class G>
 CLUTCHWORK_INLINE G wave_value(const G* w, G s) {
@@ -107,19 +103,39 @@ double segment_bend(const G* c, double s, double h) {
   return 2 * abs(value(c[2])) + 6 * abs(value(c[3])) * larger(abs(s), abs(s + h)) + waves;
 }
 
-/// Start of segment k of signal i, the repeated ones included (k counts on through the cycles).
-template <class G>
-G segment_start(const SystemOf<G>& sys, int i, std::int64_t k) {
-  const int n = sys.input_count[i];
-  const G* times = sys.segment_time + sys.input_first[i];
-  if (value(sys.input_period[i]) <= 0) return times[k];
-  return times[k % n] + G(double(k / n)) * sys.input_period[i];
-}
+/// Starts of the n segments of a signal, the repeated ones included: k counts on through the cycles. Times: what gives
+/// the start of one of the first n.
+template <class G, class Times>
+struct Starts {
+  std::int64_t n;
+  G period;
+  Times times;
 
-/// Whether signal i has a segment number k.
+  G operator()(std::int64_t k) const {
+    if (value(period) <= 0) return times[k];
+    return times[k % n] + G(double(k / n)) * period;
+  }
+  bool exist(std::int64_t k) const { return k >= 0 && (value(period) > 0 || k < n); }
+  /// A segment that does not start after the one that holds at time t, or is the first one.
+  std::int64_t early(double t) const {
+    const double cycles = value(period) > 0 ? (t - value(times[0])) / value(period) : 0;
+    return cycles > 1 ? (std::int64_t(smaller(cycles, 1e12)) - 1) * n : 0;
+  }
+};
+
+/// The segments of a signal: those of the system, or those that were set in their place.
 template <class G>
-bool segment_exists(const SystemOf<G>& sys, int i, std::int64_t k) {
-  return k >= 0 && (value(sys.input_period[i]) > 0 || k < sys.input_count[i]);
+struct Segments {
+  Starts<G, const G*> start;
+  const G* coef;
+};
+template <class T>
+Segments<Given<T>> segments_of(const Workspace<T>& ws, int i) {
+  const int set = ws.in.signal[i].set;
+  const std::int64_t first = ws.sys.input_first[i], place = segment_size * first;
+  const Given<T> period = ws.sys.input_period[i];
+  if (set > 0) return {{set, period, ws.in.set_time + first}, ws.in.set_coef + place};
+  return {{ws.sys.input_count[i], period, ws.sys.segment_time + first}, ws.sys.segment_coef + place};
 }
 
 /// Whether signal i holds a value that comes from outside.
@@ -131,7 +147,6 @@ bool is_held(const Workspace<T>& ws, int i) {
 /// Put the cursor of signal i on the segment that holds at time t (right limit).
 template <class T>
 void seek(Workspace<T>& ws, int i, double t) {
-  const auto& sys = ws.sys;
   using G = Given<T>;
   SignalOf<G>& signal = ws.in.signal[i];
   if (is_held(ws, i)) {
@@ -139,17 +154,16 @@ void seek(Workspace<T>& ws, int i, double t) {
     signal.varying = signal.idle = false, signal.linear = true;
     return;
   }
-  while (segment_exists(sys, i, signal.segment + 1) && value(segment_start(sys, i, signal.segment + 1)) <= t)
-    ++signal.segment;
-  const bool started = value(segment_start(sys, i, signal.segment)) <= t;
-  const int k = int(signal.segment % sys.input_count[i]);
-  signal.start = segment_start(sys, i, signal.segment);
-  signal.coef = sys.segment_coef + segment_size * (sys.input_first[i] + k);
-  signal.knot = segment_exists(sys, i, signal.segment + 1) ? segment_start(sys, i, signal.segment + 1) : G(infinity);
+  const auto [start, coef] = segments_of(ws, i);
+  while (start.exist(signal.segment + 1) && value(start(signal.segment + 1)) <= t) ++signal.segment;
+  const bool started = value(start(signal.segment)) <= t;
+  signal.start = start(signal.segment);
+  signal.coef = coef + segment_size * (signal.segment % start.n);
+  signal.knot = start.exist(signal.segment + 1) ? start(signal.segment + 1) : G(infinity);
   signal.idle = false;
   // before its start a periodic signal rests at the value of its last segment
-  if (!started && value(sys.input_period[i]) > 0) {
-    signal.coef = sys.segment_coef + segment_size * (sys.input_first[i] + sys.input_count[i] - 1);
+  if (!started && value(start.period) > 0) {
+    signal.coef = coef + segment_size * (start.n - 1);
     signal.knot = signal.start;
     signal.idle = true;
   }
@@ -308,6 +322,17 @@ void keep_prescribed(Workspace<T>& ws) {
   for (int p = 0; p < ws.sys.prescribed; ++p) ws.in.prescribed_before[p] = ws.in.prescribed[p];
 }
 
+/// Signals with other segments from the present instant on vary no more before the run has passed it.
+template <class T>
+void rest_fresh(Workspace<T>& ws) {
+  int n = 0;
+  for (int k = 0; k < ws.in.n_varying; ++k) {
+    const int ref = ws.in.varying[k];
+    if (!ws.in.signal[ws.in.ref_signal[ref]].fresh) ws.in.varying[n++] = ref;
+  }
+  ws.in.n_varying = n;
+}
+
 /// Take the right limit of every signal at time t: cursors, constants, the list of varying ones, the next knot.
 template <class T>
 void load_inputs(Workspace<T>& ws, double t) {
@@ -315,6 +340,7 @@ void load_inputs(Workspace<T>& ws, double t) {
   ws.in.next_knot = infinity;
   for (int i = 0; i < ws.sys.inputs; ++i) {
     seek(ws, i, t);
+    ws.in.signal[i].fresh = false;
     ws.in.next_knot = smaller(ws.in.next_knot, value(ws.in.signal[i].knot));
   }
   ws.in.n_shared_refs = ws.in.n_direction_refs = ws.in.n_rate_refs = 0;

@@ -67,10 +67,10 @@ inline constexpr int small_speeds = 4, small_states = 2;
 /// Those that are compiled, as speeds and states: a build that must be small takes fewer, and the sparse form runs what
 /// has none. docs/guide/wasm.md
 #ifndef CLUTCHWORK_SMALL_FORMS
-#define CLUTCHWORK_SMALL_FORMS(FORM)                                                                            \
-  FORM(1, 0)                                                                                                    \
-  FORM(1, 1) FORM(1, 2) FORM(2, 0) FORM(2, 1) FORM(2, 2) FORM(3, 0) FORM(3, 1) FORM(3, 2) FORM(4, 0) FORM(4, 1) \
-      FORM(4, 2)
+#define CLUTCHWORK_SMALL_FORMS(FORM) \
+  FORM(1, 0)                         \
+  FORM(1, 1)                         \
+  FORM(1, 2) FORM(2, 0) FORM(2, 1) FORM(2, 2) FORM(3, 0) FORM(3, 1) FORM(3, 2) FORM(4, 0) FORM(4, 1) FORM(4, 2)
 #endif
 constexpr bool has_small_form(std::int64_t speeds, std::int64_t states) {
 #define CLUTCHWORK_IS_FORM(SPEEDS, STATES) || (speeds == SPEEDS && states == STATES)

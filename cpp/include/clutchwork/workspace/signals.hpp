@@ -5,6 +5,10 @@
 /// Signals and the components that read them.
 namespace clutchwork {
 
+/// Numbers of a segment: a cubic and two waves, amplitude exp(-decay s) sin(omega s + phase). The second one is there
+/// only beside a first one: what has passed a filter is a wave and what is left of the start.
+inline constexpr int segment_size = 12;
+
 /// Cursor of one signal, over a number of the model.
 template <class G>
 struct SignalOf {
@@ -15,6 +19,8 @@ struct SignalOf {
   G held = G(0);  ///< value of a signal that is set from outside
   bool varying = false, linear = true, idle = false;
   bool given = false;  ///< it was set from outside, and follows its segments no more
+  int set = 0;         ///< segments that were set in place of those of the system, 0: none
+  bool fresh = false;  ///< it has other segments from the present instant on, and stays at the left limit until then
 };
 
 using Signal = SignalOf<double>;
@@ -24,6 +30,7 @@ using Signal = SignalOf<double>;
 template <class T>
 struct Signals {
   SignalOf<Given<T>>* signal = nullptr;
+  Given<T>*set_time = nullptr, *set_coef = nullptr;  ///< of the segments that were set, where the system has its own
   int n_refs = 0, n_varying = 0;
   int *ref_signal = nullptr, *varying = nullptr;
   T *u = nullptr, *du = nullptr;  ///< value of each reference; its time derivative where it is a signal or a rate
@@ -43,6 +50,8 @@ struct Signals {
     a.take(p.shared_ref, n.references), a.take(p.direction_ref, n.references), a.take(p.shared_slope, n.references);
     a.take(p.rate_ref, n.references);
     a.take(p.signal, n.signals), a.take(p.ref_signal, n.references), a.take(p.varying, n.references);
+    const auto room = has_tangents<T> ? 0 : n.segments;
+    a.scratch(p.set_time, room), a.scratch(p.set_coef, segment_size * room);
     a.take(p.u, n.references), a.take(p.du, n.references), a.take(p.prescribed_before, n.prescribed);
   }
 };
