@@ -13,8 +13,9 @@ export interface Part {
   recolour?(): void;
 }
 
-// rows that a run should have: enough for a curve, not more than can be drawn while something is dragged
-const ROWS = 700;
+// rows that a run should have: enough for a curve; while something is dragged half as many, for they are drawn each time
+const ROWS = 800;
+const ROWS_DRAGGED = 400;
 const QUIET = 160;
 
 export class App {
@@ -24,13 +25,16 @@ export class App {
   /** Times of the work from the move to the curves [ms], for benchmarks. */
   readonly work: number[] = [];
   private readonly parts: Part[] = [];
-  private steps = 1;
+  private readonly steps: number;
+  private readonly stepsDragged: number;
   private waiting = 0;
   private settling: ReturnType<typeof setTimeout> | undefined;
 
   constructor(readonly session: Session) {
     const bare = session.run({ steps: 1 });
-    this.steps = Math.min(Math.max(Math.ceil(ROWS / Math.max(bare.steps, 1)), 1), 8);
+    const perStep = (rows: number): number => Math.min(Math.max(Math.ceil(rows / Math.max(bare.steps, 1)), 1), 8);
+    this.steps = perStep(ROWS);
+    this.stepsDragged = perStep(ROWS_DRAGGED);
     this.first = this.run = session.run({ steps: this.steps });
     this.time = (session.data.tStart + session.data.tEnd) / 2;
   }
@@ -50,17 +54,22 @@ export class App {
       this.waiting = 0;
       this.compute(false);
       clearTimeout(this.settling);
-      this.settling = setTimeout(() => this.tell(true), QUIET);
+      this.settling = setTimeout(() => this.settle(), QUIET);
     });
   }
 
   /** Run and draw at once. */
   compute(settled: boolean): void {
     const begin = performance.now();
-    this.run = this.session.run({ steps: this.steps });
+    this.run = this.session.run({ steps: settled ? this.steps : this.stepsDragged });
     this.tell(settled);
     this.work.push(performance.now() - begin);
     if (this.work.length > 5000) this.work.shift();
+  }
+
+  private settle(): void {
+    this.run = this.session.run({ steps: this.steps });
+    this.tell(true);
   }
 
   look(time: number): void {

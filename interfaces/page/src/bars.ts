@@ -2,12 +2,12 @@
 import type { App, Part } from "./app";
 import type { Result } from "./core";
 import type { ContactData } from "./data";
-import { element, svg } from "./dom";
+import { element, put, svg } from "./dom";
 import { seconds } from "./format";
 import { type State, strokes } from "./measures";
 
 const ROW = 22;
-const LEFT = 58;
+const LETTER = 7;
 const RIGHT = 8;
 const MOST = 400;
 const HEIGHTS: Record<State, number> = { locked: 14, slipping: 8, open: 2 };
@@ -20,11 +20,15 @@ export class Bars implements Part {
   private readonly words = element("ul", { class: "unseen" });
   private readonly contacts: ContactData[];
   private width = 400;
+  private readonly left: number;
 
   constructor(private readonly app: App) {
     this.contacts = app.data.contacts;
     this.bars = svg("g");
-    this.picture.append(this.bars, this.cursor);
+    const names = this.contacts.map(({ name }) => shortened(name));
+    this.left = Math.max(58, 14 + LETTER * Math.max(0, ...names.map((name) => name.length)));
+    const labels = names.map((name, row) => svg("text", { x: `${this.left - 8}`, y: `${ROW * (row + 0.5) + 4}`, "text-anchor": "end" }, svg("title", {}, this.contacts[row]!.name), name));
+    this.picture.append(...labels, this.bars, this.cursor);
     const keys = element("p", { class: "states" }, ...(["locked", "slipping", "open"] as const).flatMap((state) => [element("span", { class: `state ${state}` }), state, " "]));
     this.root = element("section", { class: "panel", "aria-label": "states of the contacts over time" }, element("h2", {}, "Locked, slipping, open"), keys, this.words);
     this.root.append(this.picture);
@@ -33,25 +37,33 @@ export class Bars implements Part {
   }
 
   update(run: Result, settled: boolean): void {
-    const made: SVGElement[] = [];
     const told: HTMLElement[] = [];
+    let used = 0;
     this.contacts.forEach((contact, row) => {
       const middle = ROW * row + ROW / 2;
-      made.push(svg("text", { x: `${LEFT - 8}`, y: `${middle + 4}`, "text-anchor": "end" }, shortened(contact.name)));
       const found = strokes(contact, run);
       for (const { from, to, state } of found.slice(0, MOST)) {
         const high = HEIGHTS[state];
         const x = this.x(from);
-        made.push(svg("rect", { class: `bar ${state}`, x: x.toFixed(1), width: Math.max(this.x(to) - x, 0.7).toFixed(1), y: `${middle - high / 2}`, height: `${high}` }));
+        this.bar(used++, `bar ${state}`, x, Math.max(this.x(to) - x, 0.7), middle - high / 2, high);
       }
       if (settled) told.push(element("li", {}, `${contact.name}: ${found.slice(0, 20).map((one) => `${one.state} from ${seconds(one.from)} to ${seconds(one.to)}`).join(", ")}`));
     });
     if (run.status !== 0) {
       const x = this.x(run.reached);
-      made.push(svg("rect", { class: "beyondbar", x: `${x}`, width: `${Math.max(this.width - RIGHT - x, 0)}`, y: "0", height: `${ROW * this.contacts.length}` }));
+      this.bar(used++, "beyondbar", x, Math.max(this.width - RIGHT - x, 0), 0, ROW * this.contacts.length);
     }
-    this.bars.replaceChildren(...made);
+    while (this.bars.childElementCount > used) this.bars.lastElementChild!.remove();
     if (settled) this.words.replaceChildren(...told);
+  }
+
+  private bar(number: number, kind: string, x: number, wide: number, y: number, high: number): void {
+    const place = this.bars.children[number] ?? this.bars.appendChild(svg("rect"));
+    put(place, "class", kind);
+    put(place, "x", x.toFixed(1));
+    put(place, "width", wide.toFixed(1));
+    put(place, "y", `${y}`);
+    put(place, "height", `${high}`);
   }
 
   at(time: number): void {
@@ -64,7 +76,7 @@ export class Bars implements Part {
 
   private x(time: number): number {
     const { tStart, tEnd } = this.app.data;
-    return LEFT + ((time - tStart) / (tEnd - tStart)) * (this.width - LEFT - RIGHT);
+    return this.left + ((time - tStart) / (tEnd - tStart)) * (this.width - this.left - RIGHT);
   }
 
   private resize(): void {
@@ -77,5 +89,5 @@ export class Bars implements Part {
 }
 
 function shortened(name: string): string {
-  return name.length > 8 ? `…${name.slice(-7)}` : name;
+  return name.length > 15 ? `…${name.slice(-14)}` : name;
 }

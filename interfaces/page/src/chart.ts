@@ -3,7 +3,7 @@ import uPlot from "uplot";
 import type { App, Part } from "./app";
 import type { Result } from "./core";
 import type { PanelData } from "./data";
-import { colour, curveColour, element } from "./dom";
+import { colour, curveColour, element, watched, write } from "./dom";
 import { number, shownUnit } from "./format";
 import { evaluated } from "./forms";
 
@@ -23,6 +23,8 @@ export class Chart implements Part {
   private visible = true;
   private stale = false;
   private now: Float64Array[] = [];
+  private readonly ghosts = element("canvas");
+  private ghostKey = "";
 
   constructor(
     private readonly app: App,
@@ -40,10 +42,10 @@ export class Chart implements Part {
     this.plot.over.addEventListener("pointermove", (event) => this.hover(event));
     this.plot.over.addEventListener("pointerdown", (event) => this.hover(event));
     new ResizeObserver(() => this.resize(place)).observe(place);
-    new IntersectionObserver((entries) => {
-      this.visible = entries.some((entry) => entry.isIntersecting);
-      if (this.visible && this.stale) this.update(this.app.run);
-    }, { rootMargin: "60px" }).observe(place);
+    watched(place, (seen) => {
+      this.visible = seen;
+      if (seen && this.stale) this.update(this.app.run);
+    });
     this.update(app.run);
   }
 
@@ -62,7 +64,7 @@ export class Chart implements Part {
   at(time: number): void {
     this.cursor.style.transform = `translateX(${this.plot.valToPos(time, "x")}px)`;
     const row = this.app.row();
-    this.values.forEach((value, i) => (value.textContent = number(this.now[i]?.[row] ?? NaN)));
+    this.values.forEach((value, i) => write(value, number(this.now[i]?.[row] ?? NaN)));
   }
 
   recolour(): void {
@@ -111,30 +113,36 @@ export class Chart implements Part {
     };
   }
 
-  /** The curves of the start. */
+  /** The curves of the start: painted once for an axis, for dashes cost more than all else. */
   private ghost(plot: uPlot): void {
     if (this.app.run === this.app.first) return;
-    const { ctx } = plot;
-    const times = this.app.first.times;
-    ctx.save();
-    ctx.beginPath();
-    ctx.rect(plot.bbox.left, plot.bbox.top, plot.bbox.width, plot.bbox.height);
-    ctx.clip();
-    ctx.globalAlpha = 0.35;
+    const { left, top, width, height } = plot.bbox;
+    if (width < 1 || height < 1) return;
+    const key = [...this.range, width, height, ...this.shown, colour("ground")].join();
+    if (key !== this.ghostKey) {
+      this.ghostKey = key;
+      this.ghosts.width = width;
+      this.ghosts.height = height;
+      this.paintGhost(plot, this.ghosts.getContext("2d")!);
+    }
+    plot.ctx.drawImage(this.ghosts, left, top);
+  }
+
+  private paintGhost(plot: uPlot, ctx: CanvasRenderingContext2D): void {
+    const { times } = this.app.first;
+    const { left, top } = plot.bbox;
+    const [x0, y0] = [plot.valToPos(0, "x", true), plot.valToPos(0, "y", true)];
+    const [xScale, yScale] = [plot.valToPos(1, "x", true) - x0, plot.valToPos(1, "y", true) - y0];
+    ctx.globalAlpha = 0.4;
     ctx.lineWidth = devicePixelRatio;
     ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
-    const x0 = plot.valToPos(0, "x", true);
-    const xScale = plot.valToPos(1, "x", true) - x0;
-    const y0 = plot.valToPos(0, "y", true);
-    const yScale = plot.valToPos(1, "y", true) - y0;
     this.start.forEach((values, i) => {
       if (!this.shown[i]) return;
       ctx.strokeStyle = curveColour(i);
       ctx.beginPath();
-      for (let k = 0; k < values.length; k++) ctx.lineTo(x0 + xScale * times[k]!, y0 + yScale * values[k]!);
+      for (let k = 0; k < values.length; k++) ctx.lineTo(x0 - left + xScale * times[k]!, y0 - top + yScale * values[k]!);
       ctx.stroke();
     });
-    ctx.restore();
   }
 
   /** Ends of the axis: they stay while the curves fit well, so that dragging does not shake them. */

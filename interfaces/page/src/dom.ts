@@ -30,13 +30,36 @@ export function button(label: string, action: () => void): HTMLButtonElement {
   return made;
 }
 
+const known = new Map<string, string>();
+
 /** Colours of the style, as the canvas needs them. */
 export function colour(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  const found = known.get(name) ?? getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  known.set(name, found);
+  return found;
+}
+
+/** The style has other colours now. */
+export function forgetColours(): void {
+  known.clear();
 }
 
 export const CURVES = 8;
 
 export function curveColour(number: number): string {
   return colour(`curve-${number % CURVES}`);
+}
+
+/** Text of an element, where it is another one: what stays costs no layout. */
+export function write(place: Element, text: string): void {
+  if (place.textContent !== text) place.textContent = text;
+}
+
+export function put(place: Element, name: string, value: string): void {
+  if (place.getAttribute(name) !== value) place.setAttribute(name, value);
+}
+
+/** Tell whether an element can be seen, now and whenever that changes. */
+export function watched(place: Element, tell: (seen: boolean) => void): void {
+  new IntersectionObserver((entries) => tell(entries.at(-1)!.isIntersecting), { rootMargin: "60px" }).observe(place);
 }

@@ -2,7 +2,7 @@
 import uPlot from "uplot";
 import type { App, Part } from "./app";
 import type { Knot, TableData } from "./data";
-import { colour, curveColour, element } from "./dom";
+import { colour, curveColour, element, put } from "./dom";
 import { number, shownUnit } from "./format";
 import { added, moved, removed } from "./tables";
 
@@ -125,12 +125,13 @@ export class Editor implements Part {
       while (row.length < knots.length) row.push(this.handle(table, k, row.length));
       knots.forEach(([t, y], i) => {
         const handle = row[i]!;
-        handle.style.transform = `translate(${this.plot.valToPos(t, "x")}px, ${this.plot.valToPos(y * this.factor, "y")}px)`;
+        const place = `translate(${this.plot.valToPos(t, "x")}px, ${this.plot.valToPos(y * this.factor, "y")}px)`;
+        if (handle.style.transform !== place) handle.style.transform = place;
         handle.hidden = t < this.app.data.tStart || t > this.app.data.tEnd;
-        handle.setAttribute("aria-valuemin", `${number(this.range[0])}`);
-        handle.setAttribute("aria-valuemax", `${number(this.range[1])}`);
-        handle.setAttribute("aria-valuenow", `${y * this.factor}`);
-        handle.setAttribute("aria-valuetext", `${number(t)} s, ${number(y * this.factor)} ${this.word}`);
+        put(handle, "aria-valuemin", `${number(this.range[0])}`);
+        put(handle, "aria-valuemax", `${number(this.range[1])}`);
+        put(handle, "aria-valuenow", `${y * this.factor}`);
+        put(handle, "aria-valuetext", `${number(t)} s, ${number(y * this.factor)} ${this.word}`);
       });
     });
     this.at(this.app.time);

@@ -16,11 +16,11 @@ export interface Measure {
   name: string;
   unit: string;
   value: number | null;
-  missing: string;
 }
 
 const [TIME, CONTACT, FROM, TO, CAUSE] = [0, 1, 2, 3, 4];
 const NOTHING = 1e-9;
+const PASSING = 7;
 
 /** How a contact is over time. */
 export function strokes(contact: ContactData, run: Result): Stroke[] {
@@ -43,6 +43,7 @@ export function eventTime(event: CoreEvent): number {
 /** An event in words. */
 export function sentence(data: PageData, event: CoreEvent): string {
   const name = nameOf(data, event[CONTACT]!);
+  if (event[CAUSE] === PASSING) return `${name}, open, turns the other way`;
   const [, cause] = data.causes[`${event[CAUSE]!}`] ?? ["", ""];
   const what = `${name} ${deed(event[FROM]!, event[TO]!)}`.trim();
   return cause ? `${what}: ${cause}` : what;
@@ -67,21 +68,15 @@ export function measures(data: PageData, run: Result): Measure[] {
     if (!contact.heat) continue;
     const heat = evaluated(contact.heat, run).at(-1) ?? 0;
     total += heat;
-    if (Math.abs(heat) > 0.05) made.push({ name: `Heat of ${contact.name}`, unit: "J", value: heat, missing: "" });
+    if (Math.abs(heat) > 0.05) made.push({ name: `Heat of ${contact.name}`, unit: "J", value: heat });
   }
-  if (made.length > 1) made.push({ name: "Heat of all contacts", unit: "J", value: total, missing: "" });
+  if (made.length > 1) made.push({ name: "Heat of all contacts", unit: "J", value: total });
   for (const contact of data.contacts) {
     const locks = run.events.filter((event) => event[CONTACT] === contact.number && event[TO] === 0 && event[FROM] !== 0);
     const last = locks.at(-1);
-    const held = run.rows[contact.mode] === 0;
-    if (last) made.push({ name: `${contact.name} locks at`, unit: "s", value: last[TIME]!, missing: "" });
-    else if (!held && !neverActs(contact, run)) made.push({ name: `${contact.name} locks at`, unit: "s", value: null, missing: "never" });
+    if (last) made.push({ name: `${contact.name} locks at`, unit: "s", value: last[TIME]! });
   }
   return [...made, ...felt(data, run)];
-}
-
-function neverActs(contact: ContactData, run: Result): boolean {
-  return evaluated(contact.torque, run).every((torque) => Math.abs(torque) <= NOTHING);
 }
 
 function felt(data: PageData, run: Result): Measure[] {
@@ -93,7 +88,7 @@ function felt(data: PageData, run: Result): Measure[] {
     const signal = data.signals[`${data.output}.${word}`];
     if (!signal) continue;
     const value = evaluated(signal.form, run).reduce((most, one) => Math.max(most, Math.abs(one)), 0);
-    made.push({ name: `${title} ${data.output}`, unit: signal.unit, value, missing: "" });
+    made.push({ name: `${title} ${data.output}`, unit: signal.unit, value });
   }
   return made;
 }

@@ -1,7 +1,7 @@
 // The driveline at the time of the cursor: its schematic, and its gears as levers.
 import type { App, Part } from "./app";
 import type { LeverData } from "./data";
-import { button, element, svg } from "./dom";
+import { button, element, svg, watched, write } from "./dom";
 import { number, quantity, seconds } from "./format";
 
 const NOTHING = 1e-9;
@@ -58,6 +58,8 @@ export class Schematic implements Part {
   private readonly texts: { place: SVGTextElement; column: number; unit: string }[] = [];
   private readonly symbols: { groups: SVGElement[]; mode: number; torque: number[] }[] = [];
 
+  private seen = true;
+
   constructor(private readonly app: App) {
     const source = app.data.schematic!;
     const picture = document.importNode(new DOMParser().parseFromString(source.svg, "image/svg+xml").documentElement, true);
@@ -77,6 +79,10 @@ export class Schematic implements Part {
       if (groups.length) this.symbols.push({ groups, mode: contact.mode, torque });
     }
     this.at();
+    watched(this.root, (seen) => {
+      this.seen = seen;
+      this.at();
+    });
   }
 
   update(): void {
@@ -84,11 +90,12 @@ export class Schematic implements Part {
   }
 
   at(): void {
+    if (!this.seen) return;
     const { run } = this.app;
     const start = this.app.row() * run.size;
     for (const { place, column, unit } of this.texts) {
       const value = run.rows[start + column]!;
-      place.textContent = quantity(Math.abs(value) > NOTHING ? value : 0, unit);
+      write(place, quantity(Math.abs(value) > NOTHING ? value : 0, unit));
     }
     for (const { groups, mode, torque } of this.symbols) {
       const now = run.rows[start + mode]!;
@@ -108,25 +115,36 @@ const LEVER = { height: 150, width: 190, top: 24, left: 70, reach: 100 };
 export class Levers implements Part {
   readonly root: HTMLElement;
   private readonly drawn: { line: SVGElement; dots: SVGElement[]; labels: SVGElement[]; lever: LeverData }[] = [];
-  private scale = 1;
+  private readonly scale: number;
+  private seen = true;
 
   constructor(private readonly app: App) {
     const pictures = element("div", { class: "levers" });
     this.root = element("section", { class: "panel moment", "aria-label": "lever diagrams at the time of the cursor" }, element("h2", {}, "Its gears as levers"), pictures);
     for (const lever of app.data.levers) pictures.append(this.picture(lever));
-    this.update();
+    this.scale = LEVER.reach / this.fastest();
+    this.at();
+    watched(this.root, (seen) => {
+      this.seen = seen;
+      this.at();
+    });
   }
 
   update(): void {
+    this.at();
+  }
+
+  /** The largest speed of any member at the start of the page. */
+  private fastest(): number {
     let most = 1e-9;
     const columns = new Set(this.app.data.levers.flatMap((lever) => lever.points.map((point) => point.column)).filter((column) => column >= 0));
     const { rows, count, size } = this.app.first;
     for (const column of columns) for (let i = 0; i < count; i++) most = Math.max(most, Math.abs(rows[i * size + column]!));
-    this.scale = LEVER.reach / most;
-    this.at();
+    return most;
   }
 
   at(): void {
+    if (!this.seen) return;
     const { run } = this.app;
     const start = this.app.row() * run.size;
     for (const { line, dots, labels, lever } of this.drawn) {
@@ -137,7 +155,7 @@ export class Levers implements Part {
       line.setAttribute("x2", x[last]!.toFixed(1));
       speeds.forEach((speed, i) => {
         dots[i]!.setAttribute("cx", x[i]!.toFixed(1));
-        labels[i]!.textContent = `${lever.points[i]!.name} ${number(Math.abs(speed) > NOTHING ? speed : 0, 3)}`;
+        labels[i]!.textContent = `${leaf(lever.points[i]!.name)} ${number(Math.abs(speed) > NOTHING ? speed : 0, 3)}`;
       });
     }
   }
@@ -150,8 +168,13 @@ export class Levers implements Part {
     const line = svg("line", { class: "now", y1: `${y(lever.points[0]!.place)}`, y2: `${y(lever.points.at(-1)!.place)}` });
     const dots = lever.points.map(({ place }) => svg("circle", { r: "4", cy: `${y(place)}` }));
     const labels = lever.points.map(({ place }) => svg("text", { x: `${left - 8}`, y: `${y(place) + 4}`, "text-anchor": "end" }));
-    made.append(svg("text", { x: `${left}`, y: "13", class: "title", "text-anchor": "middle" }, lever.name), zero, line, ...dots, ...labels);
+    made.append(svg("text", { x: `${left}`, y: "13", class: "title", "text-anchor": "middle" }, leaf(lever.name)), zero, line, ...dots, ...labels);
     this.drawn.push({ line, dots, labels, lever });
     return made;
   }
+}
+
+/** A name without that of the gearbox that it is in. */
+function leaf(name: string): string {
+  return name.slice(name.lastIndexOf(".") + 1);
 }

@@ -4,7 +4,7 @@ import { Bars } from "./bars";
 import { Chart } from "./chart";
 import { Core } from "./core";
 import type { PageData } from "./data";
-import { element } from "./dom";
+import { element, forgetColours } from "./dom";
 import { Editor } from "./editor";
 import { Clock, Levers, Schematic } from "./moment";
 import { Events, Results, Verdict } from "./report";
@@ -32,9 +32,12 @@ export async function mount(root: HTMLElement, data: PageData, wasm: BufferSourc
   const clock = add(new Clock(app));
   if (data.schematic) below.append(add(new Schematic(app)));
   if (data.levers.length) below.append(add(new Levers(app)));
-  below.insertBefore(clock, below.children[2] ?? null);
+  root.append(clock);
   const dark = matchMedia("(prefers-color-scheme: dark)");
-  dark.addEventListener("change", () => app.recolour());
+  dark.addEventListener("change", () => {
+    forgetColours();
+    app.recolour();
+  });
   app.look(app.time);
   return app;
 }

@@ -1,9 +1,9 @@
 // Events with their times, and what the run comes to, beside the start.
 import type { App, Part } from "./app";
 import type { Result } from "./core";
-import { element } from "./dom";
+import { element, watched, write } from "./dom";
 import { number, quantity, seconds } from "./format";
-import { ending, eventTime, measures, sentence, unlocked } from "./measures";
+import { ending, eventTime, type Measure, measures, sentence, unlocked } from "./measures";
 
 const MOST_EVENTS = 60;
 
@@ -33,27 +33,41 @@ export class Events implements Part {
 export class Results implements Part {
   readonly root: HTMLElement;
   private readonly body = element("tbody");
-  private readonly first: Map<string, number | null>;
+  private readonly first: Measure[];
+  private seen = true;
 
   constructor(private readonly app: App) {
-    this.first = new Map(measures(app.data, app.first).map((one) => [one.name, one.value]));
+    this.first = measures(app.data, app.first);
     const head = element("thead", {}, element("tr", {}, ...["", "now", "at the start", "change"].map((word) => element("th", { scope: "col" }, word))));
     this.root = element("section", { class: "panel", "aria-label": "results" }, element("h2", {}, "What it comes to"), element("div", { class: "wide" }, element("table", {}, head, this.body)));
     this.update(app.run);
+    watched(this.root, (seen) => {
+      this.seen = seen;
+      this.update(this.app.run);
+    });
   }
 
   update(run: Result): void {
+    if (!this.seen) return;
     const known = measures(this.app.data, run);
-    const lines = known.map((one) => {
-      const before = this.first.get(one.name);
+    const names = known.map((one) => one.name);
+    const lost = this.first.filter((one) => !names.includes(one.name));
+    [...known, ...lost.map((one) => ({ ...one, value: null }))].forEach((one, i) => {
+      const before = this.first.find((other) => other.name === one.name)?.value ?? null;
       const change = one.value !== null && before ? `${signed((100 * (one.value - before)) / Math.abs(before))} %` : "";
-      const cells = [one.value === null ? one.missing : quantity(one.value, one.unit), before === undefined || before === null ? "never" : quantity(before, one.unit), change];
-      const row = element("tr", {}, element("th", { scope: "row" }, one.name), ...cells.map((cell) => element("td", {}, cell)));
-      if (one.value === null) row.className = "missing";
-      return row;
+      const row = this.body.rows[i] ?? line(this.body);
+      row.className = one.value === null ? "missing" : "";
+      const words = [one.name, one.value === null ? "never" : quantity(one.value, one.unit), before === null ? "never" : quantity(before, one.unit), change];
+      words.forEach((word, k) => write(row.cells[k]!, word));
     });
-    this.body.replaceChildren(...lines);
+    while (this.body.rows.length > known.length + lost.length) this.body.deleteRow(-1);
   }
+}
+
+function line(body: HTMLTableSectionElement): HTMLTableRowElement {
+  const row = element("tr", {}, element("th", { scope: "row" }), element("td"), element("td"), element("td"));
+  body.append(row);
+  return row;
 }
 
 /** What is wrong with the run, said to everybody. */
@@ -69,9 +83,10 @@ export class Verdict implements Part {
     const open = unlocked(data, first, run);
     const never = open.length ? `${open.join(" and ")} never ${open.length > 1 ? "lock" : "locks"}.` : "";
     const said = [ending(data, run), never].filter(Boolean).join(" ");
+    if (!said && this.root.classList.contains("bad")) this.root.textContent = "";
     this.root.classList.toggle("bad", said !== "");
-    if (said) this.root.textContent = said;
-    else if (settled || this.root.classList.contains("bad")) this.root.textContent = `${run.events.length} events; runs to ${number(run.reached)} s.`;
+    if (said) write(this.root, said);
+    else if (settled || this.root.textContent === "") this.root.textContent = `${run.events.length === 1 ? "1 event" : `${run.events.length} events`}; runs to ${number(run.reached)} s.`;
   }
 }
 

@@ -28,7 +28,8 @@ COLOURS = {
     "#1A1A1A": "ink", "#DDE3EA": "body", "#FFFFFF": "paper", "#5A5A5A": "grey", "#0B5D46": "mass",
     "#DCEBE5": "massbody", "#B3261E": "heat", "#6A3D9A": "signal", "#C2185B": "wrong",
     "#00497A": "locked", "#C04A00": "slipping",
-    "#8A8A8A": "open", "#CFE6F7": "lockedhalo", "#FCE4D0": "slippinghalo",
+    "#8A8A8A": "open", "#CFE6F7": "lockedhalo", "#FCE4D0": "slippinghalo", "#F3F5F8": "pale", "#E6DDF0": "signalbody",
+    "#F9DEDC": "heatbody", "#0072B2": "locked",
 }  # fmt: skip
 
 

@@ -88,7 +88,7 @@ def _usual(known: Channels, wiring: Wiring) -> list[Panel]:
         "Temperature": [name for name in known if known[name].unit in ("K", "degC")],
     }
     return [
-        Panel(title if len(parts) == 1 else f"{title} [{part.unit}]", part.unit, part.names)
+        Panel(title, part.unit, part.names)
         for title, some in names.items()
         for parts in [_by_unit(known, some[:MOST_USUAL])]
         for part in parts

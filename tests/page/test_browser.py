@@ -1,0 +1,94 @@
+"""Pages in a headless browser, with real mouse and keys: no error, no request, and the curves follow."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import warnings
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import clutchwork as cw
+from clutchwork.command.main import main
+from clutchwork.page.data import Wanted
+from clutchwork.page.page import page
+from support.amount import amount
+from support.project import ROOT
+from support.transmissions import in_gear
+
+MODELS = sorted((ROOT / "examples").rglob("model.toml"))
+# of the catalogue; all of them where many cases are asked for
+BOXES = ("zf-8hp70", "ford-aode")
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+MODULES = ROOT / "interfaces" / "page"
+READY = 10_000.0  # ms, on a machine that does much else; docs/benchmarks.md has times
+NASTY = "</script><img src=x onerror=alert(1)>\"'&"
+
+
+def box_page(name: str, path: Path) -> Path:
+    """The page of a gearbox of the catalogue in its first gear."""
+    box = cw.Gearbox.load(name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cw.ModelWarning)
+        system = in_gear(box, next(iter(box.ratios)), torque=300.0).assemble()
+    path.write_text(page(system, 0.5, cw.Options(), Wanted()), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def looked(node: str, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """What a browser made of each page, by name."""
+    browser = next(filter(None, map(shutil.which, NAMES)), None)
+    if browser is None:
+        pytest.skip(f"no browser: none of {', '.join(NAMES)} is installed")
+    if not (MODULES / "node_modules" / "puppeteer-core").is_dir():
+        pytest.skip("puppeteer-core is missing: make page")
+    folder = tmp_path_factory.mktemp("pages")
+    files = {model.parent.name: folder / f"{model.parent.name}.html" for model in MODELS}
+    for model, path in zip(MODELS, files.values(), strict=True):
+        assert main(["page", str(model), "--out", str(path)]) == 0
+    boxes = cw.catalogue() if amount() > 1000 else BOXES
+    files |= {name: box_page(name, folder / f"{name}.html") for name in boxes}
+    files["nasty"] = nasty(folder / "nasty.html")
+    command = [node, str(Path(__file__).with_name("browser.mjs")), str(MODULES), browser, *map(str, files.values())]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=900)
+    assert done.returncode == 0, done.stderr[-2000:]
+    return dict(zip(files, json.loads(done.stdout), strict=True))
+
+
+def nasty(path: Path) -> Path:
+    """A page whose names would be elements and programs if they were not escaped."""
+    d = cw.Driveline(NASTY)
+    disc = d.shaft(f"disc {NASTY}", inertia=1.0, speed=10.0)
+    table = cw.Table([(0.0, 0.0), (0.5, 2e5), (1.0, 2e5)])
+    d.add(cw.Brake("b", shaft=disc, friction=cw.Coulomb(static=0.3, kinetic=0.2), gain=1e-4, pressure=table))
+    return d.simulate(1.0).page(path)
+
+
+def test_no_page_has_an_error_or_asks_for_anything(looked: dict[str, Any]) -> None:
+    assert {name: one["errors"] for name, one in looked.items() if one["errors"]} == {}
+    assert {name: one["requests"] for name, one in looked.items() if one["requests"]} == {}
+    assert max(one["ready"] for one in looked.values()) < READY
+
+
+def test_what_is_dragged_moves_the_curves(looked: dict[str, Any]) -> None:
+    for name, one in looked.items():
+        before, after, typed = (one[key] for key in ("before", "after", "typed"))
+        assert one["dragged"], name
+        assert before["knots"] != after["knots"] != typed["knots"], name
+        assert after["runs"] > 0, name
+        assert before["sum"] != after["sum"] != typed["sum"], name
+        assert before["picture"] != after["picture"], name
+
+
+def test_names_are_shown_as_they_are(looked: dict[str, Any]) -> None:
+    assert NASTY in looked["nasty"]["words"]
+
+
+def test_it_says_what_happens(looked: dict[str, Any]) -> None:
+    words = looked["launch"]["words"]
+    assert "clutch locks" in words
+    assert "Heat of clutch" in words
