@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,7 @@ USUAL, APART = {"rtol": 1e-6, "atol": 1e-8}, 3e-5
 POINTS, PASSING = 401, 7
 
 
+@cache
 def system_of(path: str) -> cw.System:
     """The System of an example."""
     with warnings.catch_warnings():
@@ -36,10 +37,19 @@ def system_of(path: str) -> cw.System:
         return cw.Driveline.load(ROOT / path).assemble()
 
 
-def page_data(system: cw.System, **wanted: Any) -> dict[str, Any]:
-    """What a page of it holds, as JSON has it."""
+@cache
+def text_of(path: str, sliders: tuple[str, ...] | None) -> bytes:
+    """What a page of an example holds."""
+    system = system_of(path)
     t_end, options = merged(system.settings, {})
-    return json.loads(as_json(data_of(system, t_end, options, Wanted(**wanted))))
+    return as_json(data_of(system, t_end, options, Wanted(sliders=sliders)))
+
+
+def page_data(path: str, tolerance: dict[str, float], sliders: tuple[str, ...] | None = None) -> dict[str, Any]:
+    """What a page of an example holds, at a tolerance of the solver."""
+    data: dict[str, Any] = json.loads(text_of(path, sliders))
+    data["options"] |= tolerance
+    return data
 
 
 def moved(data: dict[str, Any], random: np.random.Generator, size: float) -> dict[str, list[list[float]]]:
@@ -79,8 +89,7 @@ def changes(data: dict[str, Any], job: dict[str, Any]) -> dict[str, Any]:
 def test_a_page_is_python_with_the_same_knots(model: str, allowed: Any, size: float, engine: Any) -> None:
     tolerance, most = allowed
     system = system_of(model)
-    data = page_data(system)
-    data["options"] |= tolerance
+    data = page_data(model, tolerance)
     times = np.linspace(data["tStart"], data["tEnd"], POINTS)
     units = {name: one["unit"] for name, one in data["signals"].items() if not name.endswith(".jerk")}
     asked = list(jobs(data, 5, size, times=times.tolist(), signals=list(units)))
@@ -113,7 +122,7 @@ def codes(run: cw.Trajectory, event: cw.Event) -> list[float]:
 
 
 def test_every_position_of_the_knots_ends_with_a_status(engine: Any) -> None:
-    data = page_data(system_of(SIX_SPEED))
+    data = page_data(SIX_SPEED, USUAL)
     random = np.random.default_rng(3)
     asked = [{"knots": moved(data, random, random.uniform(0.0, 2.5))} for _ in range(amount(100))]
     for found in engine(data, asked):
@@ -123,9 +132,7 @@ def test_every_position_of_the_knots_ends_with_a_status(engine: Any) -> None:
 
 
 def test_what_is_copied_is_what_is_shown(engine: Any, tmp_path: Any) -> None:
-    system = system_of(SIX_SPEED)
-    system = replace(system, settings={**system.settings, **TIGHT})
-    data = page_data(system, sliders=["F1.gain", "w1.inertia"])
+    data = page_data(SIX_SPEED, TIGHT, ("F1.gain", "w1.inertia"))
     *_, asked = jobs(data, 1, 0.5, copies=True, times=[3.9], signals=["w8.speed"])
     (found,) = engine(data, [asked])
     path = tmp_path / "model.toml"
@@ -146,8 +153,7 @@ def test_what_is_copied_is_what_is_shown(engine: Any, tmp_path: Any) -> None:
 def test_a_slider_with_stops_has_the_words_of_python(engine: Any) -> None:
     """An inertia goes into the mass matrix with others: its stops are those that Python computed."""
     system = system_of(SIX_SPEED)
-    system = replace(system, settings={**system.settings, **TIGHT})
-    data = page_data(system, sliders=["w1.inertia=10:40"])
+    data = page_data(SIX_SPEED, TIGHT, ("w1.inertia=10:40",))
     (slider,) = data["sliders"]
     assert not slider["direct"]
     asked = [{"values": {"0": value}, "times": [4.0], "signals": ["w1.speed"]} for value in slider["values"][::8]]

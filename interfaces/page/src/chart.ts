@@ -64,7 +64,8 @@ export class Chart implements Part {
   at(time: number): void {
     this.cursor.style.transform = `translateX(${this.plot.valToPos(time, "x")}px)`;
     const row = this.app.row();
-    this.values.forEach((value, i) => write(value, number(this.now[i]?.[row] ?? NaN)));
+    const known = time <= this.app.run.reached;
+    this.values.forEach((value, i) => write(value, number(known ? (this.now[i]?.[row] ?? NaN) : NaN)));
   }
 
   recolour(): void {

@@ -74,10 +74,18 @@ def data_of(system: System, t_end: float, options: Options, wanted: Wanted) -> d
         "levers": levers(wires),
         "modes": {str(number): word for number, word in MODES.items()},
         "causes": {str(number): list(words) for number, words in CAUSES.items()},
-        "statuses": [list(words) for words in STATUS],
+        "statuses": [_status(words, options) for words in STATUS],
         "model": _model(made),
         "paths": paths(made, dragged, turned),
     }
+
+
+def _status(words: tuple[str, str, str], options: Options) -> list[str]:
+    """Name, message and remedy of an ending; a page has fewer steps than Python."""
+    name, message, remedy = words
+    if name == "too_many_steps" and options.max_steps > MOST_STEPS:
+        return [name, f"a page ends after {MOST_STEPS} steps", "Python goes on"]
+    return [name, message, remedy]
 
 
 def _options(options: Options) -> dict[str, float]:
