@@ -90,7 +90,6 @@ test-cpp: $(STAMPS)/build
 	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure
 
 # the script of pages, into the package
-# the script of pages, into the package
 page: build/page/stamp
 
 interfaces/page/node_modules/.package-lock.json: interfaces/page/package-lock.json
