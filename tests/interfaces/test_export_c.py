@@ -26,7 +26,7 @@ CLOSE: dict[str, Any] = {"rtol": 1e-12, "atol": 1e-12}
 # quick to compile; without optimisation the core inlines nothing by force
 FLAGS = ["CXXFLAGS=-O0 -DCLUTCHWORK_INLINE=inline", "CFLAGS=-O1 -Wall -Wextra -pedantic -Werror"]
 
-# sets the torque from outside at half time, in C
+# sets the torque from outside at half time, in C, and gives the piston other pieces of its command
 INPUT_C = """
 #include <stdio.h>
 #include "model.h"
@@ -37,6 +37,8 @@ int main(void) {
   if (!run || !model_set_options(run)) return 2;
   cw_advance(run, 0.5, NULL, NULL, 0, 0, NULL);
   if (!cw_set_input(run, MODEL_INPUT_LOAD_TORQUE, -40.0)) return 3;
+  double times[] = {0.1, 0.7}, pieces[2][12] = {{2e5, 2e5}, {4e5}};
+  if (!cw_set_segments(run, COMMAND, times, pieces[0], 2)) return 5;
   cw_advance(run, 1.0, NULL, NULL, 0, 0, NULL);
   if (cw_row(run, row) != MODEL_STATUS_DONE) return 4;
   printf("%.17g %.17g", row[MODEL_ROW_WHEEL__2__SPEED], model_get_c1_temperature(row));
@@ -130,17 +132,22 @@ def test_the_cpp_program_steps_as_a_controller_does(built: Path) -> None:
 
 @feature("code: C and C++ of a model that holds the clutch")
 def test_inputs_are_set_from_outside_in_c(built: Path) -> None:
-    (built / "input.c").write_text(INPUT_C)
-    parts = ["build/model.o", "build/model_system.o", "build/libclutchwork.a", "-lm"]
-    command = ["cc", "-std=c11", "-I.", "-Icore/include", "input.c", *parts, "-o", "input"]
-    subprocess.run(command, cwd=built, check=True)
-    told = subprocess.run([built / "input"], capture_output=True, text=True, check=True).stdout
     system = driveline().assemble()
+    names = [item.name for item in system.inputs]
+    command = names.index("piston.command")
+    (built / "input.c").write_text(INPUT_C.replace("COMMAND", str(command)))
+    parts = ["build/model.o", "build/model_system.o", "build/libclutchwork.a", "-lm"]
+    compiler = ["cc", "-std=c11", "-I.", "-Icore/include", "input.c", *parts, "-o", "input"]
+    subprocess.run(compiler, cwd=built, check=True)
+    told = subprocess.run([built / "input"], capture_output=True, text=True, check=True).stdout
     run = new_run(system.to_bytes())
     run.set_option("rtol", 1e-8)
     nothing = np.empty(0), np.empty((0, run.row_size))
     run.advance(0.5, *nothing)
-    run.set_input([item.name for item in system.inputs].index("load.torque"), -40.0)
+    run.set_input(names.index("load.torque"), -40.0)
+    pieces = np.zeros((2, 12))
+    pieces[0, :2], pieces[1, 0] = 2e5, 4e5
+    run.set_segments(command, np.array([0.1, 0.7]), pieces)
     run.advance(1.0, *nothing)
     row, channels = np.array(run.row()).reshape(1, -1), Channels(wiring(system))
     expected = [channels[name].evaluate(row)[0] for name in ("wheel (2).speed", "c1.temperature")]
