@@ -73,7 +73,8 @@ std::uint64_t odd_word(check::Random& g) {
 
 /// One change behind the head, or in it.
 void damage(Bytes& state, const Bytes& other, check::Random& g) {
-  const int words = int(state.size() / 8);
+  // one of them may be longer, by the segments that were set
+  const int words = int((state.size() < other.size() ? state : other).size() / 8);
   // what is first are counts, flags and cursors
   const int word = g.below(5) < 3 ? g.below(words < 400 ? words : 400) : g.below(words);
   unsigned char* at = &state[std::size_t(8 * word)];
@@ -114,6 +115,12 @@ void corrupt(const Model& model, std::uint64_t seed, int cases) {
     r.events();
     states.push_back(r.save());
     cw_set_input(r.run, 1, 4 + t);
+    states.push_back(r.save());
+    if (t < 0.3 || r.sys.input_count[0] == 0) continue;
+    const std::int64_t n = r.sys.input_count[0], first = r.sys.input_first[0];
+    Numbers other(r.sys.segment_coef + segment_size * first, r.sys.segment_coef + segment_size * (first + n));
+    for (double& c : other) c *= 1 - 0.1 * t;
+    CHECK(cw_set_segments(r.run, 0, r.sys.segment_time + first, other.data(), n) == 1);
     states.push_back(r.save());
   }
   const int n = int(states.size());
@@ -262,33 +269,37 @@ void cursors() {
       seal(other);
       return restore(r, other);
     };
-    // segment, whether it waits, value, whether it was set of: the speed, that input, the wave
+    // segment, whether it waits, value, whether it was set, segments that were set, whether they are fresh of: the
+    // speed, that input, the wave
     std::int64_t segment;
-    std::memcpy(&segment, &state[at + 16], 8);
-    CHECK(put(2, segment) && put(3, t < 0.2));
-    CHECK(!put(3, t >= 0.2) && !put(3, 2) && !put(3, -1));
+    std::memcpy(&segment, &state[at + 32], 8);
+    CHECK(put(4, segment) && put(5, t < 0.2));
+    CHECK(!put(5, t >= 0.2) && !put(5, 2) && !put(5, -1));
     // it waits only before its start
     Bytes waiting = state;
     const std::int64_t words[] = {0, 1};
-    std::memcpy(&waiting[at + 16], words, 16);
+    std::memcpy(&waiting[at + 32], words, 16);
     seal(waiting);
     CHECK(restore(r, waiting) == (t < 0.2));
-    for (std::int64_t k : {-1, 1, 2, 3}) CHECK(!put(2, segment + k));
-    for (std::int64_t k : {1ll << 31, 1ll << 51, 1ll << 53, 1ll << 62, 1ll << 63}) CHECK(!put(2, k));
-    CHECK(!put(-6, 1) && !put(-6, -1) && !put(-5, 1) && !put(-2, 1) && !put(-1, 1));
+    for (std::int64_t k : {-1, 1, 2, 3}) CHECK(!put(4, segment + k));
+    for (std::int64_t k : {1ll << 31, 1ll << 51, 1ll << 53, 1ll << 62, 1ll << 63}) CHECK(!put(4, k));
+    CHECK(!put(-8, 1) && !put(-8, -1) && !put(-7, 1) && !put(-2, 1) && !put(-1, 1));
+    // no segments follow that were set
+    for (std::int64_t n : {1ll, -1ll, 1ll << 31, 1ll << 60}) CHECK(!put(2, n) && !put(8, n));
+    CHECK(!put(9, 2) && !put(9, -1));
     // what comes from outside alone is never set over its segments
-    CHECK(put(5, 0) && !put(5, 2) && !put(5, -1) && !put(1, 1) && !put(1, -1));
+    CHECK(put(7, 0) && !put(7, 2) && !put(7, -1) && !put(1, 1) && !put(1, -1));
     // one that is held may stand where it was left, and nowhere ahead
     Bytes behind = state;
     const std::int64_t one = 1;
-    std::memcpy(&behind[at + 40], &one, 8);
+    std::memcpy(&behind[at + 56], &one, 8);
     seal(behind);
     CHECK(restore(r, behind));
-    std::memset(&behind[at + 16], 0, 8);
+    std::memset(&behind[at + 32], 0, 8);
     seal(behind);
     CHECK(restore(r, behind));
     const std::int64_t ahead = segment + 1;
-    std::memcpy(&behind[at + 16], &ahead, 8);
+    std::memcpy(&behind[at + 32], &ahead, 8);
     seal(behind);
     CHECK(!restore(r, behind));
   }
