@@ -11,6 +11,7 @@ from typing import Any
 # what is asked for -> the function that works it out, as module:function below clutchwork
 DONE_BY = {
     "run.gradient": "gradients.run:gradient_of",
+    "box.page": "page.gearbox:page_of_gearbox",
     "run.page": "page.page:page_of",
     "calibration.plot": "calibration.picture:before_and_after",
     "calibration.front": "calibration.front:front",

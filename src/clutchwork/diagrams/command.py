@@ -18,6 +18,7 @@ EXAMPLES = (
     ("clutchwork gearbox zf-8hp70 --gear 3", "speeds, torques and powers at every wheel in one gear"),
     ("clutchwork gearbox zf-8hp70 --gear 3 --svg third.svg", "its stick diagram with the power flow of that gear"),
     ("clutchwork gearbox ford-10r80 --diagram speeds", "its speed plan, ford-10r80-speeds.svg"),
+    ("clutchwork gearbox zf-8hp70 --page box.html", "a page in which a gear is chosen"),
     ("clutchwork gearbox box.toml --table shifts.csv", "a file of your own, with a shift table from a spreadsheet"),
 )
 
@@ -40,6 +41,7 @@ def add_command(subparsers: Any) -> None:
     gearbox.add_argument("--table", type=Path, metavar="CSV", help="shift table in place of that of the file")
     gearbox.add_argument("--diagram", choices=list(KINDS), help="kind of the picture; default: stick")
     gearbox.add_argument("--svg", type=Path, metavar="FILE", help="the picture; default: NAME-KIND.svg")
+    gearbox.add_argument("--page", type=Path, metavar="FILE", help="a page of HTML in which its reader chooses a gear")
     gearbox.add_argument(
         "--merged", action="store_true", help="with --diagram lever: sets that share two members as one lever"
     )
@@ -57,6 +59,8 @@ def gearbox_command(asked: argparse.Namespace) -> int:
     if asked.svg or asked.diagram:
         return _drawn(asked)
     box = _box(asked)
+    if asked.page:
+        return _paged(box, asked)
     gear = _gear(box, asked.gear)
     if asked.json:
         from clutchwork.diagrams import data
@@ -102,6 +106,16 @@ def _drawn(asked: argparse.Namespace) -> int:
         shell.tell_json({"files": [str(path)]})
     else:
         shell.tell("\n".join(shell.wrote([path])))
+    return shell.DONE
+
+
+def _paged(box: Gearbox, asked: argparse.Namespace) -> int:
+    shell.writable([asked.page])
+    box.page(asked.page)
+    if asked.json:
+        shell.tell_json({"files": [str(asked.page)]})
+    else:
+        shell.tell("\n".join(shell.wrote([asked.page])))
     return shell.DONE
 
 

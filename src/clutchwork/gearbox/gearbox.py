@@ -7,6 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from clutchwork.base.above import above
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import Problem, UseError, near
 from clutchwork.base.paths import fitting, made, path_of
@@ -65,6 +66,10 @@ class Gearbox(Definition):
         """Write a gearbox file in TOML."""
         where = fitting("box.save", path, "gearbox.toml", (".toml",))
         made(where).write_text(store.toml(plain(self)), encoding="utf-8")
+
+    def page(self, path: str | Path) -> Path:
+        """Write a page, one HTML file: its reader chooses a gear and sees power flow, levers, speeds and torques."""
+        return above("box.page", self, path)  # type: ignore[no-any-return]
 
     def check(self) -> list[Problem]:
         """All mistakes: names, teeth, rows of the shift table that make no gear, published ratios that are missed."""

@@ -14,15 +14,19 @@ from clutchwork.page.static import CORE, SCRIPT, STYLE, built
 LONGEST = 600_000  # bytes of a page
 
 
-def html(data: dict[str, Any], title: str) -> str:
-    """The whole page."""
-    style, script = built(STYLE).decode(), built(SCRIPT).decode()
+def html(data: dict[str, Any], title: str, script: str = SCRIPT, core: bool = True) -> str:
+    """The whole page.
+
+    Parameters: script, the file of it; core, whether it computes.
+    """
+    style, code = built(STYLE).decode(), built(script).decode()
     # what would end the element early is written otherwise in a string
-    script = script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
+    code = code.replace("</script", "<\\/script").replace("<!--", "<\\!--")
+    engine = f'<script type="text/plain" id="core">{packed(built(CORE))}</script>\n' if core else ""
     policy = "; ".join(
         (
             "default-src 'none'",
-            f"script-src '{_hash(script)}' 'wasm-unsafe-eval'",
+            f"script-src '{_hash(code)}' 'wasm-unsafe-eval'",
             f"style-src '{_hash(style)}'",
             "img-src data: blob:",
             "base-uri 'none'",
@@ -43,8 +47,7 @@ def html(data: dict[str, Any], title: str) -> str:
 <body>
 <main id="page"><h1>{text(title)}</h1><p role="status">Loading. This page needs JavaScript and WebAssembly.</p></main>
 <script type="text/plain" id="data">{packed(as_json(data))}</script>
-<script type="text/plain" id="core">{packed(built(CORE))}</script>
-<script>{script}</script>
+{engine}<script>{code}</script>
 </body>
 </html>
 """
