@@ -54,6 +54,12 @@ export interface PanelData {
   names: string[];
 }
 
+/** One signal over another. */
+export interface LoopData {
+  y: string;
+  x: string;
+}
+
 export type Places = Record<"input_value" | "segment_time" | "segment_coef", number>;
 
 export type Plain = string | number | boolean | null | Plain[] | { [key: string]: Plain };
@@ -72,6 +78,7 @@ export interface PageData {
   sliders: SliderData[];
   signals: Record<string, { unit: string; form: Form }>;
   panels: PanelData[];
+  loops: LoopData[];
   contacts: ContactData[];
   components: string[];
   output: string;

@@ -24,7 +24,7 @@ class Page {
   }
 
   private gears(): HTMLElement {
-    const group = element("div", { class: "tools", role: "group", "aria-label": "gear" });
+    const group = element("div", { class: "tools gears", role: "group", "aria-label": "gear" });
     this.data.gears.forEach((gear, place) => {
       const button = element("button", { type: "button" }, gear.name);
       button.addEventListener("click", () => this.choose(place));

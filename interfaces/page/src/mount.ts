@@ -7,6 +7,7 @@ import type { PageData } from "./data";
 import { element, forgetColours } from "./dom";
 import { Editor } from "./editor";
 import { Clock, Levers, Schematic } from "./moment";
+import { Loop, Trade, trades } from "./planes";
 import { Events, Results, Verdict } from "./report";
 import { Session } from "./session";
 import { Sliders } from "./sliders";
@@ -28,6 +29,8 @@ export async function mount(root: HTMLElement, data: PageData, wasm: BufferSourc
   if (data.contacts.length) hand.append(add(new Bars(app)));
   if (data.sliders.length) hand.append(add(new Sliders(app)));
   for (const panel of data.panels) if (panel.names.length) curves.append(add(new Chart(app, panel)));
+  for (const loop of data.loops) curves.append(add(new Loop(app, loop)));
+  if (trades(data) && data.tables.length + data.sliders.length) curves.append(add(new Trade(app)));
   below.append(add(new Results(app)), add(new Events(app)));
   const clock = add(new Clock(app));
   if (data.schematic) below.append(add(new Schematic(app)));

@@ -16,7 +16,7 @@ from clutchwork.page.knots import Dragged, chosen, refuse_controllers, roomy, wi
 from clutchwork.page.levers import levers
 from clutchwork.page.live import live
 from clutchwork.page.live import plain as plain_live
-from clutchwork.page.signals import listed, output_of, panels, plain_panels
+from clutchwork.page.signals import listed, loops, output_of, panels, plain_panels
 from clutchwork.page.sliders import sliders
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Slip
@@ -50,8 +50,10 @@ def data_of(system: System, t_end: float, options: Options, wanted: Wanted) -> d
     wires, known = wiring(spacious), channels(spacious, options.angles, options.work)
     output = output_of(spacious, wires)
     shown = panels(known, wires, wanted.show, output)
+    pairs = loops(known, wanted.show)
     picture = _live(spacious, known, wires)
     names += [name for panel in shown for name in panel.names]
+    names += [name for pair in pairs for name in pair]
     names += [name for name in picture["signals"] if name in known] if picture else []
     return {
         "format": FORMAT,
@@ -67,6 +69,7 @@ def data_of(system: System, t_end: float, options: Options, wanted: Wanted) -> d
         "sliders": [one.plain() for one in turned],
         "signals": listed(known, [name for name in names if name in known or name.endswith(".jerk")]),
         "panels": plain_panels(shown),
+        "loops": [{"y": up, "x": across} for up, across in pairs],
         "contacts": list(_contacts(wires, known)),
         "components": [part.name for part in (*wires.elements, *wires.contacts)],
         "output": output,

@@ -35,6 +35,8 @@ TITLES = {
     "rad/s3": "Jerk",
     "m/s3": "Jerk",
 }
+# what stands between two signals of which one is drawn over the other
+OVER = " over "
 JERK = {"rad/s2": "rad/s3", "m/s2": "m/s3"}
 
 
@@ -64,7 +66,8 @@ def panels(known: Channels, wiring: Wiring, wanted: Sequence[str] | None, output
     if wanted is None:
         found = _usual(known, wiring)
     else:
-        names = [name for name in chosen(wanted, known, known.fault, "page") if _is_number(known[name])]
+        single = [name for name in wanted if OVER not in name]
+        names = [name for name in chosen(single, known, known.fault, "page") if _is_number(known[name])]
         found = _by_unit(known, names[:MOST_SHOWN])
     felt = f"{output}.acceleration"
     if felt in known:
@@ -74,6 +77,14 @@ def panels(known: Channels, wiring: Wiring, wanted: Sequence[str] | None, output
         if unit in JERK:
             found.append(Panel("Jerk of the output", JERK[unit], (f"{output}.jerk",)))
     return found
+
+
+def loops(known: Channels, wanted: Sequence[str] | None) -> list[tuple[str, str]]:
+    """Pairs of signals of which the first is drawn over the second: "c1.torque over c1.slip"."""
+    pairs = [tuple(part.strip() for part in name.split(OVER, 1)) for name in wanted or () if OVER in name]
+    names = [name for pair in pairs for name in pair]
+    chosen(names, known, known.fault, "page")
+    return [(up, across) for up, across in pairs]
 
 
 def _usual(known: Channels, wiring: Wiring) -> list[Panel]:

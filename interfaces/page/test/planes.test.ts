@@ -1,0 +1,37 @@
+// Axes of planes, and what a gear does in numbers.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { elementRows, memberRows, sentence, type GearboxData } from "../src/gears";
+import { ends, ticks } from "../src/plane";
+
+test("axes hold all values and are never empty", () => {
+  assert.deepEqual(ends([[0, 10], [5]]), [-0.6, 10.6]);
+  assert.deepEqual(ends([[3]]), [2.7, 3.3]);
+  assert.deepEqual(ends([]), [0, 1]);
+});
+
+test("ticks are few and round", () => {
+  assert.deepEqual(ticks([-0.6, 10.6]), [0, 5, 10]);
+  assert.deepEqual(ticks([0, 1]), [0, 0.5, 1]);
+  assert.ok(ticks([1e-7, 9e-7]).length <= 6);
+});
+
+const BOX: GearboxData = {
+  name: "two",
+  title: "Two speeds",
+  source: "",
+  input: "ring",
+  output: "carrier",
+  members: ["ring", "carrier", "sun"],
+  elements: [{ name: "B", kind: "brake" }, { name: "C", kind: "clutch" }],
+  gears: [
+    { name: "1", closed: ["B"], ratio: 1.5, published: 1.5, efficiency: 0.98, circulating: 0, housing: 0.5, speeds: { ring: 1, carrier: 2 / 3, sun: 0 }, slips: { C: -1 }, torques: { B: 0.5 }, pictures: {} },
+  ],
+};
+
+test("speeds and torques are those of the input times what follows from the teeth", () => {
+  const gear = BOX.gears[0]!;
+  assert.deepEqual(memberRows(BOX, gear, 3000), [["ring", "3000"], ["carrier", "2000"], ["sun", "0"]]);
+  assert.deepEqual(elementRows(BOX, gear, 3000, 200), [["B", "brake", "closed", "100", "–"], ["C", "clutch", "open", "–", "−3000"]]);
+  assert.match(sentence(BOX, gear, 3000, 200), /turns at 2000 1\/min with 294 N m, 61\.58 kW, efficiency 98 %/);
+});
