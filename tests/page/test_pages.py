@@ -18,6 +18,7 @@ from clutchwork.command.main import main
 from clutchwork.page import html, static
 from clutchwork.page.data import Wanted, data_of
 from support.project import ROOT
+from support.transmissions import in_gear
 
 MODELS = sorted((ROOT / "examples").rglob("model.toml"))
 NASTY = "</script><img src=x onerror=alert(1)>\"'&<!--"
@@ -88,6 +89,14 @@ def test_numbers_of_a_table_are_those_that_are_dragged() -> None:
     assert [slider["name"] for slider in data["sliders"]] == ["b.gain", "b.friction.kinetic", "b.friction.static"]
     assert data["paths"]["b.pressure"] == [["element", 0, "pressure", "points"]]
     assert data["paths"]["b.friction.static"] == [["element", 0, "friction", "static"]]
+
+
+def test_numbers_of_a_gearbox_have_their_place_in_the_model_file() -> None:
+    """What the file does not say is put where it would say it."""
+    system = in_gear(cw.Gearbox.load("ford-aode"), "1").assemble()
+    paths = data_of(system, 0.5, cw.Options(), Wanted())["paths"]
+    assert paths["gearbox.FWD.pressure"] == [["element", 0, "shift", "FWD", "pressure", "points"]]
+    assert paths["gearbox.FWD.gain"] == [["element", 0, "shift", "FWD", "gain"]]
 
 
 def test_a_constant_pressure_has_two_knots() -> None:

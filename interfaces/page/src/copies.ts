@@ -10,10 +10,13 @@ export function asToml(session: Session): string | null {
   const { data } = session;
   if (!data.model) return null;
   const model = structuredClone(data.model);
+  const lost: string[] = [];
   changes(session).forEach(([name, value]) => {
-    for (const path of data.paths[name] ?? []) put(model, path, value);
+    const paths = data.paths[name] ?? [];
+    for (const path of paths) put(model, path, value);
+    if (!paths.length) lost.push(`# a model file has no place for ${JSON.stringify(name)}, which is ${JSON.stringify(value)} here\n`);
   });
-  return toml(model);
+  return lost.join("") + toml(model);
 }
 
 /** Names of what a page changes, and what it is now. */
@@ -26,7 +29,7 @@ export function changes(session: Session): [string, Knot[] | number][] {
 
 function put(model: Plain, path: readonly (string | number)[], value: Plain): void {
   let inner = model as Record<string | number, Plain>;
-  for (const step of path.slice(0, -1)) inner = inner[step] as Record<string | number, Plain>;
+  for (const step of path.slice(0, -1)) inner = (inner[step] ??= {}) as Record<string | number, Plain>;
   inner[path[path.length - 1]!] = value;
 }
 

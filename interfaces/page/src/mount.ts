@@ -36,6 +36,8 @@ export async function mount(root: HTMLElement, data: PageData, wasm: BufferSourc
   if (data.schematic) below.append(add(new Schematic(app)));
   if (data.levers.length) below.append(add(new Levers(app)));
   root.append(clock);
+  // in a frame of another page: shift.html#compact
+  root.classList.toggle("compact", location.hash === "#compact");
   const dark = matchMedia("(prefers-color-scheme: dark)");
   dark.addEventListener("change", () => {
     forgetColours();

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import ModelError
@@ -43,11 +43,11 @@ def _changed(system: System, changes: dict[str, Any]) -> Any:
 
 
 def _differ(one: Any, other: Any, path: Path = ()) -> Iterator[Path]:
-    """Paths of the values in which two sets of plain data differ."""
-    if (isinstance(one, dict) and isinstance(other, dict)) or hasattr(one, "items"):
-        for key in one:
-            if key in other:
-                yield from _differ(one[key], other[key], (*path, key))
+    """Paths of the values in which two sets of plain data differ, those that only the second one has among them."""
+    if isinstance(other, Mapping):
+        known = one if isinstance(one, Mapping) else {}
+        for key, value in other.items():
+            yield from _differ(known.get(key), value, (*path, key))
     elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
         for number, (a, b) in enumerate(zip(one, other, strict=True)):
             yield from _differ(a, b, (*path, number))
