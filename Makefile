@@ -130,7 +130,7 @@ format: $(STAMPS)/check
 bench: $(STAMPS)/package $(STAMPS)/bench
 	@$(BIN)/python -m benchmarks $(ARGS)
 
-docs: $(STAMPS)/package $(STAMPS)/docs
+docs: $(STAMPS)/package $(STAMPS)/docs $(WASM) $(PAGE)
 	@$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/docs
 	@echo "build/docs/index.html"
 

@@ -14,6 +14,7 @@ import experiments  # noqa: E402
 import gearboxes  # noqa: E402
 import kept  # noqa: E402
 import launches  # noqa: E402
+import live  # noqa: E402
 import schematics  # noqa: E402
 import shuffle  # noqa: E402
 import stories  # noqa: E402
@@ -32,6 +33,7 @@ gen_lists.write(HERE / "reference")
 kept.write(experiments.write, HERE / "reference" / "rig")
 kept.write(launches.write, HERE / "reference" / "car")
 kept.write(calibrations.write, HERE / "reference" / "calibrations")
+kept.write(live.write, HERE / "reference" / "pages")
 kept.write(studies.write, HERE / "reference" / "studies")
 kept.write(sweeps.write, HERE / "reference" / "sweeps")
 kept.write(drawings.write, HERE / "reference" / "pictures")
@@ -55,7 +57,7 @@ release = version = clutchwork.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_design", "mathml"]
 source_suffix = {".md": "markdown"}
-exclude_patterns = ["_build", "elements"]
+exclude_patterns = ["_build", "elements", "reference/pages", "fingerprint"]
 nitpicky = False
 
 myst_enable_extensions = [
@@ -76,6 +78,8 @@ maximum_signature_line_length = 88
 html_theme = "furo"
 html_title = "clutchwork"
 html_static_path = ["_static", "reference/static"]
+# pages that compute, below live/
+html_extra_path = ["reference/pages"]
 html_css_files = ["site.css"]
 html_math_renderer = "mathml"
 html_show_sourcelink = False

@@ -28,8 +28,8 @@ export async function mount(root: HTMLElement, data: PageData, wasm: BufferSourc
   for (const tables of byUnit(data)) hand.append(add(new Editor(app, tables)));
   if (data.contacts.length) hand.append(add(new Bars(app)));
   if (data.sliders.length) hand.append(add(new Sliders(app)));
-  for (const panel of data.panels) if (panel.names.length) curves.append(add(new Chart(app, panel)));
   for (const loop of data.loops) curves.append(add(new Loop(app, loop)));
+  for (const panel of data.panels) if (panel.names.length) curves.append(add(new Chart(app, panel)));
   if (trades(data) && data.tables.length + data.sliders.length) curves.append(add(new Trade(app)));
   below.append(add(new Results(app)), add(new Events(app)));
   const clock = add(new Clock(app));

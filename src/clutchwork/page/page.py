@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import UseError
+from clutchwork.base.errors import ModelWarning, UseError
 from clutchwork.base.paths import made, path_fault
 from clutchwork.base.shown import shown
 from clutchwork.page.data import Wanted, data_of
@@ -33,7 +34,11 @@ def page_of(run: Trajectory, path: Any, drag: Any, sliders: Any, show: Any) -> P
 
 def page(system: System, t_end: float, options: Options, wanted: Wanted) -> str:
     """The page of a System as HTML."""
-    return html(data_of(system, t_end, options, wanted), system.name or "driveline")
+    with warnings.catch_warnings():
+        # stops of sliders may be odd models; the page is that of a model that was looked at
+        warnings.simplefilter("ignore", ModelWarning)
+        data = data_of(system, t_end, options, wanted)
+    return html(data, system.name or "driveline")
 
 
 def _list(given: Any) -> Sequence[str] | None:

@@ -51,14 +51,21 @@ class Panel:
 
 def output_of(system: System, wiring: Wiring) -> str:
     """The shaft or mass whose motion is felt: a vehicle, the output of a gearbox, or the last one."""
-    masses = [node.name for node in wiring.nodes if node.domain is Domain.TRANSLATION and node.inertia]
+    driven = _driven(system)
+    masses = [n.name for n in wiring.nodes if n.domain is Domain.TRANSLATION and n.inertia and n.name not in driven]
     if masses:
         return masses[-1]
     if system.gearboxes:
         return system.gearboxes[-1].output
     own = {node.name for node in system.source.nodes} if system.source else {node.name for node in wiring.nodes}
-    heavy = [node.name for node in wiring.nodes if node.inertia and node.name in own]
-    return heavy[-1] if heavy else wiring.nodes[-1].name if wiring.nodes else ""
+    heavy = [node.name for node in wiring.nodes if node.inertia and node.name in own - driven]
+    return heavy[-1] if heavy else ""
+
+
+def _driven(system: System) -> set[str]:
+    """Shafts and masses whose motion is prescribed: nobody feels it."""
+    found = system.source.elements if system.source else ()
+    return {part.shaft.name for part in found if type(part).kind.startswith("prescribed_")}
 
 
 def panels(known: Channels, wiring: Wiring, wanted: Sequence[str] | None, output: str) -> list[Panel]:
