@@ -64,7 +64,7 @@ def output_of(system: System, wiring: Wiring) -> str:
 
 def _driven(system: System) -> set[str]:
     """Shafts and masses whose motion is prescribed: nobody feels it."""
-    found = system.source.elements if system.source else ()
+    found: Sequence[Any] = system.source.elements if system.source else ()
     return {part.shaft.name for part in found if type(part).kind.startswith("prescribed_")}
 
 
