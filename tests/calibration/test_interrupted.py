@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import warnings
 
 import pytest
 
 import clutchwork as cw
+from support.engagement import discs, least_torque
 from support.launches import Launch, draws
 
 # one that takes several steps
@@ -68,3 +70,31 @@ def test_threads_find_the_same():
     one, two = (launch.least_heat(15, starts=3, threads=threads) for threads in (1, 2))
     assert one.x.tobytes() == two.x.tobytes()
     assert [outcome.number for outcome in two.outcomes] == [0, 1, 2]
+
+
+def test_more_iterations_on_a_file_that_is_not_solved_go_on(tmp_path):
+    file = tmp_path / "shift.json"
+    first = least_torque(1.0, file=file)
+    data = json.loads(file.read_text())
+    # as if a solver had been stopped on its way
+    data["starts"][0] |= {"residual": 0.1, "iterations": 3}
+    file.write_text(json.dumps(data))
+    same = least_torque(1.0, file=file, iterations=3)
+    assert same.outcomes[0].residual == 0.1
+    more = least_torque(1.0, file=file, iterations=50)
+    assert more.outcomes[0].iterations == 50
+    assert more.outcomes[0].residual < 1e-3
+    assert more.goal[1] == pytest.approx(first.goal[1], rel=1e-6)
+
+
+def test_limits_that_are_all_linear_give_no_warning():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = cw.calibrate(
+            discs(),
+            5.0,
+            free={"c1.pressure.values[2]": (1e4, 9e5)},
+            minimise=cw.at("c1.torque", 0.1),
+            subject_to=cw.limit({cw.slope("c1.pressure"): 1.0}, lower=-1e4, upper=1e4),
+        )
+    assert found.feasible

@@ -38,6 +38,15 @@ def refused(**given):
         ({"starts": 0}, "starts is 0: give a whole number from 1 on"),
         ({"tolerance": 2.0}, "tolerance is 2.0"),
         ({"file": 5}, "file: 5 is not a path"),
+        ({"free": {"c1.gain": (6e-4, 9e-4)}}, "the model has 0.0005 m3, outside of 0.0006 to 0.0009 m3; give bounds"),
+        ({"free": {"k": cw.together("c1.gain", factor=(1.1, 2.0))}}, "the model has factor 1, outside of 1.1 to 2;"),
+        ({"free": {"k": cw.together(["c1.gain", "c1.gain"], factor=(0.5, 2.0))}}, "names c1.gain twice; give it once"),
+        ({"scatter": {"c1.gain": (4e-4, 6e-4)}}, "c1.gain is free, and scatter sets it from 0.0004 to 0.0006 m3"),
+        ({"minimise": cw.jerk("load", 3.0)}, "two windows of 3 s take 6 s, there are 5 s of the run"),
+        ({"minimise": cw.jerk("load", 0.1, (7.0, 9.0))}, "there are 0 s of the run"),
+        ({"minimise": {cw.jerk("load"): 1.0, cw.slope("c1.pressure"): 1.0}}, "slope(c1.pressure) has 2; give a limit"),
+        ({"minimise": {"c1.heat": 1.0, cw.squared_slope("c1.pressure"): -1.0}}, "is -1: give one > 0"),
+        ({"minimise": cw.jerk("load"), "scatter": {"load.inertia": (0.7, 0.9)}}, "give robust='worst'"),
     ],
 )
 def test_each_mistake_is_named(given, said):

@@ -70,10 +70,12 @@ def calibrate(
     how many points to search: the values of the model first, then others between the bounds; threads, how many of
     these go at once.
 
-    scatter, what differs in production, given as free is: limits then hold in all of so many samples, and the goal is
-    the mean of the first ones, or with robust="worst" that of the worst one. seed, of starts and samples; tolerance
-    and iterations, of the solver; file, a path in which what was found is kept: the same call goes on from there.
-    progress, True for a bar of tqdm, or a function of (points looked at, the most there can be).
+    scatter, what differs in production, given as free is: limits then hold in all of so many samples, and in all
+    corners where no more than four scatter; the goal is the mean of the first nine samples, or with robust="worst" that
+    of the worst one, as it must be where the goal has several values. seed, of starts and samples; tolerance and
+    iterations, of the solver; file, a path in which what was found is kept: the same call goes on from there, and with
+    more iterations where it was not solved. progress, True for a bar of tqdm, or a function of (points looked at, the
+    most there can be).
 
     Ctrl-C raises `CalibrationInterrupted`, a KeyboardInterrupt, whose `calibration` holds the best so far. All
     mistakes of the call are named at once, by UseError. docs/guide/calibrate.md
@@ -89,6 +91,8 @@ def calibrate(
     wanted = mistakes.caught(
         lambda: problem(system, Span(plain.t_start, end), free, minimise, subject_to, scatter), None
     )
+    if wanted is not None and wanted.scatter and robust == "mean":
+        mistakes.found += _no_mean(wanted)
     if mistakes.found or wanted is None:
         raise UseError("calibrate", mistakes.found)
     refuse_bounds(wanted)
@@ -122,6 +126,14 @@ def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) ->
             message = f"interrupted after {search.asked} points; the best so far is in .calibration"
             raise CalibrationInterrupted(message, found_by(search, asked)) from None
         return found_by(search, asked)
+
+
+def _no_mean(wanted: Problem) -> list[str]:
+    """The largest of many values has no mean over production."""
+    if not wanted.goal.is_several(wanted.span, wanted.curves):
+        return []
+    return [f"robust is 'mean', and {wanted.goal.name} has several values, of which the largest counts: "
+            "give robust='worst', or a goal of one value such as cw.rms_jerk"]  # fmt: skip
 
 
 def _faults(

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.calibration.optimal import certificate
+from clutchwork.calibration.rows import measure
 
 if TYPE_CHECKING:
     from clutchwork.calibration.scaled import Scaled
@@ -45,7 +46,7 @@ class Ending:
             return
         found, goal = certificate(self.scaled, y), self.scaled.goal(y)
         # of the goal that there is, not of that at the start
-        residual = found.residual / (abs(goal) or 1.0)
+        residual = found.residual / measure(goal)
         if self.scaled.is_enough(y) or (residual <= RESIDUAL and found.violation <= VIOLATION):
             self.best, self.merit = y.copy(), goal
             raise Ended

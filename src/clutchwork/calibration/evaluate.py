@@ -63,6 +63,7 @@ class Evaluator:
         self.points = OrderedDict[bytes, Point]()
         self.runs = 0
         self.seen: Callable[[Point], None] = _nobody
+        self.last: tuple[bytes, Array] = b"", np.zeros((0, 0))
 
     def at(self, x: Array, samples: Sequence[Array] = ()) -> Point:
         """Goal and limits with their gradients.
@@ -80,14 +81,27 @@ class Evaluator:
         return self.points[key]
 
     def values(self, x: Array, samples: Sequence[Array]) -> Array:
-        """Goal and limits of many samples, without gradients, shape (samples, rows)."""
-        self.runs += len(samples)
-        return self._plain(self._numbers(x, samples))
+        """Goal and limits of many samples, without gradients, shape (samples, rows); NaN where the model is refused."""
+        key = x.tobytes() + b"".join(one.tobytes() for one in samples)
+        if key != self.last[0]:
+            self.runs += len(samples)
+            self.last = key, self._each(self._numbers(x, samples))
+        return self.last[1]
+
+    def _each(self, numbers: Array) -> Array:
+        """Rows of many lines; NaN in those that the model refuses."""
+        try:
+            return self._plain(numbers)
+        except ModelError:
+            if len(numbers) == 1:
+                return np.full((1, self.parts[-1].stop), np.nan)
+            return np.concatenate([self._each(line[None]) for line in numbers])
 
     def tried(self, x: Array, samples: Sequence[Array]) -> Point:
         """A point without gradients."""
         try:
-            values = self.values(x, list(samples) or [self.nominal])
+            self.runs += len(samples) or 1
+            values = self._plain(self._numbers(x, list(samples) or [self.nominal]))
         except ModelError as error:
             return Point(x, np.zeros((0, 0)), np.zeros((0, 0, 0)), str(error))
         return Point(x, values, np.zeros((0, 0, 0)), self._fault(values, values[..., None]))

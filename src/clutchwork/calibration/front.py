@@ -65,12 +65,13 @@ class Front:
 def front(found: Calibration, limit: Settled, bounds: Sequence[Any], progress: Any) -> Front:
     """Each bound from what the one before led to."""
     ends = [one for one in (number(given, limit.unit) for given in bounds) if one is not None]
+    place = next(k for k, one in enumerate(found.problem.limits) if one is limit)
     if isinstance(bounds, str) or not ends or len(ends) < len(bounds) or limit.is_equal:
         raise UseError("front", [f"bounds are {shown(bounds)}: give several numbers for one side of {limit.name}"])
-    made, last = list["Calibration"](), found
+    made, last, above = list["Calibration"](), found, np.isfinite(limit.upper)
+    goals, slopes = np.full((2, len(ends)), np.nan)
     with followed(progress, len(ends), "front", "(bounds done, bounds)", unit=" bounds") as told:
-        for place, end in enumerate(ends):
-            above = np.isfinite(limit.upper)
+        for count, end in enumerate(ends):
             side = replace(limit, upper=float(end)) if above else replace(limit, lower=float(end))
             moved = with_limit(found.problem, limit, side)
             try:
@@ -78,10 +79,12 @@ def front(found: Calibration, limit: Settled, bounds: Sequence[Any], progress: A
                 made.append(last)
             except CalibrationError:
                 last = found
+            else:
+                held = last.limits[place]
+                slopes[count] = held.by_upper if above else held.by_lower
+                goals[count] = last.goal[1] if last.feasible else np.nan
             if told is not None:
-                told(place + 1)
-    goals = np.array([one.goal[1] if one.feasible else np.nan for one in made])
-    slopes = np.array([-next(held.multiplier for held in one.limits if held.name == limit.name) for one in made])
+                told(count + 1)
     problem = found.problem
     named = (limit.name, limit.unit, problem.goal.name, problem.unit)
     return Front(*named, np.array(ends, dtype=float), goals, slopes, tuple(made))

@@ -16,4 +16,16 @@ class Held:
     before: tuple[float, float]  # least and largest value with the values of the model
     after: tuple[float, float]
     active: bool
-    multiplier: float  # by how much the goal gets less where the bound moves out by one, both in SI
+    broken: bool  # by more than round-off
+    by_lower: float  # derivative of the least goal by the lower bound, both in SI; 0 where it does not bind
+    by_upper: float  # the same by the upper one; of an equation, whose bounds move together, both are the same
+
+    @property
+    def is_equal(self) -> bool:
+        """Whether one value alone is allowed."""
+        return self.lower == self.upper
+
+    @property
+    def multiplier(self) -> float:
+        """By how much the goal gets less where the bound that binds moves out by one, or what is asked rises by one."""
+        return -self.by_upper if self.is_equal else self.by_lower - self.by_upper

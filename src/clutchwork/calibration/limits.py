@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,23 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.calibration.numbers import bounds, number
-from clutchwork.calibration.terms import Given, Rows, Slope, Span, SquaredSlope, Term, UnitOf, is_computed, length, term
+from clutchwork.calibration.terms import (
+    Given,
+    Jerk,
+    Rows,
+    Slope,
+    Span,
+    SquaredSlope,
+    Term,
+    UnitOf,
+    is_computed,
+    length,
+    term,
+)
 from clutchwork.declare.calls import explained
+
+if TYPE_CHECKING:
+    from clutchwork.calibration.names import Curve
 
 Array = NDArray[np.float64]
 SUCH = "give an output such as 'c1.heat', cw.lock('c1'), cw.jerk('car'), or {output: weight, ...}"
@@ -46,6 +61,28 @@ class Sum:
             values, slopes = values + weight * value, slopes + weight * slope
             at += count
         return values, slopes
+
+    def faults(self, span: Span, curves: Mapping[str, Curve]) -> list[str]:
+        """Windows longer than a run, and terms whose values cannot be added."""
+        found = [fault for one, _ in self.terms if isinstance(one, Jerk) for fault in one.faults(span)]
+        if found:
+            return found
+        counts = {one.name: self.counted(one, span, curves) for one, _ in self.terms}
+        if len(set(counts.values()) - {1}) > 1:
+            said = ", ".join(f"{name} has {count}" for name, count in counts.items())
+            return [f"{self.name}: terms of several values add up one by one, but {said}; give a limit for each"]
+        return []
+
+    def is_several(self, span: Span, curves: Mapping[str, Curve]) -> bool:
+        """Whether it has several values."""
+        return any(self.counted(one, span, curves) > 1 for one, _ in self.terms)
+
+    @staticmethod
+    def counted(one: Term, span: Span, curves: Mapping[str, Curve]) -> int:
+        """How many values a term has."""
+        needed = sum(map(length, one.needs(span)))
+        none = np.zeros(0)
+        return len(one.rows(Given(np.zeros(needed), np.zeros((needed, 0)), none, {}, curves, span))[0])
 
     def unit(self, units: UnitOf) -> str:
         """That of its terms where all have one."""

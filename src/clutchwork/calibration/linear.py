@@ -31,8 +31,12 @@ def is_linear_table(problem: Problem, stem: str) -> bool:
 
 
 def is_linear(problem: Problem, limit: Settled) -> bool:
-    """Whether a limit is linear in the unknowns."""
+    """Whether a limit is linear in the unknowns, the same in all samples of production."""
     what = limit.what
+    scattered = {name for one in problem.scatter for name in one.numbers}
+    for stem in what.tables:
+        if scattered.intersection(one.name for one in (*problem.curves[stem].times, *problem.curves[stem].values)):
+            return False
     plain = not what.needs_run and not any(isinstance(one, SquaredSlope) for one, _ in what.terms)
     return plain and all(is_linear_table(problem, stem) for stem in what.tables)
 

@@ -18,7 +18,7 @@ from clutchwork.calibration.outcome import Outcome
 if TYPE_CHECKING:
     from clutchwork.calibration.problem import Problem
 
-FORMAT = "clutchwork calibration 1"
+FORMAT = "clutchwork calibration 2"
 # s between two writings
 PAUSE = 1.0
 
@@ -59,7 +59,8 @@ def _key(problem: Problem, settings: Iterable[Any]) -> str:
 
 def _plain(one: Outcome) -> dict[str, Any]:
     lists = {name: getattr(one, name).tolist() for name in ("start", "x")}
-    numbers = {name: getattr(one, name) for name in ("number", "goal", "violation", "ended", "runs", "fault")}
+    names = ("number", "goal", "violation", "ended", "runs", "fault", "whole", "iterations", "residual")
+    numbers = {name: getattr(one, name) for name in names}
     return {**numbers, **lists, "scales": list(one.scales), "samples": [sample.tolist() for sample in one.samples]}
 
 

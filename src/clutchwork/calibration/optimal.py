@@ -27,7 +27,7 @@ class Active:
     """A limit that holds the goal up."""
 
     row: Row
-    multiplier: float  # by how much the goal gets less where the bound moves out by one, both in SI
+    multiplier: float  # derivative of the least goal by the bound, both in SI: of an upper one it is negative
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def certificate(scaled: Scaled, y: Array) -> Certificate:
     both[equal[near]] -= found[len(near) : len(near) + np.count_nonzero(equal[near])]
     goal = scaled.goal_scale
     active = tuple(
-        Active(rows[place], float(factor) * goal / rows[place].scale)
+        Active(rows[place], -(rows[place].sign or -1.0) * float(factor) * goal / rows[place].scale)
         for place, factor in zip(near, both, strict=True)
         if factor != 0.0
     )

@@ -17,8 +17,8 @@ from clutchwork.calibration.limits import Limit, Settled, Sum, summed
 from clutchwork.calibration.moves import Moves, Unknown
 from clutchwork.calibration.names import Curve, curve, numbers
 from clutchwork.calibration.numbers import pair
-from clutchwork.calibration.terms import Span
-from clutchwork.calibration.together import VALUE, Together
+from clutchwork.calibration.terms import Span, SquaredSlope
+from clutchwork.calibration.together import FACTOR, VALUE, Together
 from clutchwork.gradients.parameters import changes
 from clutchwork.results.channels import channels
 from clutchwork.sweeps.outputs import Integral, When
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from clutchwork.gradients.parameters import Parameter
 
 Array = NDArray[np.float64]
+# of bounds, in shares of themselves: a start that is out by no more is at its bound
+ROUND_OFF = 1e-9
 SUCH = "{'c1.pressure.values[2:]': (0.0, 8e5)}"
 
 
@@ -134,10 +136,13 @@ def problem(
     sums = [one for one in (goal, *(limit.what for limit in limits)) if one is not None]
     stems = dict.fromkeys(stem for one in sums for stem in one.tables)
     curves = {stem: mistakes.caught(partial(curve, system, stem), None) for stem in stems}
-    mistakes.found += _twice(unknowns[0])
+    moved = unknowns[1] | spread[1]
+    mistakes.found += [*_twice(unknowns[0]), *_scattered(unknowns[0], spread[0]), *outside(unknowns[0], moved)]
+    if not mistakes.found and goal is not None:
+        mistakes.found += [fault for one in sums for fault in one.faults(span, curves)]
+        mistakes.found += _restless(goal)
     if mistakes.found or goal is None:
         raise UseError("calibrate", list(dict.fromkeys(mistakes.found)))
-    moved = unknowns[1] | spread[1]
     made = (tuple(unknowns[0]), tuple(spread[0]), tuple(moved.values()))
     return Problem(system, span, *made, goal, tuple(limits), curves, goal.unit(units))
 
@@ -152,6 +157,9 @@ def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tupl
         named = ends.names if isinstance(ends, Together) else (name,)
         found = [one for each in named for one in mistakes.caught(partial(numbers, system, each), ())]
         moved |= {one.name: one for one in found}
+        names = [one.name for one in found]
+        for twice in dict.fromkeys(one for one in names if names.count(one) > 1):
+            mistakes.found.append(f"{what} of {name!r} names {twice} twice; give it once")
         if isinstance(ends, Together):
             made.append(Unknown(str(name), ends.kind, tuple(one.name for one in found), ends.low, ends.high))
             continue
@@ -170,6 +178,35 @@ def _twice(unknowns: Sequence[Unknown]) -> Iterable[str]:
     names = [one.name for one in unknowns if one.kind == VALUE]
     for name in dict.fromkeys(one for one in names if names.count(one) > 1):
         yield f"{name} is free twice; give it once"
+
+
+def _scattered(unknowns: Sequence[Unknown], scatter: Sequence[Unknown]) -> Iterable[str]:
+    """Numbers that are free, and set by the scatter whatever the search says."""
+    free = {name for one in unknowns for name in one.numbers}
+    for one in scatter:
+        if one.kind == VALUE and one.name in free:
+            remedy = f"let it scatter about what is found, by cw.together({one.name!r}, factor=(0.9, 1.1)) or shift="
+            yield f"{one.name} is free, and scatter sets it from {one.low:g} to {one.high:g} {one.unit}".rstrip() + (
+                f"; {remedy}"
+            )
+
+
+def outside(unknowns: Sequence[Unknown], moved: Mapping[str, Parameter]) -> Iterable[str]:
+    """Values of the model that are not between their bounds: the search begins there."""
+    for one in unknowns:
+        start = {VALUE: moved[one.numbers[0]].start, FACTOR: 1.0}.get(one.kind, 0.0) if one.numbers else one.low
+        room = ROUND_OFF * max(abs(one.low), abs(one.high))
+        if not one.low - room <= start <= one.high + room:
+            has = f"{start:g} {one.unit}".rstrip() if one.kind == VALUE else f"{one.kind} {start:g}"
+            ends = f"{one.low:g} to {one.high:g} {one.unit}".rstrip()
+            yield f"free of {one.name!r}: the model has {has}, outside of {ends}; give bounds around it"
+
+
+def _restless(goal: Sum) -> Iterable[str]:
+    """A goal that is least without bound."""
+    for one, weight in goal.terms:
+        if isinstance(one, SquaredSlope) and weight < 0.0:
+            yield f"minimise: the weight of {one.name} is {weight:g}: give one > 0"
 
 
 def _limits(given: Any, units: Units, mistakes: Mistakes) -> Iterable[Settled]:

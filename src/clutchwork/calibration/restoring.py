@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.calibration.outcome import FEASIBLE
 from clutchwork.calibration.rows import Block, Row
 from clutchwork.calibration.scaled import Samples, Scaled
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 # limits count as held with so much to spare, in shares of their scale
 SPARE = 1e-3
+# or with so much of the band between two bounds
+BAND = 0.4
 
 
 class Restoring(Scaled):
@@ -30,11 +33,23 @@ class Restoring(Scaled):
 
     def lifted(self, y: Array, found: Point) -> Array:
         """The same unknowns, and by how much the worst limit is broken."""
-        return np.append(y[:-1], -np.min(self._block.values(found, y), initial=np.inf)) if found.is_fine else y.copy()
+        if not found.is_fine:
+            return y.copy()
+        return np.append(y[:-1], -np.min(self._block.values(found, y)) if self.rows else -1.0)
 
     def is_enough(self, y: Array) -> bool:
-        """Whether all limits hold."""
-        return bool(y[-1] <= -SPARE)
+        """Whether all limits hold, those that need no run too."""
+        matrix, ends = self.linear
+        return bool(y[-1] <= self._enough and np.all(matrix @ y <= ends + FEASIBLE))
+
+    @cached_property
+    def _enough(self) -> float:
+        """What is to spare in the middle of a narrow band is less than half of it; an equation has nothing to spare."""
+        made = [
+            FEASIBLE if one.is_equal else max(-SPARE, -BAND * (one.upper - one.lower) / scale)
+            for one, scale in zip(self.problem.limits, self.scales, strict=True)
+        ]
+        return max(made, default=-SPARE)
 
     @cached_property
     def rows(self) -> list[Row]:

@@ -20,7 +20,7 @@ from clutchwork.calibration.evaluate import Evaluator
 from clutchwork.calibration.held import Held
 from clutchwork.calibration.moves import Moves
 from clutchwork.calibration.optimal import Certificate, certificate
-from clutchwork.calibration.outcome import Outcome
+from clutchwork.calibration.outcome import FEASIBLE, OPTIMAL, Outcome
 from clutchwork.calibration.problem import changed_by
 from clutchwork.calibration.scaled import Samples, Scaled
 from clutchwork.declare.calls import explained_methods
@@ -36,8 +36,6 @@ if TYPE_CHECKING:
     from clutchwork.results.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-# what is left of a gradient, in shares of the goal over the ranges of the unknowns
-OPTIMAL = 1e-3
 
 
 class CalibrationError(ClutchworkError, RuntimeError):
@@ -142,8 +140,17 @@ class Calibration:
 
     @property
     def feasible(self) -> bool:
-        """Whether all limits hold, to a millionth of their scale."""
-        return min(self.outcomes, key=lambda one: one.rank).is_feasible
+        """Whether all limits hold, to a millionth of their scale, in all samples of production."""
+        return self._best.is_feasible
+
+    @property
+    def whole(self) -> bool:
+        """Whether all samples of production were run with these values; an interrupted search looked at a few."""
+        return self._best.whole
+
+    @property
+    def _best(self) -> Outcome:
+        return min(self.outcomes, key=lambda one: one.rank)
 
     @property
     def solved(self) -> bool:
@@ -210,11 +217,13 @@ class Calibration:
         return above("calibration.verify", self, samples, seed, threads)
 
     def limit(self, name: str) -> Settled:
-        """A limit by name; UseError where there is none."""
-        known = {one.name: one for one in self.problem.limits}
+        """A limit by name; UseError where there is none, or more than one."""
+        known = [one.name for one in self.problem.limits]
         if name not in known:
-            raise UseError("calibration", [f"no limit {shown(name)}{near(name, known, f'there are {[*known]}')}"])
-        return known[name]
+            raise UseError("calibration", [f"no limit {shown(name)}{near(name, known, f'there are {known}')}"])
+        if known.count(name) > 1:
+            raise UseError("calibration", [f"{known.count(name)} limits are called {shown(name)}: give each a name="])
+        return self.problem.limits[known.index(name)]
 
 
 def found_by(search: Search, asked: Asked) -> Calibration:
@@ -223,30 +232,36 @@ def found_by(search: Search, asked: Asked) -> Calibration:
     best = min((one for one in outcomes if not one.fault), key=lambda one: one.rank, default=None)
     problem = search.problem
     if best is None:
+        scatter = "narrow the scatter, " if problem.scatter else ""
         why = next((one.fault for one in outcomes if one.fault), "it was interrupted before the first run")
-        remedy = "change the start values of the model, widen t_end, or give starts=8"
+        remedy = f"change the start values of the model, widen t_end, {scatter}or give starts=8"
         raise CalibrationError(f"no start could be run with a gradient: {why}; {remedy}")
     worst = search.way.scatter is not None and search.way.scatter.worst
-    averaged = len(search.way.scatter.first().chosen) if search.way.scatter else 1
+    averaged = search.way.scatter.first().averaged if search.way.scatter else 1
     evaluator = Evaluator(problem, search.function)
-    scaled = Scaled(evaluator, best.x, Samples(best.samples, averaged, worst), best.scales)
-    proof = certificate(scaled, scaled.start)
-    before, after = evaluator.values(problem.start, [evaluator.nominal])[0], scaled.first
+    before = evaluator.values(problem.start, best.samples or [evaluator.nominal])
+    size = float(np.max(np.nan_to_num(np.abs(before[:, evaluator.parts[0]]))))
+    scaled = Scaled(evaluator, best.x, Samples(best.samples, averaged, worst), best.scales, size)
+    proof, after = certificate(scaled, scaled.start), scaled.first
     held = tuple(
-        _held(limit, before[part], after.values[:, part], proof, number)
+        _held(limit, before[:, part], after.values[:, part], proof, number, FEASIBLE * best.scales[number])
         for number, (limit, part) in enumerate(zip(problem.limits, evaluator.parts[1:], strict=True))
     )
-    goals = float(np.max(before[evaluator.parts[0]])), best.goal
+    goals = scaled.judged(before), best.goal
     finished = len(outcomes) == search.way.starts and all(one.ended for one in outcomes)
     return Calibration(problem, asked, best.x, goals, held, proof, outcomes, best.samples, finished, after.note)
 
 
-def _held(limit: Settled, before: Array, after: Array, proof: Certificate, number: int) -> Held:
+def _held(limit: Settled, before: Array, after: Array, proof: Certificate, number: int, room: float) -> Held:
+    """A limit with what the search found; what is beyond its bounds by more than `room` is broken."""
     mine = [one for one in proof.active if one.row.limit == number]
     ends = [(float(np.min(one)), float(np.max(one))) for one in (before, after)]
-    # a lower bound that moves out gets less
-    multiplier = sum(one.multiplier for one in mine)
-    return Held(limit.name, limit.unit, limit.lower, limit.upper, ends[0], ends[1], bool(mine), multiplier)
+    # docs/theory/calibration.md (4), an equation is both bounds at once
+    by_lower, by_upper = (
+        sum(one.multiplier for one in mine if limit.is_equal or one.row.sign == side) for side in (-1.0, 1.0)
+    )
+    bounds = (limit.lower, limit.upper, ends[0], ends[1])
+    return Held(limit.name, limit.unit, *bounds, bool(mine), not limit.violation(after) <= room, by_lower, by_upper)
 
 
 def with_limit(problem: Problem, old: Settled, new: Settled) -> Problem:

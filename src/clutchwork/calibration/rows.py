@@ -13,6 +13,13 @@ if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled
 
 Array = NDArray[np.float64]
+# a goal that is a smaller share of that at the start is none: what is left of its gradient is measured by the start's
+NOTHING = 1e-6
+
+
+def measure(goal: float, start: float = 1.0) -> float:
+    """What the gradient of a goal is compared with: the goal, or that at the start where nothing is left of it."""
+    return abs(goal) if abs(goal) > NOTHING * start else start or 1.0
 
 
 class Row(NamedTuple):

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.calibration.linear import Linear, is_linear_table, without_run
-from clutchwork.calibration.rows import Block, Row, rows_of, size_of
+from clutchwork.calibration.rows import Block, Row, measure, rows_of, size_of
 from clutchwork.calibration.terms import SquaredSlope
 
 if TYPE_CHECKING:
@@ -38,8 +38,9 @@ class Scaled:
     """Goal, limits and linear limits over scaled unknowns."""
 
     def __init__(
-        self, evaluator: Evaluator, start: Array, samples: Samples, scales: tuple[float, ...] | None = None
-    ) -> None:
+        self, evaluator: Evaluator, start: Array, samples: Samples, scales: tuple[float, ...] | None = None,
+        first_goal: float = 0.0,
+    ) -> None:  # fmt: skip
         self.evaluator, self.problem = evaluator, evaluator.problem
         self.samples, self.averaged = list(samples.chosen), samples.averaged
         self.flat, self._scales = Linear(self.problem), scales
@@ -48,7 +49,7 @@ class Scaled:
         goal = evaluator.parts[0]
         self.worst = samples.worst or goal.stop - goal.start > 1
         values = self.first.values[:, goal]
-        self.goal_scale = float(np.max(np.abs(values))) or 1.0
+        self.goal_scale = measure(float(np.max(np.abs(values))), first_goal)
         own = (start - self.problem.low) / self.width
         self.reach = FIRST_REACH
         self.start = np.append(own, np.max(values) / self.goal_scale) if self.worst else own
@@ -84,8 +85,12 @@ class Scaled:
         """The goal at a point that is known."""
         if not found.is_fine:
             return REFUSED + abs(float(y[-1]))
-        values = found.values[: self.averaged, self.evaluator.parts[0]]
-        return float(y[-1]) if self.worst else float(np.mean(values)) / self.goal_scale
+        return float(y[-1]) if self.worst else self.judged(found.values) / self.goal_scale
+
+    def judged(self, values: Array) -> float:
+        """The goal of the values of many samples: the worst of them, or the mean of the first ones."""
+        goal = values[:, self.evaluator.parts[0]]
+        return float(np.max(goal)) if self.worst else float(np.mean(goal[: self.averaged]))
 
     def gradient(self, y: Array) -> Array:
         """Its derivatives."""

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Solve = Callable[[Scaled], Array]
-# samples that the solver begins with at most, nominal and corners among them, and whose mean the goal is
-FIRST = 8
+# samples that the solver begins with at most, nominal among them, and whose mean the goal is; and corners beside them
+FIRST, FEW = 9, 4
 # how far later rounds go from what the one before found, in shares of the bounds
 LATER_REACH = 0.05
 # dimensions of which all corners are taken
@@ -39,23 +39,26 @@ TOLERANCE, WORSE = 1e-6, 1e-2
 
 @dataclass(frozen=True)
 class Scatter:
-    """The samples of production, nominal first."""
+    """The samples of production: nominal, those drawn evenly, then the corners."""
 
     pool: tuple[Array, ...]
+    ends: tuple[Array, ...]  # the corners
     worst: bool
 
     @classmethod
     def of(cls, problem: Problem, count: int, seed: int, worst: bool) -> Scatter:
-        """So many samples of a problem."""
+        """So many samples of a problem, and corners."""
         nominal = Moves(problem.scatter, problem.numbers).start(problem.base)
-        ends = corners(problem.scatter)[: max(count - 1, 0)]
-        return cls((nominal, *ends, *drawn(problem.scatter, count - 1 - len(ends), seed)), worst)
+        ends = tuple(corners(problem.scatter))
+        return cls((nominal, *drawn(problem.scatter, count - 1, seed), *ends), ends, worst)
 
     def first(self) -> Samples:
-        """Those that the solver begins with."""
-        corners = 2 ** len(self.pool[0])
-        count = min(FIRST, 1 + corners, len(self.pool))
-        return Samples(self.pool[:count], count, self.worst)
+        """Those that the solver begins with: corners are for limits alone, they are no production."""
+        even = self.pool[: len(self.pool) - len(self.ends)][:FIRST]
+        few = self.ends if len(self.ends) <= FEW else ()
+        if self.worst and self.ends:
+            return Samples((even[0], *self.ends)[:FIRST], 1, True)
+        return Samples((*even, *few), len(even), self.worst)
 
 
 def corners(unknowns: Sequence[Unknown]) -> list[Array]:
@@ -66,11 +69,12 @@ def corners(unknowns: Sequence[Unknown]) -> list[Array]:
 
 
 def drawn(unknowns: Sequence[Unknown], count: int, seed: int) -> tuple[Array, ...]:
-    """Samples between the bounds of what scatters, spread evenly by a Sobol sequence."""
+    """Samples between the bounds of what scatters, spread evenly by a Sobol sequence, whatever order they come in."""
     if count < 1:
         return ()
     low, high = (np.array([getattr(one, side) for one in unknowns]) for side in ("low", "high"))
-    return tuple(low + share * (high - low) for share in sobol(len(unknowns), count, seed))
+    places = np.argsort(np.argsort([one.name for one in unknowns], kind="stable"))
+    return tuple(low + share[places] * (high - low) for share in sobol(len(unknowns), count, seed))
 
 
 def sobol(dimensions: int, count: int, seed: int) -> Array:
@@ -84,27 +88,28 @@ def sobol(dimensions: int, count: int, seed: int) -> Array:
     return made[:count]
 
 
-def in_all(evaluator: Evaluator, scatter: Scatter, start: Array, solve: Solve) -> tuple[Array, Samples]:
-    """Unknowns at which limits hold in all samples, as far as that can be, and the samples that decided it."""
-    samples, x, scales = scatter.first(), start, None
-    for _ in range(MOST_ROUNDS):
-        scaled = Scaled(evaluator, x, samples, scales)
-        if scales is not None:
-            scaled.begin(scaled.start, LATER_REACH)
-        scales = scaled.scales
-        x = scaled.to_x(solve(scaled))
-        if len(samples.chosen) == len(scatter.pool):
-            break
-        joining = _broken(evaluator, scaled, x, scatter.pool)
+def in_all(
+    evaluator: Evaluator, scatter: Scatter, start: Array, solve: Solve, scales: tuple[float, ...] | None = None
+) -> Array:  # fmt: skip
+    """Unknowns at which limits hold in all samples, as far as that can be."""
+    scaled = Scaled(evaluator, start, scatter.first(), scales)
+    x = scaled.to_x(solve(scaled))
+    for _ in range(MOST_ROUNDS - 1):
+        joining = breaking(evaluator, scaled, x, scatter.pool)
         if not joining:
             break
-        samples = samples._replace(chosen=(*samples.chosen, *joining))
-    return x, samples
+        more = Samples((*scaled.samples, *joining), scaled.averaged, scatter.worst)
+        scaled = Scaled(evaluator, x, more, scaled.scales, scaled.goal_scale)
+        scaled.begin(scaled.start, LATER_REACH)
+        x = scaled.to_x(solve(scaled))
+    return x
 
 
-def _broken(evaluator: Evaluator, scaled: Scaled, x: Array, pool: Sequence[Array]) -> list[Array]:
+def breaking(evaluator: Evaluator, scaled: Scaled, x: Array, pool: Sequence[Array]) -> list[Array]:
     """The samples that break limits most: the worst one of each limit, then the next."""
     values = evaluator.values(x, pool)
+    # what the model refuses cannot join
+    refused = np.all(np.isnan(values), axis=1)
     over = violations(evaluator, scaled, values)
     if scaled.worst:
         goal = evaluator.parts[0]
@@ -117,7 +122,7 @@ def _broken(evaluator: Evaluator, scaled: Scaled, x: Array, pool: Sequence[Array
     found = dict[int, None]()
     for rank in range(len(pool)):
         for limit, number in enumerate(order[rank].tolist()):
-            if over[number, limit] > TOLERANCE and pool[number].tobytes() not in chosen:
+            if over[number, limit] > TOLERANCE and not refused[number] and pool[number].tobytes() not in chosen:
                 found.setdefault(number)
         if len(found) >= MOST_JOIN:
             break

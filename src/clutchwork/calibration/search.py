@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 from clutchwork.calibration.evaluate import Evaluator, Point
 from clutchwork.calibration.linear import Linear
+from clutchwork.calibration.optimal import certificate
 from clutchwork.calibration.outcome import Outcome
+from clutchwork.calibration.rows import measure
 from clutchwork.calibration.scaled import Samples, Scaled
-from clutchwork.calibration.scatter import in_all, sobol, violations
+from clutchwork.calibration.scatter import breaking, in_all, sobol, violations
 from clutchwork.calibration.solving import PILOTS, Solving, Way, best_of
 
 if TYPE_CHECKING:
@@ -57,11 +59,13 @@ class Search:
                 raise
 
     def _known(self, number: int) -> bool:
-        """Whether a file has the end of this start."""
+        """Whether a file has the end of this start; one that is not solved goes on where there are more iterations."""
         before = self.memory.outcome(number)
-        if before is not None:
-            self.found[number] = before
-        return before is not None and before.ended
+        if before is None:
+            return False
+        ended = before.ended and (before.is_solved or self.way.iterations <= before.iterations)
+        self.found[number] = replace(before, ended=ended)
+        return ended
 
     def _starts(self) -> Iterator[Array]:
         """The values of the model, then the best of points that are spread over the bounds."""
@@ -80,17 +84,16 @@ class Search:
         before = self.found.get(number)
         keeper = Keeper(self, evaluator, number, start)
         evaluator.seen = keeper.see
-        x = start if before is None else before.x
+        x, scales = (start, None) if before is None else (before.x, before.scales or None)
         if not evaluator.at(x, self._samples().chosen).is_fine:
-            keeper.end(x, self._samples(), evaluator.at(x, self._samples().chosen).fault)
+            keeper.end(x, evaluator.at(x, self._samples().chosen).fault)
             return
         if self.way.scatter is None:
-            scaled = Scaled(evaluator, x, Samples(), before.scales if before else None)
+            scaled = Scaled(evaluator, x, Samples(), scales)
             keeper.watch(scaled)
-            keeper.end(scaled.to_x(self.solving.solved(scaled)), Samples())
+            keeper.end(scaled.to_x(self.solving.solved(scaled)))
             return
-        x, samples = in_all(evaluator, self.way.scatter, x, keeper.watched(self.solving.solved))
-        keeper.end(x, samples)
+        keeper.end(in_all(evaluator, self.way.scatter, x, keeper.watched(self.solving.solved), scales))
 
     def _samples(self) -> Samples:
         return Samples() if self.way.scatter is None else self.way.scatter.first()
@@ -138,31 +141,54 @@ class Keeper:
             self.search.found[self.number] = made
             self.search.memory.keep(self.search.found.values())
 
-    def end(self, x: Array, samples: Samples, fault: str = "") -> None:
+    def end(self, x: Array, fault: str = "") -> None:
         """Where the search ended; the best point on the way where that is none."""
         if self.scaled is None or fault:
-            none = Outcome(self.number, self.start, x, np.inf, np.inf, True, self.evaluator.runs, fault=fault)
+            runs = self.evaluator.runs
+            none = Outcome(self.number, self.start, x, np.inf, np.inf, True, runs, fault=fault, whole=False)
             self.search.found[self.number] = none
             return
-        point = self.evaluator.at(x, samples.chosen)
+        point = self.evaluator.at(x, self.scaled.samples)
         made = self._outcome(point, self.scaled, True) if point.is_fine else None
         before = self.search.found.get(self.number)
         if made is None or (before is not None and _clearly_better(before, made)):
             made = before
         if made is not None:
-            self.search.found[self.number] = replace(made, ended=True, runs=self.evaluator.runs)
+            made = replace(self._everywhere(made, self.scaled), residual=_left(self.scaled, made.x))
+            made = replace(made, ended=True, iterations=self.search.way.iterations)
+            self.search.found[self.number] = replace(made, runs=self.evaluator.runs)
         self.search.memory.keep(self.search.found.values(), now=True)
+
+    def _everywhere(self, made: Outcome, scaled: Scaled) -> Outcome:
+        """The same, judged by all samples of production; those that break limits most are among its own."""
+        if self.search.way.scatter is None:
+            return made
+        pool = self.search.way.scatter.pool
+        values = self.evaluator.values(made.x, pool)
+        violation = float(np.max(violations(self.evaluator, scaled, values)))
+        worst = breaking(self.evaluator, scaled, made.x, pool)
+        fine = [one for one in worst if self.evaluator.tried(made.x, [one]).is_fine]
+        goal = max(scaled.judged(values), made.goal) if scaled.worst else made.goal
+        return replace(made, violation=violation, goal=goal, samples=(*made.samples, *fine), whole=True)
 
     def _outcome(self, point: Point, scaled: Scaled, ended: bool) -> Outcome:
         over = violations(self.evaluator, scaled, point.values)
-        goal = point.values[:, self.evaluator.parts[0]]
-        value = float(np.max(goal)) if scaled.worst else float(np.mean(goal[: scaled.averaged]))
-        runs, chosen = self.evaluator.runs, tuple(scaled.samples)
-        return Outcome(self.number, self.start, point.x, value, float(np.max(over)), ended, runs, scaled.scales, chosen)
+        found = (point.x, scaled.judged(point.values), float(np.max(over)))
+        made = Outcome(self.number, self.start, *found, ended, self.evaluator.runs, scaled.scales)
+        return replace(made, samples=tuple(scaled.samples), whole=self.search.way.scatter is None)
+
+
+def _left(scaled: Scaled, x: Array) -> float:
+    """What is left of the gradient, in shares of the goal."""
+    point = scaled.evaluator.at(x, scaled.samples)
+    if not point.is_fine:
+        return np.inf
+    y = scaled.lifted(np.resize((x - scaled.problem.low) / scaled.width, scaled.count), point)
+    return certificate(scaled, y).residual / measure(scaled.goal(y))
 
 
 def _clearly_better(one: Outcome, other: Outcome) -> bool:
     """Whether a point on the way is better than the last one, which has the smaller gradient."""
-    if not one.is_feasible or not other.is_feasible:
+    if not one.holds or not other.holds:
         return one.rank < other.rank
     return one.goal < other.goal - 1e-6 * abs(other.goal)

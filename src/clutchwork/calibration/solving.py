@@ -15,7 +15,7 @@ from clutchwork.calibration.method import Solver
 from clutchwork.calibration.optimal import certificate
 from clutchwork.calibration.outcome import FEASIBLE
 from clutchwork.calibration.restoring import Restoring
-from clutchwork.calibration.rows import size_of
+from clutchwork.calibration.rows import measure, size_of
 from clutchwork.calibration.scaled import FIRST_REACH, Scaled
 from clutchwork.calibration.scatter import Scatter, sobol
 
@@ -89,7 +89,7 @@ class Solving:
     def _left(self, scaled: Scaled, y: Array) -> float:
         """What is left of the gradient, in shares of the goal; infinite where limits are broken."""
         proof = certificate(scaled, y)
-        return proof.residual / (abs(scaled.goal(y)) or 1.0) if proof.violation <= FEASIBLE else np.inf
+        return proof.residual / measure(scaled.goal(y)) if proof.violation <= FEASIBLE else np.inf
 
     def _broken(self, scaled: Scaled, y: Array) -> float:
         """By how much the worst limit is broken."""
@@ -97,16 +97,16 @@ class Solving:
 
     def _held(self, scaled: Scaled) -> bool:
         """Whether all limits hold somewhere; the search begins there, or where they are broken least."""
-        best, least = scaled.start, np.inf
+        best, least, held = scaled.start, np.inf, False
         for x in self._restored_from(scaled):
             limits = Restoring(scaled, x)
             y, _ = walked(limits, limits.start, FIRST_REACH, RESTORING)
             if y[-1] < least:
-                best, least = y[: scaled.count], y[-1]
-            if limits.is_enough(y):
+                best, least, held = y[: scaled.count], y[-1], limits.is_enough(y)
+            if held:
                 break
         scaled.begin(best, FIRST_REACH)
-        return limits.is_enough(y)
+        return held
 
     def _restored_from(self, scaled: Scaled) -> Iterator[Array]:
         """The start, and where that leads nowhere the best of points that are spread over the bounds."""

@@ -59,6 +59,9 @@ class UnitOf(Protocol):
         """Of the values of a table."""
 
 
+# a jump of the acceleration is a triangle of the jerk, two windows wide; its peak lies between two instants and is
+# missed by half a step over the window at most, 3 %
+PER_WINDOW = 16
 # of jerks by those of speeds
 RATES = {"rad/s": "rad/s3", "m/s": "m/s3"}
 Rows: TypeAlias = "tuple[Array, Array]"
@@ -119,12 +122,25 @@ class Jerk:
         return f"jerk({self.shaft})"
 
     def needs(self, span: Span) -> list[Any]:
-        """Its speed at instants that lie half a window apart."""
-        first, last = self.between or span
-        first, last = max(first, span.begin), min(last, span.end)
-        count = int((last - first) / (0.5 * self.window) * (1.0 + 1e-12))
-        times = np.minimum(first + 0.5 * self.window * np.arange(count + 1), last)
+        """Its speed at instants that lie a small part of a window apart."""
+        (first, last), step = self.inside(span), self.window / PER_WINDOW
+        count = int((last - first) / step * (1.0 + 1e-12))
+        times = np.minimum(first + step * np.arange(count + 1), last)
         return [AtTimes(f"{self.shaft}.speed", tuple(times.tolist()))]
+
+    def inside(self, span: Span) -> tuple[float, float]:
+        """When it counts [s]."""
+        first, last = self.between or span
+        return max(first, span.begin), min(last, span.end)
+
+    def faults(self, span: Span) -> list[str]:
+        """Why there is no window in a run."""
+        first, last = self.inside(span)
+        if last - first >= 2.0 * self.window * (1.0 - 1e-9):
+            return []
+        have = f"there are {max(last - first, 0.0):g} s of the run"
+        return [f"{self.name}: two windows of {self.window:g} s take {2.0 * self.window:g} s, {have}; give a window= "
+                "or between= that fits, or a longer run"]  # fmt: skip
 
     def unit(self, units: UnitOf) -> str:
         """Of its speed, over seconds squared."""
@@ -138,8 +154,8 @@ class Jerk:
 
 
 def _second(values: Array) -> Array:
-    """Second differences over two places."""
-    made: Array = values[4:] - 2.0 * values[2:-2] + values[:-4]
+    """Second differences over windows."""
+    made: Array = values[2 * PER_WINDOW :] - 2.0 * values[PER_WINDOW:-PER_WINDOW] + values[: -2 * PER_WINDOW]
     return made
 
 
@@ -251,11 +267,12 @@ def _column(given: Given, column: Sequence[Parameter]) -> Rows:
 
 @explained("cw.jerk", shaft="'car'")
 def jerk(shaft: str, window: Any = 0.05, between: Any = None) -> Jerk:
-    """The size of the jerk of a shaft [rad/s3] or a mass [m/s3] for `calibrate`: at every instant, over windows.
+    """The size of the jerk of a shaft [rad/s3] or a mass [m/s3] for `calibrate`: all along the run, over windows.
 
     Parameters: shaft, its name; window [s], or with a unit: what is shorter does not count, 0.05 s is what a person
-    feels; between, two times [s], two windows apart or more, by default the whole run. A jump of the acceleration
-    counts as its height over the window. docs/theory/calibration.md (3)
+    feels; between, two times [s], two windows apart or more, by default the whole run. It is taken 16 times a window; a
+    jump of the acceleration counts as its height over the window, less 3 % at most; one as the run begins does not
+    count, nor do those within a window of its ends in full. docs/theory/calibration.md (3)
     """
     length = number(window, "s")
     if length is None or length <= 0.0:

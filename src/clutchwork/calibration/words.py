@@ -66,6 +66,10 @@ class Told(Protocol):
         """Why the gradient is one of differences."""
 
     @property
+    def whole(self) -> bool:
+        """Whether all samples of production were run."""
+
+    @property
     def feasible(self) -> bool:
         """Whether all limits hold."""
 
@@ -105,10 +109,12 @@ def _limits(found: Told) -> str:
     lines = [["limit", "from", "to", "before", "after", "unit", ""]]
     for one in found.limits:
         sides = [_number(side) if isfinite(side) else "" for side in (one.lower, one.upper)]
-        lines.append(
-            [one.name, *sides, _range(one.before), _range(one.after), one.unit, "active" if one.active else ""]
-        )
+        lines.append([one.name, *sides, _range(one.before), _range(one.after), one.unit, _state(one)])
     return columns(lines, right=(1, 2, 3, 4))
+
+
+def _state(one: Held) -> str:
+    return "broken" if one.broken else "active" if one.active else ""
 
 
 def _range(ends: tuple[float, float]) -> str:
@@ -122,23 +128,21 @@ def _number(value: float) -> str:
 
 def costs(found: Told) -> Iterator[str]:
     """What each active limit costs: "1000 J more of c1.heat allowed saves 0.3 m/s3 of rms_jerk(car)"."""
-    for one in found.limits:
-        if one.active and abs(one.multiplier) > 0.0:
-            yield _cost(one, found)
+    # where no values hold all limits there is nothing to be saved
+    for one in found.limits if not any(each.broken for each in found.limits) else ():
+        if one.is_equal:
+            yield from _cost(one, found, "more asked", one.upper, -one.by_upper)
+            continue
+        yield from _cost(one, found, "more allowed", one.upper, -one.by_upper)
+        yield from _cost(one, found, "less asked", one.lower, one.by_lower)
 
 
-def _cost(one: Held, found: Told) -> str:
-    bound = one.upper if isfinite(one.upper) else one.lower
+def _cost(one: Held, found: Told, moved: str, bound: float, saved: float) -> Iterator[str]:
+    if not one.active or saved == 0.0:
+        return
     amount = _round(abs(bound) or max(map(abs, one.before)) or 1.0)
-    saved = amount * one.multiplier
-    goal, unit = found.problem.goal.name, found.problem.unit
-    if one.lower == one.upper:
-        verb, word = ("saves" if saved > 0.0 else "costs"), "more"
-    else:
-        verb, word = "saves", "more" if isfinite(one.upper) else "less"
-    allowed = "asked of" if one.lower == one.upper else "allowed of"
-    amount_said = f"{amount:g} {one.unit}".rstrip()
-    return f"{amount_said} {word} {allowed} {one.name} {verb} {abs(saved):.3g} {unit}".rstrip() + f" of {goal}"
+    verb, much = "saves" if saved > 0.0 else "costs", f"{abs(amount * saved):.3g} {found.problem.unit}".rstrip()
+    yield f"{f'{amount:g} {one.unit}'.rstrip()} {moved} of {one.name} {verb} {much} of {found.problem.goal.name}"
 
 
 def _round(size: float) -> float:
@@ -149,8 +153,11 @@ def _round(size: float) -> float:
 def _effort(found: Told) -> str:
     runs = sum(one.runs for one in found.outcomes)
     said = [f"{found.effort}, {counted(len(found.outcomes), 'starts')}, {counted(runs, 'runs with gradient')}"]
-    said.append(f"largest violation {found.certificate.violation:.1g}, residual {found.certificate.residual:.1g}")
-    if found.samples:
+    said.append(f"largest violation {found.certificate.violation:.1g} of its scale")
+    said.append(f"residual {found.certificate.residual:.1g} of the goal")
+    if found.samples and not found.whole:
+        said.append(f"limits were looked at in {len(found.samples)} samples of production alone")
+    elif found.samples:
         hold = "hold in all samples" if found.feasible else "are broken in samples"
         said.append(f"limits {hold} of production, of which {len(found.samples)} decided")
     return "; ".join(said)
@@ -160,6 +167,10 @@ def faults(found: Told) -> Iterator[str]:
     """What stands in the way of using the values."""
     if not found.finished:
         yield "the search was interrupted: these are the best values so far"
+    if not found.whole:
+        yield "limits may be broken in samples of production that were not run with these values: verify() runs them"
+    elif not found.feasible and not any(one.broken for one in found.limits):
+        yield "limits have no value in some samples of production, or the model is refused there: narrow the scatter"
     if not found.feasible:
         for one in found.limits:
             low, high = one.after
