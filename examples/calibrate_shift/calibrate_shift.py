@@ -1,10 +1,11 @@
-"""Two gear shifts calibrated for least jerk: python examples/calibrate_shift/calibrate_shift.py [FOLDER].
+"""Two gear shifts calibrated for least jerk.
 
 First for the linings of the drawing, with what more heat would buy, then for linings that scatter by 10 %.
 """
 
 from __future__ import annotations
 
+import argparse
 import sys
 import time
 from dataclasses import dataclass
@@ -131,7 +132,9 @@ def robust(shift: Shift, system: cw.System, samples: int = 64) -> cw.Calibration
 
 def main() -> None:
     """Calibrate both shifts, verify each with 1000 gearboxes, draw them before and after."""
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/calibrate_shift")
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, nargs="?", default=Path("out/calibrate_shift"), help="of the pictures")
+    folder = parser.parse_args().folder
     folder.mkdir(parents=True, exist_ok=True)
     for shift in (six_speed(), eight_speed()):
         began = time.perf_counter()

@@ -109,6 +109,10 @@ def test_channels_of_other_rasters_keep_their_instants(tmp_path: Path) -> None:
         ({"window": (2.0, 1.0)}, r"window is \(2.0, 1.0\); give begin and end"),
         ({"measured": {"engine.speed": "n_eng [rad/s]"}}, "engine.speed"),
         ({"path": "nowhere.csv"}, "does not exist"),
+        (
+            {"time": "t"},
+            r"^time cannot be read: .* no column 't'; give time=...; the columns are time \[s\], n_eng",
+        ),
     ],
 )
 def test_a_file_that_cannot_be_used_is_refused(changes: dict[str, Any], words: str, tmp_path: Path) -> None:
@@ -116,6 +120,27 @@ def test_a_file_that_cannot_be_used_is_refused(changes: dict[str, Any], words: s
     given: dict[str, Any] = {"path": tmp_path / "run.csv", "measured": MEASURED} | changes
     with pytest.raises(FitError, match=words):
         Record.read(**given)
+
+
+def test_columns_are_listed_where_neither_time_nor_signal_is_there(tmp_path: Path) -> None:
+    write_csv(tmp_path / "run.csv", columns())
+    with pytest.raises(FitError) as caught:
+        Record.read(tmp_path / "run.csv", {"engine.speed": "n_egn", "load.speed": "n_lod"}, time="times")
+    head, *lines = str(caught.value).splitlines()
+    assert head == "3 problems"
+    known = "the columns are time [s], n_eng [1/min], n_load [rpm], p1 [bar]; did you mean"
+    assert all(known in line for line in lines)
+
+
+def test_columns_without_units_are_noted(tmp_path: Path) -> None:
+    known = {name: ("-", values) for name, (_, values) in columns().items()}
+    write_csv(tmp_path / "run.csv", {**known, "time": columns()["time"]})
+    driven = {"c1.pressure": "p1 [bar]"}
+    record = Record.read(tmp_path / "run.csv", MEASURED, driven, window=WINDOW, time="time [s]")
+    found = fit_records(two.discs(), record, ["load.inertia"])
+    told = "run: n_eng, n_load of the file have no unit and were taken as rad/s; give one with the name, such as "
+    assert told + "'n_eng [1/min]'" in found.notes
+    assert "p1" not in found.notes
 
 
 def test_units_that_do_not_fit_the_signal_are_refused(tmp_path: Path) -> None:

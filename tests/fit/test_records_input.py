@@ -31,7 +31,11 @@ NAN = {"load.speed": np.where(np.arange(126) == 3, np.nan, 1.0)}
         (replace(ONE, units={"load.speed": "bar"}), "has a unit that does not fit"),
         (replace(ONE, units={"loaad.speed": "rpm"}), "did you mean 'load.speed'"),
         (replace(ONE, deviation={"load.speed": -0.1}), r"deviation of load.speed is -0.1; give a number above zero"),
+        (replace(ONE, time=np.append(two.TIMES[:-1], np.inf)), "time is from 0 to inf s; give finite instants"),
+        (replace(ONE, deviation={"load.speed": np.inf}), r"deviation of load.speed is inf; give a number above zero"),
+        (replace(ONE, measured={"load.spede": two.TIMES}), r"'load.speed'\? give the name of one"),
         (replace(ONE, inputs={"c1.presure": 1e5}), "did you mean 'c1.pressure'"),
+        (replace(ONE, inputs={"c1.presure": two.TIMES}, units={"c1.presure": "bar"}), "did you mean 'c1.pressure'"),
         (replace(ONE, inputs={"c1.pressure": [1e5]}), "c1.pressure has 1 samples for 126 instants"),
         (replace(ONE, start={"load.speedd": 1.0}), "did you mean 'load.speed'"),
         (replace(ONE, start={"load.inertia": -1.0}), 'load" inertia = -1.0 kg m2 must be >= 0 kg m2'),
@@ -53,6 +57,7 @@ def test_a_record_that_cannot_be_used_is_refused(record: Record, words: str) -> 
         ({"free": ["c1.locked"]}, "is a choice"),
         ({"bounds": {"load.inertia": (1.0, 2.0)}}, r"of load.inertia are 1 to 2 \[kg m2\], its start value is 0.8"),
         ({"bounds": {"load.inertai": (0.1, 2.0)}}, "which is not free; did you mean 'load.inertia'"),
+        ({"bounds": {"load.inertia": (2.0, 0.1)}}, r"are swapped: \(2, 0.1\); give \(0.1, 2\)"),
         ({"bounds": {"load.inertia": 1.0}}, r"give a pair: \(lower, upper\)"),
         ({"records": []}, "records are empty"),
         ({"records": [ONE.measured["load.speed"]]}, r"give each as a Record\(time, measured\)"),
@@ -69,6 +74,16 @@ def test_what_cannot_be_searched_for_is_refused(changes: dict[str, Any], words: 
     given: dict[str, Any] = {"records": ONE, "free": ["load.inertia"]} | changes
     with pytest.raises(FitError, match=words):
         fit_records(two.discs(), given.pop("records"), given.pop("free"), **given)
+
+
+def test_what_a_call_lacks_is_named() -> None:
+    with pytest.raises(cw.UseError, match=r"fit_records: 1 problem\n  free is missing; give one, such as free=\['c1"):
+        fit_records(two.discs(), ONE)  # type: ignore[call-arg]
+
+
+def test_a_range_of_ordinates_is_free() -> None:
+    found = fit_records(two.guess(), ONE, ["c1.pressure.values[2:]"])
+    assert [one.name for one in found.parameters] == ["c1.pressure.values[2]", "c1.pressure.values[3]"]
 
 
 def test_a_driven_signal_is_not_free() -> None:

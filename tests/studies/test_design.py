@@ -88,6 +88,30 @@ def test_units() -> None:
         cw.sweep(system, 2.0, vary=cw.design({"c1.pressure": ("1 kg", "2 kg")}, 5), outputs="load.speed")
 
 
+UNKNOWN = {
+    "c1.gian": r"c1\.gian: .*; did you mean 'c1\.gain'",
+    "c1.pressure.values[2]": r"c1\.pressure\.values\[2\]: is inside of a table; .* whole tables: .* as 'c1\.pressure'",
+}
+
+
+@pytest.mark.parametrize("name", UNKNOWN)
+@pytest.mark.parametrize("how", [cw.normal("2 bar", "0.1 bar"), cw.normal(2e5, 1e4)], ids=["unit", "plain"])
+def test_names_are_looked_at_before_units(name: str, how: Any) -> None:
+    system = scattered.discs().changed({"c1.pressure": cw.Table([(0.0, 0.0), (0.2, 2e5)])})
+    with pytest.raises(cw.ClutchworkError, match=UNKNOWN[name]) as caught:
+        cw.sweep(system, 2.0, vary=cw.design({name: how}, 5), outputs="load.speed")
+    assert "unit" not in str(caught.value)
+
+
+def test_many_values_with_one_mistake_are_told_in_one_line() -> None:
+    for name, mean in (("engine.inertia", 0.2), ("c1.gain", 5e-4)):
+        made = cw.design({name: cw.normal(mean, mean)}, 200)
+        wrong = int(np.sum(made[name] < 0.0))
+        with pytest.raises(cw.ModelError, match=f", and {wrong - 1} other values are like it; give") as caught:
+            cw.sweep(scattered.discs(), 2.0, vary=made, outputs="load.speed")
+        assert len(caught.value.problems) == 1
+
+
 def test_a_width_in_degrees_is_one_in_kelvin() -> None:
     d = cw.Driveline()
     a, b = d.shaft("a", inertia=1.0, speed=1.0), d.shaft("b", inertia=1.0)

@@ -215,6 +215,10 @@ def test_queries_and_pictures(tmp_path: Path) -> None:
         query = 'SELECT count(*), max("c1.heat") FROM study WHERE "lock(c1)" < 1.5'
         expected = found["c1.heat"][found["lock(c1)"] < 1.5]
         assert found.query(query).fetchall() == [(len(expected), expected.max())]
+        for plain, name in (("c1.gain", "c1.gain"), ("lock(c1)", "lock(c1)")):
+            with pytest.raises(cw.UseError) as caught:
+                found.query(f"SELECT avg({plain}) FROM study")
+            assert f'put names of columns into double quotes: "{name}"' in str(caught.value)
     pytest.importorskip("matplotlib").use("agg")
     found.plot(tmp_path / "x.png", names=["c1.*", "lock(c1)"])
     assert (tmp_path / "x.png").stat().st_size > 10_000

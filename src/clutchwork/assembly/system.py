@@ -37,6 +37,12 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MAGIC = b"CLUTCHWK"
+# what a Driveline can do itself
+CALLS = {
+    "simulate": "; run it by cw.simulate(system, t_end)",
+    "sweep": "; cw.sweep(system, t_end, vary=..., outputs=...) does it",
+    "gradient": "; cw.differentiable(system, t_end, of=..., by=...).gradient() does it",
+}
 # of a file that holds a System
 PARTS = ("content", "model", "independent")
 
@@ -97,7 +103,9 @@ class System:
             arrays = self.__dict__["arrays"]
             return dense(arrays, name) if name in SPARSE else arrays[name]
         except KeyError:
-            raise AttributeError(f"a System has no {name!r}{near(name, [*SPARSE, *(n for n, *_ in FIELDS)])}") from None
+            known = [*SPARSE, *(n for n, *_ in FIELDS)]
+            told = CALLS.get(name) or near(name, known)
+            raise AttributeError(f"a System has no {name!r}{told}") from None
 
     def __getstate__(self) -> dict[str, Any]:
         # a view of a dictionary cannot be pickled; what was found since comes again

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import FileError
-from clutchwork.base.shown import shown
+from clutchwork.base.errors import FileError, near
+from clutchwork.base.shown import listed, shown
 from clutchwork.fit.failure import FitError, refuse
+from clutchwork.signals.bases.column_file import names_of
 from clutchwork.signals.bases.column_heads import Head, split
+from clutchwork.signals.bases.measured.formats import format_of
 from clutchwork.signals.column import Column
 
 Array = NDArray[np.float64]
@@ -30,18 +32,41 @@ def columns(
     path: str | Path, wanted: Mapping[str, str], time: str, group: str | None, window: Sequence[float] | None
 ) -> dict[str, Read]:
     """Columns of a file by what they are wanted for; FitError names all that cannot be used."""
-    found, problems, span = dict[str, Read](), list[FitError](), _span(window)
+    found, problems, span = dict[str, Read](), dict[str, FitError](), _span(window)
     if not wanted:
-        problems.append(FitError("measured", "is empty", "give at least one column"))
+        problems["measured"] = FitError("measured", "is empty", "give at least one column")
     for name, head in wanted.items():
         try:
             found[name] = _cut(_read(path, head, time, group), span)
         except FileError as error:
-            problems += [FitError(name, f"cannot be read: {message}", remedy) for _, message, remedy in error.problems]
+            # what is wrong with the times is so for all columns
+            problems |= {str(one): one for one in _faults(path, name, head, time, error)}
         except FitError as error:
-            problems.append(FitError(name, error.message, error.remedy))
-    refuse(problems)
+            problems[name] = FitError(name, error.message, error.remedy)
+    refuse(list(problems.values()))
     return found
+
+
+def _faults(path: str | Path, name: str, head: str, time: str, error: FileError) -> Iterator[FitError]:
+    """What is wrong with a column; one that is not there is answered with those that are."""
+    known = _names(path)
+    for quantity, message, remedy in error.problems:
+        wanted = time if quantity == "time" else head
+        hint = near(wanted, known) or near(split(wanted)[0], [split(one)[0] for one in known])
+        missing = known and message.endswith(f"has no column {shown(wanted)}")
+        told = f"the columns are {listed(known)}{hint}" if missing else remedy
+        if quantity == "time":
+            yield FitError("time", f"cannot be read: {message}", f"give time=...; {told}" if missing else told)
+        else:
+            yield FitError(name, f"cannot be read: {message}", told)
+
+
+def _names(path: str | Path) -> list[str]:
+    """The heads of a CSV file; other formats say them of themselves."""
+    try:
+        return [] if format_of(Path(path)) else names_of(Path(path))
+    except OSError:
+        return []
 
 
 def _read(path: str | Path, wanted: str, time: str, group: str | None) -> Read:

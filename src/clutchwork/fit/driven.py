@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, Problem, UseError
+from clutchwork.base.shown import listed
 from clutchwork.declare.node import Signal
 from clutchwork.declare.options import Options
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.traces import Trace, label, row, traces
-from clutchwork.model.changes import named, target, unit_of
+from clutchwork.model.changes import Owners, named, target, targets_of, unit_of
 from clutchwork.results.channels import channels
 from clutchwork.run.simulation import simulate
 from clutchwork.signals.table import Table
@@ -22,12 +23,15 @@ from clutchwork.signals.table import Table
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.fit.record import Record
+    from clutchwork.results.channels import Channel
     from clutchwork.results.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
 # far below what a sensor resolves
 RTOL, ATOL = 1e-9, 1e-11
+# units of test benches
+USUAL = {"rad/s": "1/min", "Pa": "bar"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +42,7 @@ class Driven:
     system: System
     traces: tuple[Trace, ...]
     options: Options
+    notes: tuple[str, ...] = ()  # on what was read
 
     @property
     def t_end(self) -> float:
@@ -68,7 +73,8 @@ def driven(system: System, records: Sequence[Record], problems: list[FitError]) 
             # work is integrated where it was measured
             bare = channels(own, True, False)
             work = any(one.signal not in bare for one in fine)
-            made.append(Driven(told, own, fine, Options(rtol=RTOL, atol=ATOL, work=work)))
+            options = Options(rtol=RTOL, atol=ATOL, work=work)
+            made.append(Driven(told, own, fine, options, tuple(_without_unit(system, record, known, of))))
     return made
 
 
@@ -91,6 +97,20 @@ def _changed(system: System, record: Record, of: str, problems: list[FitError]) 
     return system
 
 
+def _without_unit(system: System, record: Record, known: Mapping[str, Channel], of: str) -> Iterator[str]:
+    """Columns of a file that were taken as SI because it says no unit."""
+    heads, owners = dict[str, list[str]](), named(system.source) if system.source else Owners()
+    for name, head in record.without_unit.items():
+        aim = target(owners, name) if name in record.inputs else None
+        unit = unit_of(aim) if aim else known[name].unit if name in known else ""
+        if unit not in ("", "1"):
+            heads.setdefault(unit, []).append(head)
+    for unit, columns in heads.items():
+        verb = "has no unit and was" if len(columns) == 1 else "have no unit and were"
+        such = f"{columns[0]} [{USUAL.get(unit, unit)}]"
+        yield f"{of}{listed(columns)} of the file {verb} taken as {unit}; give one with the name, such as {such!r}"
+
+
 def _told(one: Problem, of: str) -> tuple[str, str, str]:
     where = f"{one.path} {one.quantity}".strip()
     return f"{of}{where}", f"= {one.value} {one.message}" if one.value else one.message, one.remedy or "correct it"
@@ -101,6 +121,10 @@ def _signal(system: System, record: Record, name: str, given: Any, of: str) -> A
     if isinstance(given, Signal | str) or np.ndim(given) == 0:
         return given
     aim = target(named(system.source), name) if system.source else None
+    if system.source and aim is None:
+        # whatever the unit
+        _, (unknown,) = targets_of(system.source, [name])
+        raise FitError(*_told(unknown, of))
     times, values = row(record, name, given, unit_of(aim) if aim else "1", of)
     if times[0] < 0.0:
         now = float(np.interp(0.0, times, values))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from clutchwork.base.errors import ClutchworkError
+from clutchwork.base.errors import ClutchworkError, advised
 from clutchwork.base.extras import need
 from clutchwork.base.text import counted
 
@@ -16,7 +16,7 @@ class FitError(ClutchworkError, ValueError):
     def __init__(self, quantity: str, message: str, remedy: str, problems: Sequence[FitError] = ()) -> None:
         self.quantity, self.message, self.remedy = quantity, message, remedy
         self.problems: tuple[FitError, ...] = tuple(problems) or (self,)
-        told = f"{quantity} {message}; {remedy}"
+        told = advised(f"{quantity} {message}", remedy)
         if problems:
             told = "\n".join([counted(len(problems), "problems"), *(f"  {one}" for one in problems)])
         super().__init__(told)

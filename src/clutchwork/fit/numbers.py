@@ -127,6 +127,8 @@ def _made(one: Parameter, name: str, given: Pair) -> Unknown:
         low, high = (None if end is None else float(end) for end in given)
     except (TypeError, ValueError):
         raise FitError("bounds", f"of {name} are {given!r}", "give a pair: (lower, upper)") from None
+    if low is not None and high is not None and low > high:
+        raise FitError("bounds", f"of {name} are swapped: ({low:g}, {high:g})", f"give ({high:g}, {low:g})")
     is_given = low is not None or high is not None
     lowest = max(one.lower, -inf if low is None else low)
     highest = min(one.upper, inf if high is None else high)

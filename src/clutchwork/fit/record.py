@@ -30,6 +30,8 @@ class Record:
     deviation: Mapping[str, Any] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     name: str = ""
+    # columns of a file that say none, by name
+    without_unit: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     @classmethod
     def read(
@@ -48,14 +50,16 @@ class Record:
         """A record from a CSV, MDF, MAT, Parquet or NetCDF file.
 
         Parameters: measured and inputs, columns by the name of the signal or the input: {"engine.speed": "n_eng"},
-        with a unit where the file says none, "n_eng [1/min]"; time, column with the times; window, begin and end [s]
+        with a unit where the file says none, "n_eng [1/min]", otherwise they are taken as SI, which `notes` of the fit
+        say; time, column with the times, where it is not called "time"; window, begin and end [s]
         of what is used: times count from its begin. start, deviation, which is in SI, and name as of `Record`, by
         default the name of the file; group, of the channels of an MDF file.
 
         Units of the file are converted, those that do not fit are refused by the fit. FitError names all columns that
         cannot be used.
         """
-        found = columns(path, {**measured, **(inputs or {})}, time, group, window)
+        asked = {**measured, **(inputs or {})}
+        found = columns(path, asked, time, group, window)
         pairs = {key: (one.times, one.values) for key, one in found.items()}
         return cls(
             next(iter(pairs.values()))[0],
@@ -65,4 +69,5 @@ class Record:
             dict(deviation or {}),
             {key: one.unit for key, one in found.items() if one.unit},
             name or Path(path).stem,
+            {key: asked[key] for key, one in found.items() if not one.unit},
         )

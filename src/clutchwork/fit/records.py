@@ -12,6 +12,7 @@ from clutchwork.assembly.system import System
 from clutchwork.base.errors import ModelError
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
+from clutchwork.declare.calls import explained
 from clutchwork.fit.descent import Descent, Ended
 from clutchwork.fit.determined import known
 from clutchwork.fit.driven import Driven, driven
@@ -35,6 +36,7 @@ SAME = 1e-3
 BESIDE = 1e-3
 
 
+@explained("fit_records", records="[record]", free="['c1.gain', 'engine.inertia']")
 def fit_records(
     model: Assembles | System,
     records: Sequence[Record] | Record,
@@ -117,7 +119,7 @@ def _solved(records: Sequence[Driven], searched: Numbers, confidence: float, sta
         converged=best.converged,
         correlation=what.correlation,
         alike=what.alike,
-        remarks=tuple(_remarks(descent, ended, starts)),
+        remarks=(*(note for record in records for note in record.notes), *_remarks(descent, ended, starts)),
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.declare.calls import explained
 from clutchwork.fit.record import Record
 from clutchwork.fit.records import fit_records
 
@@ -13,6 +14,13 @@ if TYPE_CHECKING:
     from clutchwork.fit.response_result import ResponseFit
 
 
+@explained(
+    "fit_response",
+    time="[0.0, 0.1, 0.2]",
+    measured="{'engine.speed': [100.0, 99.0, 98.0]}",
+    free="['c1.gain']",
+    driveline="d",
+)
 def fit_response(
     driveline: Driveline,
     time: Any,

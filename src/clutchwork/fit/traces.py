@@ -52,7 +52,8 @@ def traces(record: Record, known: Mapping[str, Channel], of: str) -> Iterator[Tr
     for name, given in record.measured.items():
         channel = known.get(name)
         if channel is None:
-            yield FitError(f"{of}measured", f"has no signal {shown(name)}{near(name, known)}", 'name one, "load.speed"')
+            told = f"has no signal {shown(name)}{near(name, known)}"
+            yield FitError(f"{of}measured", told, 'give the name of one, "load.speed"')
         elif isinstance(channel.evaluate, Mode):
             yield FitError(f"{of}measured", f"{shown(name)} has words, no numbers", "take a speed, a torque or a slip")
         else:
@@ -85,6 +86,9 @@ def row(record: Record, name: str, given: Any, unit: str, of: str) -> tuple[Arra
         where = f" at sample {falls[0]}, {times[falls[0]]:g} s" if len(falls) else ""
         told = f"does not rise{where}"
         raise FitError(f"{of}{_of_time(given, name)}", told, "give a row of at least two instants [s]")
+    if not np.all(np.isfinite(times)):
+        told = f"is from {times[0]:g} to {times[-1]:g} s"
+        raise FitError(f"{of}{_of_time(given, name)}", told, "give finite instants [s]")
     if len(found) != len(times):
         raise FitError(f"{of}{name}", f"has {len(found)} samples for {len(times)} instants", "give one number for each")
     bad = np.flatnonzero(~np.isfinite(found))
@@ -121,7 +125,7 @@ def _deviation(record: Record, name: str, values: Array, unit: str, of: str) -> 
     given = record.deviation[name]
     found = np.full(len(values), given, dtype=float) if np.ndim(given) == 0 and not isinstance(given, str) else None
     found = _numbers(f"{of}deviation of {name}", given) if found is None else found
-    if len(found) != len(values) or not np.all(found > 0.0):
+    if len(found) != len(values) or not np.all((found > 0.0) & (found < np.inf)):
         told = f"of {name} is {shown(given)}"
         raise FitError(f"{of}deviation", told, f"give a number above zero in [{unit}], or one for each sample")
     return found

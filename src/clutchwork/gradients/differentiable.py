@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import field
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, near
+from clutchwork.base.errors import ModelError, UseError, near
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained, explained_methods
@@ -108,12 +109,20 @@ class Differentiable:
         return value_and_gradient
 
     def batch(self, x: Any) -> Array:
-        """Values for many lines of numbers, on threads; NaN for what is not there."""
-        return self.task_values(self._points(x))
+        """Values for many lines of numbers, on threads; NaN for what is not there.
+
+        ModelError, which names the line, where the driveline refuses its numbers.
+        """
+        with self._lines(x) as points:
+            return self.task_values(points)
 
     def batch_jacobian(self, x: Any) -> tuple[Array, Array]:
-        """Values and derivatives for many lines of numbers, on threads; NaN for what does not exist."""
-        return self.engine.gradients(self._points(x))
+        """Values and derivatives for many lines of numbers, on threads; NaN for what does not exist.
+
+        ModelError as in `batch`.
+        """
+        with self._lines(x) as points:
+            return self.engine.gradients(points)
 
     def gradient(self, x: Any = None) -> Gradient:
         """Values and derivatives with their names and units, by default at the numbers of the driveline."""
@@ -139,6 +148,16 @@ class Differentiable:
         if points.ndim != 2 or points.shape[1] != len(self.by) or not np.all(np.isfinite(points)):
             raise UseError("batch", [f"x is {shown(x)}: give lines of {counted(len(self.by), 'numbers')} each"])
         return np.ascontiguousarray(points)
+
+    @contextmanager
+    def _lines(self, x: Any) -> Iterator[Array]:
+        """Lines of numbers; what the driveline refuses is said with the line that has it."""
+        points = self._points(x)
+        try:
+            yield points
+        except ModelError:
+            self.engine.refuse_lines(points)
+            raise
 
     def _known(self, point: Array) -> Found | None:
         return next((found for key, found in self._last if key == point.tobytes()), None)
@@ -187,7 +206,8 @@ def differentiable(
     Parameters: t_end [s], or with a unit, options and their fields by name are those of `simulate`; of, values as
     `outputs` of `sweep`: a signal at the end, `cw.at`, `cw.lock`, `cw.maximum`, `cw.integral`, `cw.squared_jerk` ...;
     by, names of numbers as in `System.changed`: "c1.gain", "engine.inertia", of a table "c1.pressure.values", all
-    ordinates, "c1.pressure.values[3]", the third one, and "c1.pressure.times[3]", the time of the third knot;
+    ordinates, "c1.pressure.values[3]", the third one, "c1.pressure.values[2:]", all from the second on, and
+    "c1.pressure.times[3]", the time of the third knot;
     threads, how many runs of a batch go at once.
 
     Derivatives follow the events: locking, breaking away and every kink move with the numbers, which differentiating
@@ -199,22 +219,25 @@ def differentiable(
     end, chosen = merged(system.settings, given, options)
     plain = chosen.changed({"dt": None, "times": None})
     refuse_endless(system.inputs, plain.t_start, end, plain.max_steps)
-    return made(system, asked(of), by, end, plain, threads)
+    return made(system, of, by, end, plain, threads)
 
 
-def made(
-    system: System, outputs: Mapping[str, Output], by: Any, t_end: float, options: Options, threads: int | None
-) -> Differentiable:
-    """The function for outputs by name."""
-    _refuse(system, outputs)
-    chosen = parameters(system, by)
-    Wanted.of(system, options, outputs, t_end)
+def made(system: System, of: Any, by: Any, t_end: float, options: Options, threads: int | None) -> Differentiable:
+    """The function for what is asked for."""
+    try:
+        outputs = asked(of)
+        _refuse(system, outputs)
+        chosen = parameters(system, by)
+        Wanted.of(system, options, outputs, t_end)
+    except UseError as error:
+        # outputs are those of a sweep, and say so
+        raise UseError("gradient", error.problems) from None
     known = channels(system, options.angles, options.work)
     labels = [(label, unit_of(one, known)) for name, one in outputs.items() for label in _labels(name, one)]
-    of, units = zip(*labels, strict=True)
-    task = Task(system, outputs, chosen, t_end, options, threads_of(threads), of)
+    names, units = zip(*labels, strict=True)
+    task = Task(system, outputs, chosen, t_end, options, threads_of(threads, "gradient"), names)
     by_units = tuple(one.unit for one in chosen)
-    return Differentiable(task, Exact(task), of, tuple(one.name for one in chosen), units, by_units)
+    return Differentiable(task, Exact(task), names, tuple(one.name for one in chosen), units, by_units)
 
 
 def _labels(name: str, one: Output) -> list[str]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import ModelError
 from clutchwork.gradients.grazing import crowded, decided, noted, refused, struck_together, together
 from clutchwork.gradients.measures import Asked, Measure, measures
 from clutchwork.gradients.primal import Primal
@@ -50,6 +51,14 @@ class Exact:
         """Values for each line of numbers, NaN where there is none."""
         found = [self._values(x[first : first + MOST_AT_ONCE]) for first in range(0, len(x), MOST_AT_ONCE)]
         return np.concatenate(found) if found else np.zeros((0, len(self.task.labels)))
+
+    def refuse_lines(self, x: Array) -> None:
+        """ModelError, which names the line, where the driveline refuses numbers of a batch."""
+        for number, line in enumerate(x):
+            try:
+                self.runs.words.at(line)
+            except ModelError as error:
+                raise ModelError(error.problems, f"x[{number}] of {len(x)} lines") from None
 
     def _values(self, x: Array) -> Array:
         systems = [self.runs.words.bytes_at(line) for line in x]
@@ -139,7 +148,7 @@ class Exact:
         primal, sizes = run.primal, float(np.max(self._sizes(x), initial=0.0))
         yield from refused(self.task.system, decided(primal.grazes, primal.events), until, sizes)
         yield from crowded(primal.events, self.runs.wanted.contacts, until)
-        yield from struck_together(primal.events, self.runs.wanted.contacts, until)
+        yield from struck_together(self.task.system, primal.events, self.runs.wanted.contacts, until)
 
 
 def _refuse(problems: list[str]) -> None:

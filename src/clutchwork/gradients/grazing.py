@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.wiring import wiring
+from clutchwork.assembly.wiring import HOUSING, wiring
 from clutchwork.declare.layout import CAUSES, EVENT
 from clutchwork.results.forms import LOCKED
 
@@ -81,15 +81,38 @@ def crowded(events: Array, contacts: Sequence[str], until: float) -> Iterator[st
             yield f"{name} {why}; give the parts beside it damping, or its law more static friction"
 
 
-def struck_together(events: Array, contacts: Sequence[str], until: float) -> Iterator[str]:
-    """Stops that are struck at one instant, of which one bounces: the order of the blows decides."""
+def struck_together(system: System, events: Array, contacts: Sequence[str], until: float) -> Iterator[str]:
+    """Stops that are struck at one instant, of which one bounces: the order of the blows decides.
+
+    Those on shafts that share no motion do not feel each other.
+    """
     hit = events[(events[:, AT["cause"]] == IMPACT) & (events[:, AT["time"]] <= until)]
+    parts = moving_together(system)[hit[:, AT["contact"]].astype(int)]
+    for part in np.unique(parts):
+        yield from _struck(hit[parts == part], contacts)
+
+
+def _struck(hit: Array, contacts: Sequence[str]) -> Iterator[str]:
     times, bounces = hit[:, AT["time"]], hit[:, AT["to"]] != LOCKED
     close = (np.diff(times) <= ONE_INSTANT * 1e-3) & (np.diff(hit[:, AT["contact"]]) != 0.0)
     for place in np.flatnonzero(close & (bounces[1:] | bounces[:-1])):
         names = " and ".join(contacts[int(number)] for number in hit[place : place + 2, AT["contact"]])
         yield f"{names} are struck at one instant, {times[place]:.9g} s, and bounce; give them different gaps"
         return
+
+
+def moving_together(system: System) -> NDArray[np.int64]:
+    """For each contact the part of the driveline that it is in: shafts that elements, contacts or gears join."""
+    known = wiring(system)
+    joined = [set(one.direction) for one in (*known.elements, *known.contacts, *known.motions)]
+    joined += [{node for node, _ in row.ports.values()} for row in known.gears]
+    part = np.arange(len(known.nodes) + 1)
+    for nodes in joined:
+        moving = [node for node in nodes if node != HOUSING]
+        # all that any of them is joined to already
+        part[np.isin(part, part[moving])] = min(part[moving], default=0)
+    places = [[node for node in one.direction if node != HOUSING][:1] for one in known.contacts]
+    return np.array([int(part[own[0]]) if own else -1 for own in places], dtype=np.int64)
 
 
 def noted(system: System, grazes: Array, events: Array) -> Iterator[str]:

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# "c1.pressure.values[3]": table, what of it, place from 1 on
-ENTRY = re.compile(r"(.+)\.(values|times|arguments)((?:\[\d+\])*)")
+# "c1.pressure.values[3]" or "c1.pressure.values[2:]": table, what of it, place from 1 on or a range with its ends
+ENTRY = re.compile(r"(.+)\.(values|times|arguments)((?:\[\d+\])*|\[\d*:\d*\])")
 
 
 @dataclass(frozen=True)
@@ -52,8 +52,9 @@ class Unfit(Exception):  # noqa: N818, it is caught where it is raised
 def parameters(system: System, by: Any) -> tuple[Parameter, ...]:
     """The numbers that names mean, in order; UseError names all that cannot be differentiated by.
 
-    Parameters: by, a name or several, as in `System.changed`; of a table its ordinates by "c1.pressure.values" or one
-    of them, the third by "c1.pressure.values[3]", and times of its knots by "c1.pressure.times[3]".
+    Parameters: by, a name or several, as in `System.changed`; of a table its ordinates by "c1.pressure.values", one of
+    them, the third by "c1.pressure.values[3]", those from the second on by "c1.pressure.values[2:]", and times of its
+    knots by "c1.pressure.times[3]".
     """
     if system.source is None:
         raise ModelError([UNKNOWN_SOURCE])
@@ -82,11 +83,22 @@ def _meant(model: Model, owners: Owners, name: Any) -> list[Parameter]:
         _, (problem,) = targets_of(model, [name])
         raise Unfit(problem)
     found, wanted = list(_entries(table, parts[1], parts[2])), f"{parts[1]}.{parts[2]}{parts[3]}"
+    if ":" in parts[3]:
+        return _range(found, parts[3], name)
     chosen = [one for one in found if not parts[3] or one.name == wanted]
     if not chosen:
         together = "; points of a jump move under the number of the first one" if parts[2] != "values" else ""
         raise Unfit(f"{name} is not there: entries are counted from 1, {found[0].name} to {found[-1].name}{together}")
     return chosen
+
+
+def _range(found: list[Parameter], given: str, name: str) -> list[Parameter]:
+    """Entries from one to another, both with them."""
+    begin, end = given[1:-1].split(":")
+    first, last = int(begin or 1), int(end or len(found))
+    if not 1 <= first <= last <= len(found):
+        raise Unfit(f"{name} is not there: entries are counted from 1, [1:{len(found)}] are all")
+    return found[first - 1 : last]
 
 
 def _number(aim: Target, name: str) -> Parameter:

@@ -9,7 +9,6 @@ from clutchwork.results.gradient import Gradient, NoGradient
 from clutchwork.results.trajectory import Trajectory
 from clutchwork.run.control import Control
 from clutchwork.run.simulation import Job
-from clutchwork.sweeps.outputs import asked
 
 
 def gradient_of(run: Trajectory, of: Any, by: Any) -> Gradient:
@@ -23,4 +22,4 @@ def gradient_of(run: Trajectory, of: Any, by: Any) -> Gradient:
     if not run.finished:
         raise NoGradient([f"the run did not reach its end: {run.message}"])
     plain = run.options.changed({"dt": None, "times": None})
-    return made(run.system, asked(of), by, run.t_end, plain, 1).gradient()
+    return made(run.system, of, by, run.t_end, plain, 1).gradient()

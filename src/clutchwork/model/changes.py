@@ -7,6 +7,7 @@ named as in results: "gearbox.A.gain".
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
@@ -37,6 +38,9 @@ from clutchwork.model.thermal import node_kind
 FIXED = ("port", "thermal", "text", "function", "named", "elements", "data")
 SIGNALS = ("signal", "alternative")
 MOST_OWN = 6
+# "c1.pressure.values[3]"
+IN_TABLE = re.compile(r"(.+)\.(values|times|arguments)(\[.*\])?")
+WHOLE = "gradients, calibrate and fit take its numbers, a sweep or a change takes whole tables: give them"
 RESULTS = "speeds, torques, slips and the like are results, which follow from the motion"
 # fields of a mass by the names of a shaft
 PLACES = ("inertia", "speed", "angle")
@@ -202,12 +206,21 @@ def _unknown(model: Model, owners: Mapping[str, Any], name: object) -> Problem:
     joined = [item.name for item, _ in specs(type(thing), *FIXED)] if isinstance(thing, Component) else []
     if last in joined or (thing is not None and last == "name"):
         return Problem(path, "", "is not a number", remedy="build another driveline for it")
+    table = IN_TABLE.fullmatch(path)
+    if table and _is_table(target(owners, table[1])):
+        return Problem(path, "", "is inside of a table", remedy=f"{WHOLE} as {table[1]!r}")
     message, owner = "is not a number, initial value or signal of this driveline", owner_of(owners, path)
     if owner:
         own = [word for word in own_names(owners[owner]) if target(owners, f"{owner}.{word}") is not None]
         return Problem(path, "", f"{message}{of_owner(path, owner, own, RESULTS)}")
     such = 'names are such as "engine.inertia", "c1.gain", "c1.friction.kinetic"'
     return Problem(path, "", f"{message}{near(path, all_names(model)) or f'; {such}'}")
+
+
+def _is_table(aim: Target | None) -> bool:
+    """Whether a target holds a table over time, a curve or a list of numbers."""
+    value = None if aim is None else field_of(aim)[0]
+    return hasattr(value, "points") or (hasattr(value, "__len__") and not isinstance(value, str))
 
 
 def owner_of(owners: Collection[str], path: str) -> str:

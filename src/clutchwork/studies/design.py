@@ -16,6 +16,7 @@ from clutchwork.base.extras import need
 from clutchwork.base.shown import shown
 from clutchwork.base.text import columns, counted
 from clutchwork.declare.calls import explained, explained_methods
+from clutchwork.model.changes import targets_of
 from clutchwork.studies.distributions import Choice, Distribution, distribution
 from clutchwork.studies.points import METHODS, Points
 from clutchwork.sweeps.variants import Variants, Varied
@@ -69,6 +70,7 @@ class Design:
 
     def in_si(self, model: Model) -> Design:
         """The same design in SI."""
+        unknown = {one.path: str(one) for one in targets_of(model, self.given)[1]}
         made, units, problems = dict[str, Any](), dict[str, str](), list[str]()
         for name, how in self.given.items():
 
@@ -82,7 +84,8 @@ class Design:
                 made[name] = replace(how, values=found.values, labels=labels)
             elif isinstance(how, Distribution) and how.unit:
                 if isinstance(of(f"1 {how.unit}"), str):
-                    problems.append(f"{name}: {how} has a unit that does not fit; give it in [{found.unit or '1'}]")
+                    unfit = f"{name}: {how} has a unit that does not fit; give it in [{found.unit or '1'}]"
+                    problems.append(unknown.get(name, unfit))
                 else:
                     made[name] = how.in_si(of)
         if problems:

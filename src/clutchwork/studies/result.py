@@ -145,7 +145,15 @@ class Study:
         duckdb = need("duckdb", "study", "a query")
         connection = duckdb.connect()
         connection.from_parquet([str(file) for file in self.files]).create_view("study")
-        return connection.sql(sql)
+        try:
+            return connection.sql(sql)
+        except duckdb.Error as error:
+            plain = [one.name for one in self.manifest.columns if one.name in sql.replace(f'"{one.name}"', "")]
+            if not plain:
+                raise
+            quoted = ", ".join(f'"{name}"' for name in plain)
+            told = str(error).partition("\n")[0].rstrip("!. ")
+            raise UseError("study.query", [f"{told}; put names of columns into double quotes: {quoted}"]) from None
 
     def run(self, number: int) -> Trajectory:
         """The run of one variant, as `simulate` gives it, where no Python function sets a signal."""

@@ -33,14 +33,12 @@ from clutchwork.model.numbers import At, is_right, number_problems
 from clutchwork.model.parts import role
 from clutchwork.model.thermal import thermal_problems
 from clutchwork.sweeps.driven import Driven
+from clutchwork.sweeps.mistakes import MOST_PROBLEMS, few
 from clutchwork.sweeps.variants import Codes, Variants, Varied
 from clutchwork.sweeps.words import Axis, Layout, Line
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-
-# so many mistakes of a sweep are told
-MOST_PROBLEMS = 20
 
 
 @dataclass
@@ -68,7 +66,7 @@ class Plan:
                 problems += error.problems
         if problems:
             problems += [found for one in plan.bound for found in plan._wrong(one)]
-            raise ModelError(list(dict.fromkeys(problems))[:MOST_PROBLEMS], base.name)
+            raise ModelError(few(problems), base.name)
         problems = list(islice(plan._together(), MOST_PROBLEMS))
         if problems:
             raise ModelError(problems, base.name)
@@ -124,7 +122,7 @@ class Plan:
         if one.name in self.base.parameters and spec is not None:
             problems = [found for value in one.values for found in _number_problems(value, spec, aim)]
             if problems:
-                raise ModelError(problems[:MOST_PROBLEMS], self.base.name)
+                raise ModelError(few(problems), self.base.name)
             place = self._layout.parameter(one.name)
             if self._nothing_follows(one, aim, place):
                 words = np.array(one.values, dtype=float).view(np.uint64).reshape(-1, 1)
@@ -163,7 +161,7 @@ class Plan:
             except ModelError as error:
                 problems += error.problems
         if problems:
-            raise ModelError(list(dict.fromkeys(problems))[:MOST_PROBLEMS], self.base.name)
+            raise ModelError(few(problems), self.base.name)
         return made
 
     def _renewed(self, owner: Any, values: Any) -> Any:
@@ -273,7 +271,7 @@ def systems_of(base: System, varied: Sequence[Varied], first: int, last: int) ->
         except ModelError as error:
             problems += error.problems
     if problems:
-        raise ModelError(list(dict.fromkeys(problems))[:MOST_PROBLEMS], base.name)
+        raise ModelError(few(problems), base.name)
     return made, np.array([number[line] for line in lines], dtype=np.int64)
 
 

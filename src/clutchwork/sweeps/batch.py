@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import row_columns
 from clutchwork.base.errors import UseError, near
+from clutchwork.base.shown import listed
 from clutchwork.declare.core import core
 from clutchwork.declare.status import DONE, INTERRUPTED
 from clutchwork.results.channels import Channels, channels
@@ -75,7 +76,8 @@ class Wanted:
     def _faults(self, one: Output) -> Iterator[str]:
         if isinstance(one, When):
             if one.contact not in self.contacts:
-                yield f"no contact {one.contact!r}{near(one.contact, self.contacts)}"
+                there = f"contacts are {listed(self.contacts)}" if self.contacts else "the driveline has no contact"
+                yield f"no contact {one.contact!r}{near(one.contact, self.contacts, there)}"
         elif not isinstance(one, Computed):
             try:
                 self.channels[one.signal]

@@ -16,6 +16,7 @@ from clutchwork.declare.speech import path_of
 from clutchwork.model.changes import renewed
 from clutchwork.model.fields import At, signal_problems
 from clutchwork.model.numbers import is_right
+from clutchwork.sweeps.mistakes import few
 
 if TYPE_CHECKING:
     from clutchwork.sweeps.words import Line
@@ -58,7 +59,7 @@ class Driven:
             if not found and not problems:
                 made.append(list(signal_patches(where, name, plain_signal(value))))
         if problems:
-            raise ModelError(list(dict.fromkeys(problems))[:most])
+            raise ModelError(few(problems, most))
         return made
 
     def _value(self, line: Line) -> Any:

@@ -12,7 +12,8 @@ from clutchwork.base.shown import shown
 from clutchwork.declare.options import Options
 from clutchwork.run.effort import refuse_endless
 from clutchwork.run.settings import merged
-from clutchwork.sweeps.axes import MOST_PROBLEMS, Plan
+from clutchwork.sweeps.axes import Plan
+from clutchwork.sweeps.mistakes import few
 from clutchwork.sweeps.outputs import asked
 from clutchwork.sweeps.result import Swept
 from clutchwork.sweeps.variants import Variants, given
@@ -111,7 +112,7 @@ def refuse_unfit(system: System, variants: Variants) -> None:
         if one.name in plan.targets:
             problems += plan.wrong_alone(replace(one, values=_telling(one.values)))
     if problems:
-        raise ModelError(list(dict.fromkeys(problems))[:MOST_PROBLEMS], system.name)
+        raise ModelError(few(problems), system.name)
 
 
 def _telling(values: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -290,6 +290,10 @@ def _output(one: Any) -> Output:
         return AtEnd(one)
     if callable(one):
         return Computed(one, getattr(one, "__name__", "function"))
+    if hasattr(one, "needs"):
+        # a goal or limit of `calibrate`, which is above this
+        rest = "; take cw.squared_jerk of the shaft, or cw.peak of its acceleration" if "jerk" in one.name else ""
+        raise UseError("sweep", [f"{one.name} is for calibrate alone{rest}"])
     remedy = "give the name of a signal, cw.at, cw.maximum, cw.lock ... of one, or a function of the run"
     raise UseError("sweep", [f"{shown(one)} is not an output; {remedy}"])
 

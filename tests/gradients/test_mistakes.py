@@ -1,0 +1,94 @@
+"""What cannot be differentiated is said under its own head, with a remedy; ranges of tables; stops struck together."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+
+BY = "c1.gain"
+
+
+def launch() -> cw.Driveline:
+    """Two discs and a clutch."""
+    d = cw.Driveline("launch")
+    engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)
+    pressure = cw.Table([(0.0, 0.0), (0.2, 2e5), (1.0, 2.2e5)])
+    lining = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Clutch("c1", base=engine, follower=load, friction=lining, gain=5e-4, pressure=pressure))
+    return d
+
+
+WRONG = {
+    "contact": ({"of": cw.lock("engine"), "by": BY}, "no contact 'engine'; contacts are c1"),
+    "signal": ({"of": "load.sped", "by": BY}, "no signal 'load.sped'; did you mean 'load.speed'?"),
+    "output": ({"of": 3, "by": BY}, "3 is not an output"),
+    "jerk": ({"of": cw.jerk("load"), "by": BY}, r"jerk(load) is for calibrate alone; take cw.squared_jerk"),
+    "threads": ({"of": "load.speed", "by": BY, "threads": 0}, "threads is 0"),
+    "entry": ({"of": "load.speed", "by": "c1.pressure.values[9]"}, "entries are counted from 1"),
+    "range": ({"of": "load.speed", "by": "c1.pressure.values[2:4]"}, "counted from 1, [1:3] are all"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_function_that_cannot_be(name: str) -> None:
+    given, text = WRONG[name]
+    with pytest.raises(cw.UseError) as caught:
+        cw.differentiable(launch(), 2.0, **given)  # type: ignore[arg-type]
+    assert str(caught.value).startswith("gradient: 1 problem\n")
+    assert text in str(caught.value)
+
+
+def test_a_driveline_without_contacts_says_so() -> None:
+    d = cw.Driveline("free")
+    d.shaft("a", inertia=1.0, speed=1.0)
+    with pytest.raises(cw.UseError, match="no contact 'a'; the driveline has no contact"):
+        cw.differentiable(d, 1.0, of=cw.lock("a"), by="a.inertia")
+
+
+@pytest.mark.parametrize(("given", "places"), [("[2:]", (2, 3)), ("[:2]", (1, 2)), ("[2:2]", (2,)), ("[:]", (1, 2, 3))])
+def test_a_range_of_ordinates_has_both_of_its_ends(given: str, places: tuple[int, ...]) -> None:
+    f = cw.differentiable(launch(), 2.0, of=cw.lock("c1"), by=f"c1.pressure.values{given}")
+    assert f.by == tuple(f"c1.pressure.values[{place}]" for place in places)
+
+
+def test_a_batch_names_the_line_that_the_driveline_refuses() -> None:
+    f = cw.differentiable(launch(), 2.0, of=cw.lock("c1"), by=["engine.inertia", BY])
+    lines = np.array([[0.2, 5e-4], [0.3, 5e-4], [-0.2, 5e-4]])
+    for call in (f.batch, f.batch_jacobian):
+        with pytest.raises(cw.ModelError, match=r'^x\[2\] of 3 lines: 1 problem\n.*"engine": inertia = -0.2'):
+            call(lines)
+
+
+def test_a_system_names_the_function_that_runs_it() -> None:
+    with pytest.raises(AttributeError, match=r"no 'simulate'; run it by cw.simulate\(system, t_end\)"):
+        launch().assemble().simulate(2.0)
+
+
+# mass and height of both balls [kg, m], weight [N], and what a bounce leaves
+MASS, HEIGHT, WEIGHT, LEFT = 2.0, 0.5, 19.6, 0.4
+
+
+def balls(spring: bool) -> cw.Driveline:
+    """Two balls that strike their floors at one instant, joined by a spring or not at all."""
+    d = cw.Driveline("balls")
+    found = [d.mass(f"ball{number}", mass=MASS, position=HEIGHT) for number in (1, 2)]
+    for number, ball in enumerate(found, 1):
+        d.add(cw.EndStop(f"floor{number}", follower=ball, lower=0.0, lower_restitution=LEFT))
+        d.add(cw.Torque(f"weight{number}", shaft=ball, torque=-WEIGHT))
+    if spring:
+        d.add(cw.Spring("spring", base=found[0], follower=found[1], stiffness=100.0))
+    return d
+
+
+def test_stops_that_are_struck_together_matter_only_where_they_move_together() -> None:
+    fall = math.sqrt(2.0 * HEIGHT * MASS / WEIGHT)
+    asked = {"of": cw.at("ball1.speed", 1.2 * fall), "by": "floor1.lower_restitution"}
+    with pytest.raises(cw.NoGradient, match="floor1 and floor2 are struck at one instant"):
+        cw.differentiable(balls(spring=True), 1.5 * fall, **asked).gradient()  # type: ignore[arg-type]
+    found = cw.differentiable(balls(spring=False), 1.5 * fall, **asked).gradient()  # type: ignore[arg-type]
+    # it leaves the floor with a share of the speed that it came with
+    assert found.matrix[0, 0] == pytest.approx(WEIGHT / MASS * fall, rel=1e-7)
