@@ -23,6 +23,7 @@ if (process.argv.includes("--tests")) {
   const browser = { ...common, minify: true, target: "es2022" };
   await build({ ...browser, entryPoints: ["src/page.ts"], outfile: `${folder}/page.js`, format: "iife", charset: "utf8" });
   await build({ ...browser, entryPoints: ["src/gearbox.ts"], outfile: `${folder}/gearbox.js`, format: "iife", charset: "utf8" });
+  await build({ ...browser, entryPoints: ["src/widget.ts"], outfile: `${folder}/widget.js`, format: "esm", charset: "utf8" });
   await build({ ...browser, entryPoints: ["src/page.css"], outfile: `${folder}/page.css` });
   // what programs without a browser use: tests of Python run the page's own engine by it
   await build({ ...common, entryPoints: ["src/node.ts"], outfile: `${root}build/page/node.mjs`, platform: "node", format: "esm" });

@@ -31,10 +31,16 @@ export function button(label: string, action: () => void): HTMLButtonElement {
 }
 
 const known = new Map<string, string>();
+let host: Element | undefined;
+
+/** The element whose style has the colours, where that is not the whole page. */
+export function setHost(given: Element): void {
+  host = given;
+}
 
 /** Colours of the style, as the canvas needs them. */
 export function colour(name: string): string {
-  const found = known.get(name) ?? getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  const found = known.get(name) ?? getComputedStyle(host ?? document.documentElement).getPropertyValue(`--${name}`).trim();
   known.set(name, found);
   return found;
 }

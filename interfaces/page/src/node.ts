@@ -6,3 +6,4 @@ export { asCsv, asPython, asToml } from "./copies";
 export { unpacked } from "./bytes";
 export { moved } from "./tables";
 export { measures, strokes } from "./measures";
+export { stateOf, take } from "./state";

@@ -13,6 +13,7 @@ DONE_BY = {
     "run.gradient": "gradients.run:gradient_of",
     "box.page": "page.gearbox:page_of_gearbox",
     "run.page": "page.page:page_of",
+    "run.widget": "page.widget:widget_of",
     "calibration.plot": "calibration.picture:before_and_after",
     "calibration.front": "calibration.front:front",
     "calibration.verify": "calibration.verify:verify",

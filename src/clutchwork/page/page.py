@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,34 +23,50 @@ ENDINGS = (".html", ".htm")
 
 def page_of(run: Trajectory, path: Any, drag: Any, sliders: Any, show: Any) -> Path:
     """What `run.page` does: write the page of a run; its path."""
-    problems = list(_problems(path, drag=drag, sliders=sliders, show=show))
-    if problems:
-        raise UseError("run.page", problems)
-    wanted = Wanted(_list(drag), _list(sliders), _list(show))
+    refuse("run.page", list(_path_problems(path)), drag=drag, sliders=sliders, show=show)
     target = made(path)
+    wanted = wanted_of(drag, sliders, show)
     target.write_text(page(run.system, run.t_end, run.options, wanted), encoding="utf-8")
     return target
 
 
 def page(system: System, t_end: float, options: Options, wanted: Wanted) -> str:
     """The page of a System as HTML."""
+    return html(quiet_data(system, t_end, options, wanted), system.name or "driveline")
+
+
+def quiet_data(system: System, t_end: float, options: Options, wanted: Wanted) -> dict[str, Any]:
+    """Its data. Stops of sliders may be odd models; the page is that of a model that was looked at."""
     with warnings.catch_warnings():
-        # stops of sliders may be odd models; the page is that of a model that was looked at
         warnings.simplefilter("ignore", ModelWarning)
-        data = data_of(system, t_end, options, wanted)
-    return html(data, system.name or "driveline")
+        return data_of(system, t_end, options, wanted)
+
+
+def wanted_of(drag: Any, sliders: Any, show: Any) -> Wanted:
+    """What is asked for, by names."""
+    return Wanted(_list(drag), _list(sliders), _list(show))
+
+
+def refuse(call: str, problems: Sequence[str] = (), **lists: Any) -> None:
+    """UseError for what was asked for wrongly, all at once."""
+    found = [*problems, *_list_problems(lists)]
+    if found:
+        raise UseError(call, found)
 
 
 def _list(given: Any) -> Sequence[str] | None:
     return None if given is None else [given] if isinstance(given, str) else list(given)
 
 
-def _problems(path: Any, **lists: Any) -> Any:
+def _path_problems(path: Any) -> Iterator[str]:
     fault = path_fault(path, "shift.html")
     if fault:
         yield fault
     elif Path(path).suffix.lower() not in ENDINGS:
         yield f"{shown(str(path))} does not end in .html: a page is one file of HTML"
+
+
+def _list_problems(lists: Mapping[str, Any]) -> Iterator[str]:
     for name, given in lists.items():
         words = [given] if isinstance(given, str) else given
         if words is not None and not (isinstance(words, list | tuple) and all(isinstance(word, str) for word in words)):

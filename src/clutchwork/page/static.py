@@ -7,7 +7,7 @@ from pathlib import Path
 from clutchwork.base.errors import ClutchworkError
 
 FOLDER = Path(__file__).parent / "static"
-CORE, SCRIPT, GEARBOX, STYLE = "core.wasm", "page.js", "gearbox.js", "page.css"
+CORE, SCRIPT, GEARBOX, WIDGET, STYLE = "core.wasm", "page.js", "gearbox.js", "widget.js", "page.css"
 
 
 class PageError(ClutchworkError, ValueError):
@@ -16,7 +16,7 @@ class PageError(ClutchworkError, ValueError):
 
 def missing() -> list[str]:
     """What was not built in a checkout of the sources; a wheel has all of it."""
-    return [name for name in (CORE, SCRIPT, GEARBOX, STYLE) if not (FOLDER / name).is_file()]
+    return [name for name in (CORE, SCRIPT, GEARBOX, WIDGET, STYLE) if not (FOLDER / name).is_file()]
 
 
 def built(name: str) -> bytes:

@@ -241,6 +241,21 @@ class Trajectory(Exports):
         written: Path = above("run.page", self, path, drag, sliders, show)
         return written
 
+    @explained("run.widget", drag="['F1.pressure']", sliders="['c1.gain']", show="['*.speed']")
+    def widget(
+        self,
+        *,
+        drag: Sequence[str] | str | None = None,
+        sliders: Sequence[str] | str | None = None,
+        show: Sequence[str] | str | None = None,
+    ) -> Any:
+        """The same page in a notebook, whose changes come back to Python. Needs anywidget.
+
+        Parameters: as those of `page`. The widget has `knots`, {"F1.pressure": [[time, value], ...]}, and `values`,
+        {"c1.gain": value}, in SI, which may be set too; `widget.system` is the driveline as its reader left it.
+        """
+        return above("run.widget", self, drag, sliders, show)
+
     @cached_property
     def dependent(self) -> tuple[DependentPhase, ...]:
         """When contacts were locked whose directions depend on each other, so that the torque of each is a convention.

@@ -1,0 +1,49 @@
+"""The page of a run in a notebook: knots and sliders are traits that come back to Python."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.base.extras import need
+from clutchwork.page.page import quiet_data, refuse, wanted_of
+from clutchwork.page.static import CORE, FOLDER, STYLE, WIDGET, built
+
+if TYPE_CHECKING:
+    from clutchwork.results.trajectory import Trajectory
+
+
+def widget_of(run: Trajectory, drag: Any, sliders: Any, show: Any) -> Any:
+    """What `run.widget` does: the widget of a run."""
+    refuse("run.widget", drag=drag, sliders=sliders, show=show)
+    return _made(run, quiet_data(run.system, run.t_end, run.options, wanted_of(drag, sliders, show)))
+
+
+def _made(run: Trajectory, data: dict[str, Any]) -> Any:
+    anywidget, traitlets = need("anywidget", "notebook", "run.widget"), need("traitlets", "notebook", "run.widget")
+    built(WIDGET)
+    from clutchwork.signals.table import Table
+
+    class DrivelineWidget(anywidget.AnyWidget):  # type: ignore[misc, name-defined]
+        """A driveline that is run in the notebook: `knots` and `values` are what its reader changed."""
+
+        _esm = FOLDER / WIDGET
+        page = traitlets.Unicode().tag(sync=True)
+        style = traitlets.Unicode().tag(sync=True)
+        core = traitlets.Bytes().tag(sync=True)
+        knots = traitlets.Dict().tag(sync=True)  # signal -> [[time, value], ...], SI
+        values = traitlets.Dict().tag(sync=True)  # number -> value, SI
+
+        @property
+        def system(self) -> Any:
+            """The driveline as it is now."""
+            tables = {name: Table([tuple(knot) for knot in knots]) for name, knots in self.knots.items()}
+            return run.system.changed({**tables, **self.values})
+
+    return DrivelineWidget(
+        page=json.dumps(data, allow_nan=False, default=list),
+        style=built(STYLE).decode(),
+        core=built(CORE),
+        knots={one["name"]: one["points"] for one in data["tables"]},
+        values={one["name"]: one["start"] for one in data["sliders"]},
+    )
