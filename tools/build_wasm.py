@@ -113,7 +113,7 @@ def marked(module: bytes) -> bytes:
 
 
 def wasm() -> Iterator[str]:
-    """Make core.wasm; yields what to tell."""
+    """Make core.wasm; yields what to report."""
     began = time.monotonic()
     objects = compiled(TO_WASM, SOURCES)
     names = [f"-Wl,--export={name}" for name in (*exports(), "__heap_base")]

@@ -24,3 +24,15 @@ def test_the_eight_speed(monkeypatch: pytest.MonkeyPatch) -> None:
     # 9.6 m/s3 before, of the nominal gearbox
     assert found.goal[1] < 4.0
     assert not found.verify(100).broken.any()
+
+
+def test_help_says_what_it_does_without_doing_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.syspath_prepend(str(EXAMPLE))
+    script = importlib.import_module("calibrate_shift")
+    monkeypatch.setattr("sys.argv", ["calibrate_shift.py", "--help"])
+    with pytest.raises(SystemExit) as ended:
+        script.main()
+    assert ended.value.code == 0
+    assert "least jerk" in capsys.readouterr().out
