@@ -181,7 +181,7 @@ def _twice(unknowns: Sequence[Unknown]) -> Iterable[str]:
 
 
 def _scattered(unknowns: Sequence[Unknown], scatter: Sequence[Unknown]) -> Iterable[str]:
-    """Numbers that are free, and set by the scatter whatever the search says."""
+    """Numbers that are free, and set by the scatter all the same."""
     free = {name for one in unknowns for name in one.numbers}
     for one in scatter:
         if one.kind == VALUE and one.name in free:

@@ -53,7 +53,7 @@ class Scatter:
         return cls((nominal, *drawn(problem.scatter, count - 1, seed), *ends), ends, worst)
 
     def first(self) -> Samples:
-        """Those that the solver begins with: corners are for limits alone, they are no production."""
+        """Those that the solver begins with: corners are for limits alone, they are not production."""
         even = self.pool[: len(self.pool) - len(self.ends)][:FIRST]
         few = self.ends if len(self.ends) <= FEW else ()
         if self.worst and self.ends:
