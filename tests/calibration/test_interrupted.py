@@ -93,8 +93,9 @@ def test_limits_that_are_all_linear_give_no_warning():
         found = cw.calibrate(
             discs(),
             5.0,
-            free={"c1.pressure.values[2]": (1e4, 9e5)},
+            free={"c1.pressure.values[2:]": (1e4, 9e5)},
             minimise=cw.at("c1.torque", 0.1),
-            subject_to=cw.limit({cw.slope("c1.pressure"): 1.0}, lower=-1e4, upper=1e4),
+            subject_to=cw.limit(cw.slope("c1.pressure"), 1e5, 1e5),
         )
     assert found.feasible
+    assert found["c1.pressure.values[2]"] == pytest.approx(3e5, rel=1e-6)

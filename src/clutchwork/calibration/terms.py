@@ -270,7 +270,7 @@ def jerk(shaft: str, window: Any = 0.05, between: Any = None) -> Jerk:
     """The size of the jerk of a shaft [rad/s3] or a mass [m/s3] for `calibrate`: all along the run, over windows.
 
     Parameters: shaft, its name; window [s], or with a unit: what is shorter does not count, 0.05 s is what a person
-    feels; between, two times [s], two windows apart or more, by default the whole run. It is taken 16 times a window; a
+    feels; between, two times [s], two windows apart or more, by default the whole run. 16 values a window; a
     jump of the acceleration counts as its height over the window, less 3 % at most; one as the run begins does not
     count, nor do those within a window of its ends in full. docs/theory/calibration.md (3)
     """
