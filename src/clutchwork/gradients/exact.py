@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 
@@ -16,9 +16,9 @@ from clutchwork.gradients.measures import Asked, Measure, measures
 from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.runs import Run, Runs
 from clutchwork.gradients.task import Found, Task
-from clutchwork.gradients.traces import are_traces, at_events, at_knots, traces, traces_of
+from clutchwork.gradients.traces import at_events, at_knots, merged, traces_of
 from clutchwork.results.gradient import NoGradient
-from clutchwork.sweeps.outputs import Integral
+from clutchwork.sweeps.outputs import AtTimes, Integral, Output
 
 Array = NDArray[np.float64]
 
@@ -66,23 +66,29 @@ class Exact:
 
     def gradient(self, x: Array) -> Found:
         """Values and derivatives at a point; NoGradient names all that do not exist."""
-        if not self._is_followed_back(x, len(self.task.labels)) and are_traces(self.task.outputs.values()):
-            return self._traces(x)
-        run, found = self._run(x, len(self.task.labels))
+        labels, outputs = self.task.labels, self.task.outputs
+        if self._is_followed_back(x, len(labels)):
+            run, found = self._run(x, len(labels))
+            return self._found(run, *self._measured(x, run, labels, found))
+        run = self.runs.forward(self.runs.point(x))
+        # of signals at instants all rows at once
+        single = {name: one for name, one in outputs.items() if not isinstance(one, AtTimes)}
+        found = measures(run.primal, single, self._asked)
+        _refuse(list(self._problems(x, run, list(single), found, outputs.values())))
+        return self._found(run, *merged(run, outputs, self._measured(x, run, list(single), found)))
+
+    def _measured(self, x: Array, run: Run, names: Sequence[str], found: Sequence[Measure]) -> tuple[Array, Array]:
+        """Values and derivatives of measures."""
         lines = [np.array([run.slope(one) for one in measure.changes]) for measure in found]
         problems = list[str]()
-        for name, one, own in zip(self.task.labels, found, lines, strict=True):
+        for name, one, own in zip(names, found, lines, strict=True):
             problems += _several(name, one, own, self._sizes(x))
         _refuse(problems)
-        return Found(np.array([one.value for one in found]), np.array([own[0] for own in lines]), self._notes(run))
+        matrix = np.array([own[0] for own in lines]).reshape(len(found), len(x))
+        return np.array([one.value for one in found]), matrix
 
-    def _traces(self, x: Array) -> Found:
-        """The same of signals at instants alone."""
-        run, outputs = self.runs.forward(self.runs.point(x)), self.task.outputs.values()
-        met = [_moving(name, time) for name, time in at_events(run, outputs)]
-        met += [_at_moving_knot(name, time) for name, time in at_knots(run, outputs)]
-        _refuse([*met, *self._not_there(x, run, max(one.times[-1] for one in traces_of(outputs)))])
-        return Found(*traces(run, outputs), self._notes(run))
+    def _found(self, run: Run, values: Array, matrix: Array) -> Found:
+        return Found(values, matrix, self._notes(run))
 
     def _notes(self, run: Run) -> tuple[str, ...]:
         found = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.events)]
@@ -118,7 +124,7 @@ class Exact:
         if not run.is_forward and together(run.primal.grazes):
             run = self.runs.forward(point)
         found = measures(run.primal, self.task.outputs, self._asked)
-        _refuse(list(self._problems(x, run, found)))
+        _refuse(list(self._problems(x, run, self.task.labels, found)))
         return run, found
 
     @staticmethod
@@ -132,8 +138,11 @@ class Exact:
         own = [one.scale if one.places or not v else 0.0 for one, v in zip(self.task.parameters, x, strict=True)]
         return np.maximum(np.abs(x), own)
 
-    def _problems(self, x: Array, run: Run, found: Sequence[Measure]) -> Iterator[str]:
-        for name, one in zip(self.task.labels, found, strict=True):
+    def _problems(
+        self, x: Array, run: Run, names: Sequence[str], found: Sequence[Measure], outputs: Iterable[Output] = ()
+    ) -> Iterator[str]:
+        """Why there is no derivative of measures, nor of those of outputs that are signals at instants."""
+        for name, one in zip(names, found, strict=True):
             if not one.changes:
                 yield f"{name} does not happen before {run.primal.t_end:g} s; take one that does, or a later end time"
             elif one.at is not None:
@@ -141,7 +150,11 @@ class Exact:
                 yield from _at_knot(name, one, run.primal)
             for time in one.kinks:
                 yield f"{name} has a kink at {time:.9g} s, where knots meet or the run begins or ends; move a knot"
-        yield from self._not_there(x, run, max((one.until for one in found), default=0.0))
+        asked = traces_of(outputs)
+        yield from (_moving(name, time) for name, time in at_events(run, asked))
+        yield from (_at_moving_knot(name, time) for name, time in at_knots(run, asked))
+        until = [*(one.until for one in found), *(one.times[-1] for one in asked)]
+        yield from self._not_there(x, run, max(until, default=0.0))
 
     def _not_there(self, x: Array, run: Run, until: float) -> Iterator[str]:
         """Why there is no derivative of anything up to a time [s]."""

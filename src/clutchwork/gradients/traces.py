@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,14 +21,17 @@ def traces_of(outputs: Iterable[Output]) -> list[AtTimes]:
     return [one for one in outputs if isinstance(one, AtTimes)]
 
 
-def are_traces(outputs: Iterable[Output]) -> bool:
-    """Whether nothing else is asked for."""
-    return all(isinstance(one, AtTimes) for one in outputs)
-
-
-def traces(run: Run, outputs: Iterable[Output]) -> tuple[Array, Array]:
-    """Values and derivatives of signals at instants, one after another, of a forward run."""
-    values, matrices = zip(*(_trace(run, one) for one in traces_of(outputs)), strict=True)
+def merged(run: Run, outputs: Mapping[str, Output], measured: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Values and derivatives of all outputs in their order, of a forward run: signals at instants and measures."""
+    values, matrices, at = list[Array](), list[Array](), 0
+    for one in outputs.values():
+        if isinstance(one, AtTimes):
+            value, matrix = _trace(run, one)
+        else:
+            value, matrix = measured[0][at : at + 1], measured[1][at : at + 1]
+            at += 1
+        values.append(value)
+        matrices.append(matrix)
     return np.concatenate(values), np.concatenate(matrices)
 
 
