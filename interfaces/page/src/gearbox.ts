@@ -39,7 +39,7 @@ class Page {
       this.choose((this.gear + step + count) % count);
       this.buttons[this.gear]!.focus();
     });
-    return element("section", { class: "panel" }, element("h2", {}, "Gear"), group);
+    return element("section", { class: "panel drag" }, element("h2", {}, "Gear"), group);
   }
 
   private inputs(): HTMLElement {
@@ -51,7 +51,7 @@ class Page {
       this.torque = value;
       this.tell();
     });
-    return element("section", { class: "panel" }, element("h2", {}, "At the input"), speed, torque);
+    return element("section", { class: "panel drag" }, element("h2", {}, "At the input"), speed, torque);
   }
 
   private choose(place: number): void {
