@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.text import columns, counted
+from clutchwork.base.text import counted
 from clutchwork.fit.followed import Followed
 from clutchwork.fit.response_picture import picture
-from clutchwork.fit.result import Parameter
+from clutchwork.fit.result import Parameter, table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -105,9 +105,5 @@ class ResponseFit:
         """A table for reading."""
         several = f"{counted(len(self.records), 'records')}, " if len(self.records) > 1 else ""
         head = f"{several}{self._samples} samples, r2 {self.r2:.6g}"
-        lines = [["parameter", "value", f"{100 * self.confidence:g} % from", "to", "unit", "start", ""]]
-        for p in self.parameters:
-            numbers = [f"{number:.5g}" for number in (p.value, p.lower, p.upper)]
-            lines.append([p.name, *numbers, p.unit, f"{p.start:.5g}", "" if p.determined else "not determined"])
-        parts = [head, columns(lines, right=(1, 2, 3, 5)), self.message, self.notes]
+        parts = [head, table(self.parameters, self.confidence), self.message, self.notes]
         return "\n\n".join(part for part in parts if part)

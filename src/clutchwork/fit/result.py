@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -50,6 +51,15 @@ class Parameter:
             self.experiment,
         ]
         return f"{self.name} is not determined: " + "; ".join(part for part in open_ends if part)
+
+
+def table(parameters: Sequence[Parameter], confidence: float) -> str:
+    """Values with their intervals, for reading."""
+    lines = [["parameter", "value", f"{100 * confidence:g} % from", "to", "unit", "start", ""]]
+    for p in parameters:
+        numbers = [f"{number:.5g}" for number in (p.value, p.lower, p.upper)]
+        lines.append([p.name, *numbers, p.unit, f"{p.start:.5g}", "" if p.determined else "not determined"])
+    return columns(lines, right=(1, 2, 3, 5))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -148,11 +158,7 @@ class FitResult(Fitted):
         unit = "N" if self.samples.translation else "N m"
         count = f"{len(self.fitted)} samples, {int(np.sum(self.equations))} of them equations"
         head = f"{type(self.law).__name__}: {count}, rms {self.rms:.3g} {unit}, r2 {self.r2:.6g}"
-        lines = [["parameter", "value", f"{100 * self.confidence:g} % from", "to", "unit", "start", ""]]
-        for p in self.parameters:
-            numbers = [f"{number:.5g}" for number in (p.value, p.lower, p.upper)]
-            lines.append([p.name, *numbers, p.unit, f"{p.start:.5g}", "" if p.determined else "not determined"])
-        parts = [head, columns(lines, right=(1, 2, 3, 5)), self.message, self.notes]
+        parts = [head, table(self.parameters, self.confidence), self.message, self.notes]
         return "\n\n".join(part for part in parts if part)
 
 
