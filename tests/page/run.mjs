@@ -13,6 +13,7 @@ const made = jobs.map((job) => {
   const run = session.run(job.times ? { times: job.times } : { steps: 1 });
   const signals = (job.signals ?? []).map((name) => [name, [...evaluated(data.signals[name].form, run)]]);
   return {
+    refusal: session.refusal(),
     status: run.status,
     reached: run.reached,
     count: run.count,

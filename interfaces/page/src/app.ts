@@ -61,15 +61,20 @@ export class App {
   /** Run and draw at once. */
   compute(settled: boolean): void {
     const begin = performance.now();
-    this.run = this.session.run({ steps: settled ? this.steps : this.stepsDragged });
+    this.renew(settled);
     this.tell(settled);
     this.work.push(performance.now() - begin);
     if (this.work.length > 5000) this.work.shift();
   }
 
   private settle(): void {
-    this.run = this.session.run({ steps: this.steps });
+    this.renew(true);
     this.tell(true);
+  }
+
+  /** Run what there is now; where these numbers make no driveline, the last run stays. */
+  private renew(settled: boolean): void {
+    if (!this.session.refusal()) this.run = this.session.run({ steps: settled ? this.steps : this.stepsDragged });
   }
 
   look(time: number): void {

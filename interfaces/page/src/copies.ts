@@ -23,8 +23,8 @@ export function asToml(session: Session): string | null {
 export function changes(session: Session): [string, Knot[] | number][] {
   const { data, knots, values } = session;
   const tables = data.tables.map((table, i): [string, Knot[]] => [table.name, knots[i]!]);
-  const numbers = data.sliders.map((slider, i): [string, number] => [slider.name, values[i]!]);
-  return [...tables, ...numbers.filter(([, value], i) => value !== data.sliders[i]!.start)];
+  const numbers = data.sliders.flatMap(({ names }, i) => (session.isTurned(i) ? names.map((name): [string, number] => [name, values[i]!]) : []));
+  return [...tables, ...numbers];
 }
 
 function put(model: Plain, path: readonly (string | number)[], value: Plain): void {

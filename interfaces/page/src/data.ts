@@ -25,13 +25,23 @@ export interface TableData {
 
 export interface SliderData {
   name: string;
+  names: string[]; // numbers that it turns together
   unit: string;
   doc: string;
   start: number;
+  starts: number[]; // where these stand until it is turned; one where all are the same
   values: number[];
   places: number[];
   direct: boolean;
   words?: string;
+}
+
+/** Two sliders that go together: words of all pairs of their values, and why some of these have no driveline. */
+export interface PairData {
+  sliders: [number, number];
+  places: number[];
+  words: string;
+  refused: Record<string, string>;
 }
 
 export interface ContactData {
@@ -76,6 +86,7 @@ export interface PageData {
   places: Places;
   tables: TableData[];
   sliders: SliderData[];
+  pairs: PairData[];
   signals: Record<string, { unit: string; form: Form }>;
   panels: PanelData[];
   loops: LoopData[];

@@ -79,10 +79,12 @@ export class Verdict implements Part {
   }
 
   update(run: Result, settled: boolean): void {
-    const { data, first } = this.app;
+    const { data, first, session } = this.app;
+    const why = session.refusal();
+    const refused = why && `There is no driveline with these numbers: ${why}. The curves are those before.`;
     const open = unlocked(data, first, run);
     const never = open.length ? `${open.join(" and ")} never ${open.length > 1 ? "lock" : "locks"}.` : "";
-    const said = [ending(data, run), never].filter(Boolean).join(" ");
+    const said = [refused, ending(data, run), never].filter(Boolean).join(" ");
     if (!said && this.root.classList.contains("bad")) this.root.textContent = "";
     this.root.classList.toggle("bad", said !== "");
     if (said) write(this.root, said);

@@ -1,7 +1,7 @@
 // A driveline that is changed and run again: knots and numbers go into the bytes of its System.
 import { fromBase64 } from "./bytes";
 import type { Core, Output, Result } from "./core";
-import type { Knot, PageData, SliderData } from "./data";
+import type { Knot, PageData, PairData } from "./data";
 import { written } from "./tables";
 
 export class Session {
@@ -9,6 +9,7 @@ export class Session {
   readonly values: number[];
   private readonly base: Uint8Array;
   private readonly words: (BigUint64Array | null)[];
+  private readonly pairWords: BigUint64Array[];
 
   constructor(
     readonly data: PageData,
@@ -18,7 +19,8 @@ export class Session {
     this.base = fromBase64(data.system);
     this.knots = data.tables.map((table) => copied(table.points));
     this.values = data.sliders.map((slider) => slider.start);
-    this.words = data.sliders.map(({ words }) => (words ? new BigUint64Array(fromBase64(words).buffer) : null));
+    this.words = data.sliders.map(({ words }) => (words ? unpackedWords(words) : null));
+    this.pairWords = data.pairs.map(({ words }) => unpackedWords(words));
   }
 
   reset(): void {
@@ -30,9 +32,8 @@ export class Session {
   bytes(): Uint8Array {
     const made = this.base.slice();
     const view = new DataView(made.buffer);
-    this.data.sliders.forEach((slider, i) => {
-      if (this.values[i] !== slider.start) this.turn(view, slider, this.words[i] ?? null, this.values[i]!);
-    });
+    this.data.sliders.forEach((_, i) => this.isTurned(i) && this.turn(view, i));
+    this.data.pairs.forEach((pair, i) => pair.sliders.some((one) => this.isTurned(one)) && put(view, pair.places, this.pairWords[i]!, this.line(pair)));
     this.data.tables.forEach((table, i) => {
       if (!written(view, this.data.places, table, this.knots[i]!)) throw new Error(`${table.name} has too many knots`);
     });
@@ -45,15 +46,39 @@ export class Session {
     return made;
   }
 
-  private turn(view: DataView, slider: SliderData, words: BigUint64Array | null, value: number): void {
+  /** Why there is no driveline with these numbers; empty where there is one. */
+  refusal(): string {
+    return this.data.pairs.map((pair) => pair.refused[this.line(pair)] ?? "").find((why) => why) ?? "";
+  }
+
+  isTurned(i: number): boolean {
+    return this.values[i] !== this.data.sliders[i]!.start;
+  }
+
+  private turn(view: DataView, i: number): void {
+    const slider = this.data.sliders[i]!;
     if (slider.direct) {
-      for (const place of slider.places) view.setFloat64(8 * place, value, true);
+      for (const place of slider.places) view.setFloat64(8 * place, this.values[i]!, true);
       return;
     }
-    const line = slider.values.indexOf(value);
-    if (line < 0 || !words) return;
-    slider.places.forEach((place, i) => view.setBigUint64(8 * place, words[line * slider.places.length + i]!, true));
+    const words = this.words[i];
+    if (words) put(view, slider.places, words, slider.values.indexOf(this.values[i]!));
   }
+
+  private line({ sliders: [first, second] }: PairData): number {
+    const { sliders } = this.data;
+    const at = (i: number): number => sliders[i]!.values.indexOf(this.values[i]!);
+    return at(first) * sliders[second]!.values.length + at(second);
+  }
+}
+
+function put(view: DataView, places: readonly number[], words: BigUint64Array, line: number): void {
+  if (line < 0) return;
+  places.forEach((place, i) => view.setBigUint64(8 * place, words[line * places.length + i]!, true));
+}
+
+function unpackedWords(text: string): BigUint64Array {
+  return new BigUint64Array(fromBase64(text).buffer);
 }
 
 export function copied(knots: readonly Knot[]): Knot[] {

@@ -20,7 +20,7 @@ export class Sliders implements Part {
   update(): void {
     this.app.data.sliders.forEach((slider, i) => {
       const value = this.app.session.values[i]!;
-      const text = quantity(value, slider.unit);
+      const text = told(slider, value);
       this.inputs[i]!.value = `${position(slider, value)}`;
       this.inputs[i]!.setAttribute("aria-valuetext", text);
       this.outputs[i]!.textContent = text;
@@ -42,8 +42,18 @@ export class Sliders implements Part {
     this.inputs[i] = input;
     this.outputs[i] = output;
     const ends = element("span", { class: "ends" }, quantity(slider.values[0]!, slider.unit), element("span", {}, quantity(slider.values.at(-1)!, slider.unit)));
-    return element("div", { class: "slider" }, element("label", { for: `slider-${i}`, title: slider.doc }, slider.name), output, input, ends);
+    return element("div", { class: "slider" }, element("label", { for: `slider-${i}`, title: title(slider) }, slider.name), output, input, ends);
   }
+}
+
+/** A value in words; numbers with different starts have their own until they are turned. */
+export function told({ start, starts, unit }: SliderData, value: number): string {
+  return starts.length > 1 && value === start ? `${quantity(starts[0]!, unit)} to ${quantity(starts.at(-1)!, unit)}, each its own` : quantity(value, unit);
+}
+
+function title({ doc, names, starts }: SliderData): string {
+  if (names.length === 1) return doc;
+  return `${doc}; of ${names.join(", ")}${starts.length > 1 ? ", which start from different values; turned, all take this one" : ""}`;
 }
 
 /** The value at a place of a slider; the start stands exactly where it is nearest. */

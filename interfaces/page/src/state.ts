@@ -25,7 +25,7 @@ export function take(session: Session, given: Partial<State>): boolean {
   });
   sliders.forEach((slider, i) => {
     const value = given.values?.[slider.name];
-    if (value !== undefined) session.values[i] = slider.direct ? value : nearest(slider.values, value);
+    if (value !== undefined) session.values[i] = slider.direct || value === slider.start ? value : nearest(slider.values, value);
   });
   return JSON.stringify(stateOf(session)) !== before;
 }

@@ -6,7 +6,7 @@ import type { ContactData, SliderData, TableData } from "../src/data";
 import { number, quantity } from "../src/format";
 import { evaluated, slope } from "../src/forms";
 import { strokes } from "../src/measures";
-import { position, valueAt } from "../src/sliders";
+import { position, told, valueAt } from "../src/sliders";
 import { added, limits, moved, pieces, removed, valueAt as tableAt, written } from "../src/tables";
 
 const TABLE: TableData = { name: "p", unit: "Pa", points: [[0, 0], [1, 2], [2, 2]], lower: null, upper: null, inputs: [{ number: 1, first: 2, room: 5 }] };
@@ -68,10 +68,16 @@ test("states of a contact over time", () => {
 });
 
 test("a slider has its start exactly", () => {
-  const slider: SliderData = { name: "g", unit: "", doc: "", start: 0.1 + 0.2, values: [0.15, 0.6], places: [1], direct: true };
+  const slider: SliderData = { name: "g", names: ["g"], unit: "", doc: "", start: 0.1 + 0.2, starts: [0.1 + 0.2], values: [0.15, 0.6], places: [1], direct: true };
   assert.equal(valueAt(slider, position(slider, slider.start)), slider.start);
   assert.equal(valueAt(slider, 0), 0.15);
   assert.equal(valueAt(slider, 400), 0.6);
+});
+
+test("numbers with different starts keep their own until they are turned", () => {
+  const slider: SliderData = { name: "*.g", names: ["a.g", "b.g"], unit: "Pa", doc: "", start: 3e5, starts: [2e5, 4e5], values: [1e5, 5e5], places: [1, 2], direct: true };
+  assert.equal(told(slider, slider.start), "2 bar to 4 bar, each its own");
+  assert.equal(told(slider, 3.01e5), "3.01 bar");
 });
 
 test("numbers as people read them", () => {

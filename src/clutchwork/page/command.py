@@ -41,7 +41,8 @@ def add_command(subparsers: Any) -> None:
         "--slider",
         metavar="NAME[=LOW:HIGH]",
         action="append",
-        help="number that a slider turns, such as c1.gain or 'c1.gain=2e-4:8e-4'; default: gains of what is dragged",
+        help="number that a slider turns, such as c1.gain or 'c1.gain=2e-4:8e-4', or several together, 'F*.gain' or"
+        " 'F1.gain, F2.gain'; default: gains of what is dragged",
     )
     page.add_argument(
         "--show",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import ModelError
@@ -24,9 +24,19 @@ def paths(system: System, dragged: list[Dragged], turned: list[Slider]) -> dict[
         beside = [(x, y + 1.0) for x, y in one.points]
         found[one.name] = _ends(system, {one.name: Table(beside)}, "points")
     for other in turned:
-        value = next(value for value in other.values.tolist() if value != other.start)
-        found[other.name] = [list(path) for path in _differ(system.model, _changed(system, {other.name: value}))]
+        for name, start in zip(other.names, other.starts, strict=True):
+            values = (value for value in other.values.tolist() if value != start)
+            found[name] = _moved(system, name, values)
     return found
+
+
+def _moved(system: System, name: str, values: Iterable[float]) -> list[list[str | int]]:
+    """Paths at which the first value that is not refused is put."""
+    for value in values:
+        places = [list(path) for path in _differ(system.model, _changed(system, {name: value}))]
+        if places:
+            return places
+    return []
 
 
 def _ends(system: System, changes: dict[str, Any], field: str) -> list[list[str | int]]:

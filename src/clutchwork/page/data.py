@@ -16,8 +16,9 @@ from clutchwork.page.knots import Dragged, chosen, refuse_controllers, roomy, wi
 from clutchwork.page.levers import levers
 from clutchwork.page.live import live
 from clutchwork.page.live import plain as plain_live
+from clutchwork.page.pairs import paired
 from clutchwork.page.signals import listed, loops, output_of, panels, plain_panels
-from clutchwork.page.sliders import sliders
+from clutchwork.page.sliders import Bytes, sliders
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Slip
 from clutchwork.sweeps.words import Layout
@@ -46,14 +47,15 @@ def data_of(system: System, t_end: float, options: Options, wanted: Wanted) -> d
     made, dragged = with_tables(system, chosen(system, wanted.drag, t_end))
     spacious, room = roomy(made, dragged)
     names = [one.name for one in dragged]
-    turned = sliders(made, wanted.sliders, names, lambda one: roomy(one, dragged)[0].to_bytes())
+    bytes_of = _bytes_of(dragged)
+    turned, pairs = paired(made, sliders(made, wanted.sliders, names, bytes_of), bytes_of)
     wires, known = wiring(spacious), channels(spacious, options.angles, options.work)
     output = output_of(spacious, wires)
     shown = panels(known, wires, wanted.show, output)
-    pairs = loops(known, wanted.show)
+    over = loops(known, wanted.show)
     picture = _live(spacious, known, wires)
     names += [name for panel in shown for name in panel.names]
-    names += [name for pair in pairs for name in pair]
+    names += [name for pair in over for name in pair]
     names += [name for name in picture["signals"] if name in known] if picture else []
     return {
         "format": FORMAT,
@@ -67,9 +69,10 @@ def data_of(system: System, t_end: float, options: Options, wanted: Wanted) -> d
         "places": _places(spacious),
         "tables": [_table(one, spacious, room) for one in dragged],
         "sliders": [one.plain() for one in turned],
+        "pairs": [one.plain() for one in pairs],
         "signals": listed(known, [name for name in names if name in known or name.endswith(".jerk")]),
         "panels": plain_panels(shown),
-        "loops": [{"y": up, "x": across} for up, across in pairs],
+        "loops": [{"y": up, "x": across} for up, across in over],
         "contacts": list(_contacts(wires, known)),
         "components": [part.name for part in (*wires.elements, *wires.contacts)],
         "output": output,
@@ -81,6 +84,11 @@ def data_of(system: System, t_end: float, options: Options, wanted: Wanted) -> d
         "model": _model(made),
         "paths": paths(made, dragged, turned),
     }
+
+
+def _bytes_of(dragged: list[Dragged]) -> Bytes:
+    """What the page has of a System."""
+    return lambda one: roomy(one, dragged)[0].to_bytes()
 
 
 def _status(words: tuple[str, str, str], options: Options) -> list[str]:

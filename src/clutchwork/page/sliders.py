@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import combinations
 from math import inf, isfinite
 from numbers import Real
@@ -15,38 +16,62 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError
 from clutchwork.declare.schema import Spec
-from clutchwork.model.changes import Target, field_of, in_si, named, target, targets_of, unit_of
+from clutchwork.model.changes import Target, all_names, field_of, in_si, named, target, targets_of, unit_of
+from clutchwork.results.selection import meant
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
 STOPS, MOST_USUAL = 41, 3
+Numbers = NDArray[np.float64]
 Words = NDArray[np.uint64]
 Bytes = Callable[[Any], bytes]
 
 
 @dataclass(frozen=True, eq=False)
 class Slider:
-    """A number, its values, and the words of each of them."""
+    """A number, or several that are turned together, its values, and the words of each of them."""
 
-    name: str
+    name: str  # as it was asked for
+    names: tuple[str, ...]
     unit: str
     doc: str
-    start: float
-    values: NDArray[np.float64]
+    starts: tuple[float, ...]  # of each name
+    ends: tuple[float, float]
+    values: Numbers
     places: NDArray[np.int64]  # words that change
     words: Words  # of each value
     direct: bool  # every word is the number itself, so that it may have any value between
 
+    @property
+    def start(self) -> float:
+        """Where it stands at first; numbers with different starts keep them until the slider is turned."""
+        return start_of(self.starts)
+
+    def changes(self, value: float) -> dict[str, float]:
+        """What `System.changed` takes for a value."""
+        return {} if value == self.start else dict.fromkeys(self.names, value)
+
     def plain(self) -> dict[str, Any]:
         """As a page has it."""
-        made: dict[str, Any] = {"name": self.name, "unit": self.unit, "doc": self.doc, "start": self.start}
-        made |= {"values": self.values.tolist(), "places": self.places.tolist(), "direct": self.direct}
-        return made if self.direct else made | {"words": b64encode(self.words.astype("<u8").tobytes()).decode()}
+        made: dict[str, Any] = {"name": self.name, "names": list(self.names), "unit": self.unit, "doc": self.doc}
+        made |= {"start": self.start, "starts": sorted(set(self.starts)), "values": self.values.tolist()}
+        made |= {"places": self.places.tolist(), "direct": self.direct}
+        return made if self.direct else made | {"words": packed(self.words)}
+
+
+def packed(words: Words) -> str:
+    """Words as letters."""
+    return b64encode(words.astype("<u8").tobytes()).decode()
+
+
+def start_of(starts: Sequence[float]) -> float:
+    """The start of all numbers of a slider, or the middle of what they start from."""
+    return starts[0] if len(set(starts)) == 1 else sum(starts) / len(starts)
 
 
 def sliders(system: System, wanted: Sequence[str] | None, dragged: Sequence[str], bytes_of: Bytes) -> list[Slider]:
-    """The sliders of a page; UseError names all that cannot be one.
+    """The sliders of a page, each as if it were alone; UseError names all that cannot be one.
 
     Parameters: dragged, names of the tables; bytes_of, what the page has of a System.
     """
@@ -58,7 +83,7 @@ def sliders(system: System, wanted: Sequence[str] | None, dragged: Sequence[str]
             found.append(_slider(system, one, bytes_of))
         except ValueError as error:
             problems.append(f"slider: {error}")
-    problems += _shared(found)
+    problems += _twice(found)
     if problems:
         raise UseError("page", problems)
     return found
@@ -78,51 +103,95 @@ def usual(system: System, dragged: Sequence[str], bytes_of: Bytes) -> list[Slide
             one = _slider(system, name, bytes_of)
         except ValueError:
             continue
-        if not _shared([*found, one]):
+        if not any(shared(one, other) for other in found):
             found.append(one)
     return found
 
 
+def shared(one: Slider, other: Slider) -> bool:
+    """Whether two sliders change the same words."""
+    return bool(set(one.places.tolist()) & set(other.places.tolist()))
+
+
 def _slider(system: System, asked: str, bytes_of: Bytes) -> Slider:
-    name, _, span = asked.partition("=")
-    name = name.strip()
-    aim = _aim(system, name)
+    name, _, span = (part.strip() for part in asked.partition("="))
+    names = _names(system, name)
+    aims = [_aim(system, one) for one in names]
+    unit = _unit(name, dict(zip(names, map(unit_of, aims), strict=True)))
+    starts, declared = zip(*(_number_at(one, aim) for one, aim in zip(names, aims, strict=True)), strict=True)
+    low, high = _span(aims[0], name, span, starts, declared)
+    start = start_of(starts)
+    values = np.unique(np.append(np.linspace(low, high, STOPS), start if low <= start <= high else low))
+    places, words = np.zeros(0, dtype=np.int64), np.zeros((len(values), 0), dtype=np.uint64)
+    made = Slider(name, names, unit, declared[0].doc, starts, (low, high), values, places, words, False)
+    made = _with_words(system, made, bytes_of)
+    if not len(made.places):
+        raise ValueError(f"{name} changes nothing in this driveline between {low:g} and {high:g} {unit}")
+    return made if span else replace(made, ends=(float(made.values[0]), float(made.values[-1])))
+
+
+def _names(system: System, name: str) -> tuple[str, ...]:
+    """Numbers that a name, a wildcard, or several of them with commas stand for."""
+    if system.source is None:
+        raise ValueError("the driveline of this System is not known; make the page from a model")
+    known = list(all_names(system.source))
+    parts = [name] if name in known else [part.strip() for part in name.split(",") if part.strip()]
+    found = list[str]()
+    for part in parts or [name]:
+        wild = part not in known and ("*" in part or "?" in part)
+        fitting = [one for one in meant(part, known) if _turns(system, one)] if wild else [part]
+        if not fitting:
+            raise ValueError(f"{part!r} fits no number of this driveline; clutchwork check MODEL --names lists them")
+        found += fitting
+    return tuple(dict.fromkeys(found))
+
+
+def _turns(system: System, name: str) -> bool:
+    try:
+        _number_at(name, _aim(system, name))
+    except ValueError:
+        return False
+    return True
+
+
+def _number_at(name: str, aim: Target) -> tuple[float, Spec]:
+    """The value of a number, and what is declared of it."""
     value, spec = field_of(aim)
     if spec.flag or spec.choices or spec.whole or spec.fixed or isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError(f"{name} is {value!r}, not a number that a slider can turn")
-    start = float(value)
-    low, high = _span(aim, name, span, start, spec)
-    values = np.unique(np.append(np.linspace(low, high, STOPS), start if low <= start <= high else low))
-    places, words, kept = _words(system, name, values, bytes_of)
-    if not len(places):
-        raise ValueError(f"{name} changes nothing in this driveline between {low:g} and {high:g} {unit_of(aim)}")
-    direct = bool(np.all(words.view(np.float64) == kept[:, None]))
-    return Slider(name, unit_of(aim), spec.doc, start, kept, places, words, direct)
+    return float(value), spec
+
+
+def _unit(name: str, units: dict[str, str]) -> str:
+    """The unit that all numbers of a slider have."""
+    if len(set(units.values())) > 1:
+        told = ", ".join(f"{one} in {unit or '1'}" for one, unit in units.items())
+        raise ValueError(f"{name} stands for numbers of different units, {told}; give a slider for each unit")
+    return next(iter(units.values()))
 
 
 def _aim(system: System, name: str) -> Target:
-    if system.source is None:
-        raise ValueError("the driveline of this System is not known; make the page from a model")
-    aim = target(named(system.source), name)
+    source: Any = system.source
+    aim = target(named(source), name)
     if aim is None:
-        _, (problem, *_) = targets_of(system.source, [name])
+        _, (problem, *_) = targets_of(source, [name])
         raise ValueError(str(problem))
     return aim
 
 
-def _span(aim: Target, name: str, text: str, start: float, spec: Spec) -> tuple[float, float]:
-    """Ends of a slider: those that are given, or half and twice the value within what is allowed."""
+def _span(aim: Target, name: str, text: str, starts: Sequence[float], declared: Sequence[Spec]) -> tuple[float, float]:
+    """Ends of a slider: those that are given, or half and twice the values within what is allowed."""
     if text:
         ends = [_number(aim, part) for part in text.split(":")]
         if len(ends) != 2 or not ends[0] < ends[1] or not all(map(isfinite, ends)):
             raise ValueError(f"{name}: {text!r} are not two ends; write {name}=2e-4:8e-4, the lower end first")
         return ends[0], ends[1]
-    if not start:
+    if not any(starts):
         raise ValueError(f"{name} is 0: give the ends of its slider, {name}=0:10")
-    low, high = sorted((0.5 * start, 2.0 * start))
-    least = max(-inf if bound is None else bound for bound in (spec.at_least, spec.above))
-    most = min(inf if bound is None else bound for bound in (spec.at_most, spec.below))
-    return max(low, least), min(high, most)
+    reach = [factor * start for start in starts for factor in (0.5, 2.0)]
+    least = [-inf if bound is None else bound for spec in declared for bound in (spec.at_least, spec.above)]
+    most = [inf if bound is None else bound for spec in declared for bound in (spec.at_most, spec.below)]
+    return max(min(reach), *least), min(max(reach), *most)
 
 
 def _number(aim: Target, text: str) -> float:
@@ -132,16 +201,14 @@ def _number(aim: Target, text: str) -> float:
         return float(in_si(aim, text.strip()))
 
 
-def _words(
-    system: System, name: str, values: Any, bytes_of: Bytes
-) -> tuple[NDArray[np.int64], Words, NDArray[np.float64]]:
+def _with_words(system: System, made: Slider, bytes_of: Bytes) -> Slider:
     """Words that any value changes, and what each value makes of them; values that are refused are left out."""
     lines, kept = list[Words](), list[float]()
     refused = ""
     own = np.frombuffer(bytes_of(system), dtype=np.uint64)
-    for value in values.tolist():
+    for value in made.values.tolist():
         try:
-            data = bytes_of(system.changed({name: value}))
+            data = bytes_of(system.changed(made.changes(value)))
         except ModelError as error:
             refused = str(error)
             continue
@@ -149,16 +216,20 @@ def _words(
             lines.append(np.frombuffer(data, dtype=np.uint64))
             kept.append(value)
     if len(kept) < 2:
-        raise ValueError(f"{name} cannot be turned: {refused or 'its values make other drivelines'}")
-    whole = np.array(lines)
+        raise ValueError(f"{made.name} cannot be turned: {refused or 'its values make other drivelines'}")
+    whole, values = np.array(lines), np.array(kept)
     places = np.flatnonzero((whole != own).any(axis=0))
-    return places, np.ascontiguousarray(whole[:, places]), np.array(kept)
+    words = np.ascontiguousarray(whole[:, places])
+    turned = values != made.start
+    direct = bool(np.all(words[turned].view(np.float64) == values[turned, None]))
+    return replace(made, values=values, places=places, words=words, direct=direct)
 
 
-def _shared(found: Sequence[Slider]) -> list[str]:
-    """Sliders whose words are the same, of which only one can be turned."""
+def _twice(found: Sequence[Slider]) -> list[str]:
+    """Numbers that two sliders would turn."""
     return [
-        f"slider: {one.name} and {other.name} change the same numbers of the driveline; give one of them"
+        f"slider: {name} is turned by {one.name!r} and {other.name!r}; leave it to one of them"
         for one, other in combinations(found, 2)
-        if set(one.places.tolist()) & set(other.places.tolist())
+        for name in one.names
+        if name in other.names
     ]

@@ -22,6 +22,7 @@ def widget_of(run: Trajectory, drag: Any, sliders: Any, show: Any) -> Any:
 def _made(run: Trajectory, data: dict[str, Any]) -> Any:
     anywidget, traitlets = need("anywidget", "notebook", "run.widget"), need("traitlets", "notebook", "run.widget")
     built(WIDGET)
+    turned = data["sliders"]
     from clutchwork.signals.table import Table
 
     class DrivelineWidget(anywidget.AnyWidget):  # type: ignore[misc, name-defined]
@@ -38,7 +39,8 @@ def _made(run: Trajectory, data: dict[str, Any]) -> Any:
         def system(self) -> Any:
             """The driveline as it is now."""
             tables = {name: Table([tuple(knot) for knot in knots]) for name, knots in self.knots.items()}
-            return run.system.changed({**tables, **self.values})
+            values = {name: value for one in turned for name, value in _values(one, self.values[one["name"]])}
+            return run.system.changed({**tables, **values})
 
     return DrivelineWidget(
         page=json.dumps(data, allow_nan=False, default=list),
@@ -47,3 +49,8 @@ def _made(run: Trajectory, data: dict[str, Any]) -> Any:
         knots={one["name"]: one["points"] for one in data["tables"]},
         values={one["name"]: one["start"] for one in data["sliders"]},
     )
+
+
+def _values(slider: dict[str, Any], value: float) -> list[tuple[str, float]]:
+    """Numbers that a slider gives a value; those of one that was not turned keep their own."""
+    return [(name, value) for name in slider["names"]] if value != slider["start"] else []
