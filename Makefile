@@ -147,7 +147,8 @@ $(BITS): $(STAMPS)/wasm $(CORE_SOURCES) tools/build_wasm.py tests/wasm/native.cp
 	@$(BIN)/python tools/build_wasm.py --native $@
 
 # repaired to a manylinux tag on Linux, then tried in an environment of its own
-wheel: $(STAMPS)/wheel $(WASM)
+# what it holds of pages needs npm here
+wheel: $(STAMPS)/wheel $(WASM) build/page/stamp
 	@rm -rf build/wheel && mkdir -p build/wheel dist
 	@echo "building the wheel"
 	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH" \

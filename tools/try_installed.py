@@ -1,4 +1,4 @@
-"""Run the first program of the README, `clutchwork demo` and a new model with the installed package.
+"""Run the first program of the README, `clutchwork demo`, a new model and its page with the installed package.
 
 Usage: PYTHON try_installed.py, where PYTHON has the package, not editable, and matplotlib. All run in an empty folder,
 with a PATH that holds no compiler, and see no checkout.
@@ -18,7 +18,22 @@ ROOT = Path(__file__).resolve().parent.parent
 FIRST = re.compile(r"<!-- the first program -->\n```python\n(.*?)```", re.DOTALL)
 WHERE = "import clutchwork; print(clutchwork.__file__)"
 CATALOGUE = "import clutchwork as cw; print(len(cw.catalogue()), cw.Gearbox.load('zf-8hp70').ratios)"
-WRITTEN = ("engagement.png", "out/demo/shift.png", "out/demo/trajectory.csv", "out/demo/events.csv")
+# what pages and widgets are made of, which node bundles and only wheels have
+STATIC = """
+from clutchwork.page import static
+import clutchwork as cw
+for name in (static.CORE, static.SCRIPT, static.GEARBOX, static.WIDGET, static.STYLE):
+    print(name, len(static.built(name)))
+print(cw.Gearbox.load("zf-8hp70").page("gearbox.html"))
+"""
+WRITTEN = (
+    "shift.html",
+    "gearbox.html",
+    "engagement.png",
+    "out/demo/shift.png",
+    "out/demo/trajectory.csv",
+    "out/demo/events.csv",
+)
 
 
 def first_program(readme: str) -> str:
@@ -64,6 +79,8 @@ def main() -> None:
         run(folder, command, "demo")
         run(folder, command, "new")
         run(folder, command, "run", "model.toml")
+        run(folder, command, "page", "model.toml", "--out", "shift.html")
+        run(folder, sys.executable, "-c", STATIC)
         missing = [file for file in WRITTEN if not (folder / file).is_file()]
         if missing:
             raise SystemExit(f"not written: {', '.join(missing)}")

@@ -73,6 +73,19 @@ def test_what_is_tried_is_the_program_of_the_readme() -> None:
         try_installed.first_program("# clutchwork")
 
 
+def test_a_wheel_holds_what_pages_are_made_of() -> None:
+    from clutchwork.page import static
+
+    # git ignores them; a wheel has them by this line, and the program that tries it makes pages of both kinds
+    assert f"{static.FOLDER.relative_to(ROOT).as_posix()}/*" in PROJECT["tool"]["scikit-build"]["sdist"]["include"]
+    assert {"shift.html", "gearbox.html"} <= set(try_installed.WRITTEN)
+    assert all(f"static.{name}" in try_installed.STATIC for name in ("CORE", "SCRIPT", "GEARBOX", "WIDGET", "STYLE"))
+    # `make wheel` builds them first
+    rule = re.search(r"^wheel: (.*)$", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
+    assert rule is not None
+    assert {"$(WASM)", "build/page/stamp"} <= set(rule[1].split())
+
+
 def test_it_is_tried_without_compiler_and_without_the_checkout(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(ROOT / "src"))
     used = try_installed.environment()

@@ -14,7 +14,10 @@ from clutchwork.page import static
 from support.project import ROOT
 
 ENGINE = ROOT / "build" / "page" / "node.mjs"
-RUNNER = Path(__file__).with_name("run.mjs")
+HERE = Path(__file__).parent
+RUNNER = HERE / "run.mjs"
+MODULES = ROOT / "interfaces" / "page"
+BROWSERS = {"chromium": ("chromium", "chromium-browser", "google-chrome"), "firefox": ("firefox", "firefox-esr")}
 
 
 @pytest.fixture(scope="session")
@@ -47,5 +50,23 @@ def engine(node: str, tmp_path_factory: pytest.TempPathFactory) -> Any:
         assert done.returncode == 0, done.stderr[-2000:]
         made: list[dict[str, Any]] = json.loads(done.stdout)
         return made
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def browse(node: str) -> Any:
+    """A function of (program here, browser, what it is given) -> what it printed, of JSON."""
+
+    def run(program: str, browser: str, *given: Any) -> Any:
+        found = next(filter(None, map(shutil.which, BROWSERS[browser])), None)
+        if found is None:
+            pytest.skip(f"no browser: none of {', '.join(BROWSERS[browser])} is installed")
+        if not (MODULES / "node_modules" / "puppeteer-core").is_dir():
+            pytest.skip("puppeteer-core is missing: make page")
+        command = [node, str(HERE / program), str(MODULES), found, *map(str, given)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=900)
+        assert done.returncode == 0, done.stderr[-2000:]
+        return json.loads(done.stdout)
 
     return run

@@ -1,14 +1,16 @@
-"""The page in a notebook: what Python reads back is what is run."""
+"""The page in a notebook: what Python reads back is what is run, in a browser too."""
 
 from __future__ import annotations
 
 import json
+import re
+from base64 import b64encode
 
 import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.page.static import missing
+from clutchwork.page.static import WIDGET, built, missing
 
 pytest.importorskip("anywidget")
 pytestmark = pytest.mark.skipif(bool(missing()), reason="make wasm page was not run here")
@@ -49,3 +51,61 @@ def test_wrong_names_are_explained():
         run().widget(drag=3)
     with pytest.raises(cw.ClutchworkError, match="did you mean"):
         run().widget(drag="c1.presure")
+
+
+@pytest.fixture(scope="module")
+def shown(browse, tmp_path_factory):
+    """What a browser made of two widgets on one page."""
+    folder = tmp_path_factory.mktemp("widget")
+    widget = run().widget(drag="c1.pressure", sliders=["c1.gain"])
+    traits = {name: getattr(widget, name) for name in ("page", "style", "knots", "values")}
+    (folder / "traits.json").write_text(
+        json.dumps({**traits, "core": b64encode(widget.core).decode()}), encoding="utf-8"
+    )
+    (folder / "widget.js").write_bytes(built(WIDGET))
+    return browse("widget.mjs", "chromium", folder)
+
+
+def test_two_widgets_work_beside_each_other(shown):
+    assert (shown["errors"], shown["asked"]) == ([], [])
+    start, dragged, typed = shown["start"], shown["dragged"], shown["typed"]
+    assert dragged[0]["knots"] != start[0]["knots"] != typed[0]["knots"] != dragged[0]["knots"]
+    assert dragged[0]["picture"] != start[0]["picture"]
+    assert dragged[0]["saves"] > start[0]["saves"]
+    # the other one is as it was
+    assert typed[1] == start[1]
+
+
+def test_the_knots_that_python_reads_are_those_that_were_dragged(shown):
+    knots = shown["dragged"][0]["knots"]["c1.pressure"]
+    start = shown["start"][0]["knots"]["c1.pressure"]
+    # 20 px to the right and 30 px up: later and higher, and no other knot moved
+    assert knots[1][0] > start[1][0]
+    assert knots[1][1] > start[1][1]
+    assert [knots[0], *knots[2:]] == [start[0], *start[2:]]
+
+
+def test_what_python_sets_is_run_and_shown(shown):
+    before, after = shown["typed"][1], shown["received"][1]
+    assert after["knots"]["c1.pressure"] == [[0.0, 0.0], [0.2, 1e5], [2.5, 1e5]]
+    assert after["picture"] != before["picture"]
+    # half of the pressure locks it after 16 N m s / 5 N m + 0.1 s, which this run does not see
+    assert "c1 never locks" in after["label"]
+
+
+def test_each_widget_has_the_theme_around_it(shown):
+    def light(one):
+        return sum(map(int, re.findall(r"\d+", one["ground"])[:3])) > sum(map(int, re.findall(r"\d+", one["text"])[:3]))
+
+    assert [light(one) for one in shown["start"]] == [True, False]
+    assert [light(one) for one in shown["dark"]] == [False, False]
+    assert shown["dark"][0]["picture"] != shown["received"][0]["picture"]
+    # a notebook that says nothing: what the reader prefers
+    assert [light(one) for one in shown["unsaid"]] == [True, True]
+    assert [light(one) for one in shown["preferred"]] == [False, False]
+    assert shown["unsaid"][1]["picture"] != shown["preferred"][1]["picture"]
+
+
+def test_a_widget_that_is_taken_away_hears_nothing_and_may_come_back(shown):
+    assert shown["listeners"] == [[0, 0], [2, 1]]
+    assert shown["again"] == 3

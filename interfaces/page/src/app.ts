@@ -2,6 +2,7 @@
 import type { Result } from "./core";
 import type { PageData } from "./data";
 import type { Session } from "./session";
+import { Palette } from "./theme";
 
 /** A part of the page; each is told what changed. */
 export interface Part {
@@ -11,6 +12,8 @@ export interface Part {
   at?(time: number): void;
   /** Colours changed. */
   recolour?(): void;
+  /** The page is taken away. */
+  end?(): void;
 }
 
 // rows that a run should have: enough for a curve; while something is dragged half as many, for they are drawn each time
@@ -28,9 +31,17 @@ export class App {
   private readonly steps: number;
   private readonly stepsDragged: number;
   private waiting = 0;
+  private ended = false;
   private settling: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(readonly session: Session) {
+  readonly palette: Palette;
+
+  /** For what is in an element, whose style has its colours. */
+  constructor(
+    readonly root: HTMLElement,
+    readonly session: Session,
+  ) {
+    this.palette = new Palette(root);
     const bare = session.run({ steps: 1 });
     const perStep = (rows: number): number => Math.min(Math.max(Math.ceil(rows / Math.max(bare.steps, 1)), 1), 8);
     this.steps = perStep(ROWS);
@@ -49,7 +60,7 @@ export class App {
 
   /** Something moved: run and draw before the next picture, once for all that moved until then. */
   changed(): void {
-    if (this.waiting) return;
+    if (this.waiting || this.ended) return;
     this.waiting = requestAnimationFrame(() => {
       this.waiting = 0;
       this.compute(false);
@@ -82,8 +93,18 @@ export class App {
     for (const part of this.parts) part.at?.(this.time);
   }
 
+  /** The style has other colours now. */
   recolour(): void {
+    this.palette.forget();
     for (const part of this.parts) part.recolour?.();
+  }
+
+  /** The page is taken away: nothing runs any more. */
+  end(): void {
+    this.ended = true;
+    cancelAnimationFrame(this.waiting);
+    clearTimeout(this.settling);
+    for (const part of this.parts) part.end?.();
   }
 
   /** Row of the present run at the time that is shown: the last one that is not later. */

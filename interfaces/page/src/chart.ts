@@ -1,27 +1,23 @@
 // One panel of curves: uPlot, with the curves of the start behind them, the cursor, and what was not reached greyed.
-import uPlot from "uplot";
+import type uPlot from "uplot";
 import type { App, Part } from "./app";
 import type { Result } from "./core";
 import type { PanelData } from "./data";
-import { colour, curveColour, element, watched, write } from "./dom";
+import { element, whileSeen, write } from "./dom";
 import { number, shownUnit } from "./format";
 import { evaluated } from "./forms";
-
-const HEIGHT = 190;
-const SYNC = 8;
+import { TimePlot } from "./timeplot";
 
 export class Chart implements Part {
   readonly root: HTMLElement;
-  readonly plot: uPlot;
-  private readonly cursor = element("div", { class: "cursor" });
+  readonly update: () => void;
+  private readonly over: TimePlot;
   private readonly beyond = element("div", { class: "beyond", hidden: true });
   private readonly values: HTMLElement[] = [];
   private readonly shown: boolean[];
   private readonly start: Float64Array[];
   private readonly factor: number;
   private range: [number, number] = [0, 1];
-  private visible = true;
-  private stale = false;
   private now: Float64Array[] = [];
   private readonly ghosts = element("canvas");
   private ghostKey = "";
@@ -37,39 +33,47 @@ export class Chart implements Part {
     const place = element("div", { class: "plot" });
     const title = element("h3", {}, panel.title, element("span", { class: "unit" }, word ? ` in ${word}` : ""));
     this.root = element("figure", { class: "panel", "aria-label": `${panel.title}: ${panel.names.join(", ")}` }, title, this.legend(), place);
-    this.plot = new uPlot(this.options(), [[], ...panel.names.map(() => [])] as unknown as uPlot.AlignedData, place);
-    this.plot.over.append(this.beyond, this.cursor);
-    this.plot.over.addEventListener("pointermove", (event) => this.hover(event));
-    this.plot.over.addEventListener("pointerdown", (event) => this.hover(event));
-    new ResizeObserver(() => this.resize(place)).observe(place);
-    watched(place, (seen) => {
-      this.visible = seen;
-      if (seen && this.stale) this.update(this.app.run);
+    this.over = new TimePlot(app, place, {
+      height: 190,
+      above: 8,
+      series: panel.names.map((name, i): uPlot.Series => ({ label: name, stroke: () => app.palette.curve(i), width: 1.6, pxAlign: 0, points: { show: false } })),
+      range: () => this.range,
+      draw: (plot) => this.ghost(plot),
+      resized: () => this.bound(),
     });
-    this.update(app.run);
+    const { over } = this.over.plot;
+    over.append(this.beyond);
+    over.addEventListener("pointermove", (event) => this.over.look(event));
+    over.addEventListener("pointerdown", (event) => this.over.look(event));
+    this.update = whileSeen(place, () => this.draw(app.run));
+    this.update();
   }
 
-  update(run: Result): void {
-    this.stale = !this.visible;
-    if (this.stale) return;
+  private draw(run: Result): void {
+    const { plot } = this.over;
     this.now = this.curves(run);
     this.range = this.fitting();
-    this.plot.setData([run.times, ...this.now] as uPlot.AlignedData);
-    const from = this.plot.valToPos(run.reached, "x");
-    this.beyond.hidden = run.status === 0;
-    if (run.status !== 0) this.beyond.style.left = `${from}px`;
+    plot.setData([run.times, ...this.now] as uPlot.AlignedData);
+    this.bound();
     this.at(this.app.time);
   }
 
+  /** Grey from where the run ended early. */
+  private bound(): void {
+    const { run } = this.app;
+    this.beyond.hidden = run.status === 0;
+    if (run.status !== 0) this.beyond.style.left = `${this.over.plot.valToPos(run.reached, "x")}px`;
+  }
+
   at(time: number): void {
-    this.cursor.style.transform = `translateX(${this.plot.valToPos(time, "x")}px)`;
+    this.over.at(time);
     const row = this.app.row();
     const known = time <= this.app.run.reached;
     this.values.forEach((value, i) => write(value, number(known ? (this.now[i]?.[row] ?? NaN) : NaN)));
   }
 
   recolour(): void {
-    this.plot.redraw(false);
+    this.over.plot.redraw(false);
   }
 
   private curves(run: Result): Float64Array[] {
@@ -89,29 +93,11 @@ export class Chart implements Part {
       key.addEventListener("click", () => {
         this.shown[i] = !this.shown[i];
         key.setAttribute("aria-pressed", `${this.shown[i]}`);
-        this.plot.setSeries(i + 1, { show: this.shown[i]! });
+        this.over.plot.setSeries(i + 1, { show: this.shown[i]! });
       });
       list.append(element("li", {}, key, value));
     });
     return list;
-  }
-
-  private options(): uPlot.Options {
-    const axis: uPlot.Axis = { stroke: () => colour("text"), grid: { stroke: () => colour("grid"), width: 1 }, ticks: { show: false }, font: "12px system-ui, sans-serif" };
-    return {
-      width: 400,
-      height: HEIGHT,
-      legend: { show: false },
-      cursor: { show: false },
-      padding: [8, SYNC, 0, 0],
-      scales: { x: { time: false, range: () => [this.app.data.tStart, this.app.data.tEnd] }, y: { range: () => this.range } },
-      axes: [
-        { ...axis, size: 26, values: (_, ticks) => ticks.map((tick) => `${number(tick)}`) },
-        { ...axis, size: 58, values: (_, ticks) => ticks.map((tick) => number(tick)) },
-      ],
-      series: [{}, ...this.panel.names.map((name, i): uPlot.Series => ({ label: name, stroke: () => curveColour(i), width: 1.6, pxAlign: 0, points: { show: false } }))],
-      hooks: { drawAxes: [(plot) => this.ghost(plot)] },
-    };
   }
 
   /** The curves of the start: painted once for an axis, for dashes cost more than all else. */
@@ -119,7 +105,7 @@ export class Chart implements Part {
     if (this.app.run === this.app.first) return;
     const { left, top, width, height } = plot.bbox;
     if (width < 1 || height < 1) return;
-    const key = [...this.range, width, height, ...this.shown, colour("ground")].join();
+    const key = [...this.range, width, height, ...this.shown, this.app.palette.colour("ground")].join();
     if (key !== this.ghostKey) {
       this.ghostKey = key;
       this.ghosts.width = width;
@@ -139,7 +125,7 @@ export class Chart implements Part {
     ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
     this.start.forEach((values, i) => {
       if (!this.shown[i]) return;
-      ctx.strokeStyle = curveColour(i);
+      ctx.strokeStyle = this.app.palette.curve(i);
       ctx.beginPath();
       for (let k = 0; k < values.length; k++) ctx.lineTo(x0 - left + xScale * times[k]!, y0 - top + yScale * values[k]!);
       ctx.stroke();
@@ -161,17 +147,5 @@ export class Chart implements Part {
     const [before, after] = this.range;
     const fits = before <= low && high <= after && after - before < 2.5 * (high - low);
     return fits ? this.range : [low - room, high + room];
-  }
-
-  private hover(event: PointerEvent): void {
-    const box = this.plot.over.getBoundingClientRect();
-    this.app.look(this.plot.posToVal(event.clientX - box.left, "x"));
-  }
-
-  private resize(place: HTMLElement): void {
-    const width = Math.max(place.clientWidth, 120);
-    if (width === this.plot.width) return;
-    this.plot.setSize({ width, height: HEIGHT });
-    this.at(this.app.time);
   }
 }

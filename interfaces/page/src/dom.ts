@@ -30,32 +30,6 @@ export function button(label: string, action: () => void): HTMLButtonElement {
   return made;
 }
 
-const known = new Map<string, string>();
-let host: Element | undefined;
-
-/** The element whose style has the colours, where that is not the whole page. */
-export function setHost(given: Element): void {
-  host = given;
-}
-
-/** Colours of the style, as the canvas needs them. */
-export function colour(name: string): string {
-  const found = known.get(name) ?? getComputedStyle(host ?? document.documentElement).getPropertyValue(`--${name}`).trim();
-  known.set(name, found);
-  return found;
-}
-
-/** The style has other colours now. */
-export function forgetColours(): void {
-  known.clear();
-}
-
-export const CURVES = 8;
-
-export function curveColour(number: number): string {
-  return colour(`curve-${number % CURVES}`);
-}
-
 /** Text of an element, where it is another one: what stays costs no layout. */
 export function write(place: Element, text: string): void {
   if (place.textContent !== text) place.textContent = text;
@@ -65,7 +39,18 @@ export function put(place: Element, name: string, value: string): void {
   if (place.getAttribute(name) !== value) place.setAttribute(name, value);
 }
 
-/** Tell whether an element can be seen, now and whenever that changes. */
-export function watched(place: Element, tell: (seen: boolean) => void): void {
-  new IntersectionObserver((entries) => tell(entries.at(-1)!.isIntersecting), { rootMargin: "60px" }).observe(place);
+/** What draws a place, only while it can be seen; what it missed it draws when it comes into view. */
+export function whileSeen(place: Element, draw: () => void): () => void {
+  let seen = true;
+  let stale = false;
+  const drawn = (): void => {
+    stale = !seen;
+    if (seen) draw();
+  };
+  const look: IntersectionObserverCallback = (entries) => {
+    seen = entries.at(-1)!.isIntersecting;
+    if (stale) drawn();
+  };
+  new IntersectionObserver(look, { rootMargin: "60px" }).observe(place);
+  return drawn;
 }

@@ -1,18 +1,17 @@
 // The plot whose knots are dragged: by mouse, finger, or the arrow keys.
-import uPlot from "uplot";
+import type uPlot from "uplot";
 import type { App, Part } from "./app";
 import type { Knot, TableData } from "./data";
-import { colour, curveColour, element, put } from "./dom";
+import { element, put } from "./dom";
 import { number, shownUnit } from "./format";
 import { added, moved, removed } from "./tables";
+import { TimePlot } from "./timeplot";
 
-const HEIGHT = 230;
 const FINE = 0.2;
 
 export class Editor implements Part {
   readonly root: HTMLElement;
-  readonly plot: uPlot;
-  private readonly cursor = element("div", { class: "cursor" });
+  private readonly over: TimePlot;
   private readonly handles: HTMLElement[][] = [];
   private readonly factor: number;
   private readonly word: string;
@@ -33,19 +32,24 @@ export class Editor implements Part {
     const help = element("p", { class: "help" }, "Drag a knot, or select one with Tab and move it with the arrow keys (Shift: finely). Double click: a new knot. Delete: away with it.");
     const title = element("h2", {}, names.length > 1 ? "Drag these" : "Drag this", element("span", { class: "unit" }, this.word ? ` in ${this.word} over s` : " over s"));
     this.root = element("section", { class: "panel drag", "aria-label": `knots of ${names.join(", ")}` }, title, keys, place, help);
-    this.plot = new uPlot(this.options(), [[0, 1], ...tables.map(() => [0, 1])] as uPlot.AlignedData, place);
-    this.plot.over.append(this.cursor);
+    this.over = new TimePlot(app, place, {
+      height: 230,
+      above: 10,
+      series: [{ show: false }],
+      range: () => this.range,
+      draw: (plot) => this.draw(plot),
+      resized: () => this.place(),
+    });
+    this.plot.setData([[0, 1], [0, 1]]);
     this.plot.over.addEventListener("dblclick", (event) => this.insert(event));
     this.plot.over.addEventListener("pointermove", (event) => {
-      const box = this.plot.over.getBoundingClientRect();
-      if (!event.buttons) this.app.look(this.plot.posToVal(event.clientX - box.left, "x"));
+      if (!event.buttons) this.over.look(event);
     });
-    new ResizeObserver(() => {
-      const width = Math.max(place.clientWidth, 120);
-      if (width !== this.plot.width) this.plot.setSize({ width, height: HEIGHT });
-      this.place();
-    }).observe(place);
     this.place();
+  }
+
+  private get plot(): uPlot {
+    return this.over.plot;
   }
 
   update(): void {
@@ -53,7 +57,7 @@ export class Editor implements Part {
   }
 
   at(time: number): void {
-    this.cursor.style.transform = `translateX(${this.plot.valToPos(time, "x")}px)`;
+    this.over.at(time);
   }
 
   recolour(): void {
@@ -68,25 +72,6 @@ export class Editor implements Part {
     return this.app.session.knots[number]!;
   }
 
-  private options(): uPlot.Options {
-    const axis: uPlot.Axis = { stroke: () => colour("text"), grid: { stroke: () => colour("grid"), width: 1 }, ticks: { show: false }, font: "12px system-ui, sans-serif" };
-    const { tStart, tEnd } = this.app.data;
-    return {
-      width: 400,
-      height: HEIGHT,
-      legend: { show: false },
-      cursor: { show: false },
-      padding: [10, 8, 0, 0],
-      scales: { x: { time: false, range: () => [tStart, tEnd] }, y: { range: () => this.range } },
-      axes: [
-        { ...axis, size: 26, values: (_, ticks) => ticks.map((tick) => number(tick)) },
-        { ...axis, size: 58, values: (_, ticks) => ticks.map((tick) => number(tick)) },
-      ],
-      series: [{}, ...this.tables.map((): uPlot.Series => ({ show: false }))],
-      hooks: { drawAxes: [(plot) => this.draw(plot)] },
-    };
-  }
-
   /** Tables as straight lines, those of the start behind them. */
   private draw(plot: uPlot): void {
     const { ctx, bbox } = plot;
@@ -95,7 +80,7 @@ export class Editor implements Part {
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
     this.tables.forEach((table, k) => {
-      ctx.strokeStyle = curveColour(k);
+      ctx.strokeStyle = this.app.palette.curve(k);
       const kinds: [Knot[], number, number[]][] = [
         [this.table(table).points, 0.4, [4 * devicePixelRatio, 3 * devicePixelRatio]],
         [this.knots(table), 1, []],
@@ -154,11 +139,9 @@ export class Editor implements Part {
     handle.setPointerCapture(event.pointerId);
     handle.classList.add("held");
     this.held = true;
-    const box = this.plot.over.getBoundingClientRect();
     const drag = (to: PointerEvent): void => {
-      const time = this.plot.posToVal(to.clientX - box.left, "x");
-      const value = Math.min(this.plot.posToVal(to.clientY - box.top, "y"), this.range[1]) / this.factor;
-      this.move(table, i, [time, value]);
+      const [time, value] = this.over.under(to);
+      this.move(table, i, [time, Math.min(value, this.range[1]) / this.factor]);
     };
     const drop = (): void => {
       handle.classList.remove("held");
@@ -187,9 +170,8 @@ export class Editor implements Part {
   }
 
   private insert(event: MouseEvent): void {
-    const box = this.plot.over.getBoundingClientRect();
-    const time = this.plot.posToVal(event.clientX - box.left, "x");
-    const height = this.plot.posToVal(event.clientY - box.top, "y") / this.factor;
+    const [time, value] = this.over.under(event);
+    const height = value / this.factor;
     const away = (table: number): number => {
       const with_ = added(this.table(table), this.knots(table), time);
       return Math.abs((with_.find(([t]) => t === time)?.[1] ?? Infinity) - height);

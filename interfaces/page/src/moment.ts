@@ -1,7 +1,7 @@
 // The driveline at the time of the cursor: its schematic, and its gears as levers.
 import type { App, Part } from "./app";
 import type { LeverData } from "./data";
-import { button, element, svg, watched, write } from "./dom";
+import { button, element, svg, whileSeen, write } from "./dom";
 import { number, quantity, seconds } from "./format";
 
 const NOTHING = 1e-9;
@@ -31,11 +31,15 @@ export class Clock implements Part {
     this.output.textContent = `t = ${seconds(time)}`;
   }
 
+  end(): void {
+    cancelAnimationFrame(this.playing);
+    this.playing = 0;
+    this.play.textContent = "Play";
+  }
+
   private toggle(): void {
     if (this.playing) {
-      cancelAnimationFrame(this.playing);
-      this.playing = 0;
-      this.play.textContent = "Play";
+      this.end();
       return;
     }
     const { tStart, tEnd } = this.app.data;
@@ -55,10 +59,10 @@ export class Clock implements Part {
 
 export class Schematic implements Part {
   readonly root: HTMLElement;
+  readonly at: () => void;
+  readonly update: () => void;
   private readonly texts: { place: SVGTextElement; column: number; unit: string }[] = [];
   private readonly symbols: { groups: SVGElement[]; mode: number; torque: number[] }[] = [];
-
-  private seen = true;
 
   constructor(private readonly app: App) {
     const source = app.data.schematic!;
@@ -78,19 +82,11 @@ export class Schematic implements Part {
       const torque = contact.torque[0] === "t" ? contact.torque[1] : [];
       if (groups.length) this.symbols.push({ groups, mode: contact.mode, torque });
     }
-    this.at();
-    watched(this.root, (seen) => {
-      this.seen = seen;
-      this.at();
-    });
-  }
-
-  update(): void {
+    this.update = this.at = whileSeen(this.root, () => this.draw());
     this.at();
   }
 
-  at(): void {
-    if (!this.seen) return;
+  private draw(): void {
     const { run } = this.app;
     const start = this.app.row() * run.size;
     for (const { place, column, unit } of this.texts) {
@@ -114,23 +110,17 @@ const LEVER = { height: 150, width: 190, top: 24, left: 70, reach: 100 };
 /** Each gear as a line through the speeds of its members: they stay on it, whatever they do. */
 export class Levers implements Part {
   readonly root: HTMLElement;
+  readonly at: () => void;
+  readonly update: () => void;
   private readonly drawn: { line: SVGElement; dots: SVGElement[]; labels: SVGElement[]; lever: LeverData }[] = [];
   private readonly scale: number;
-  private seen = true;
 
   constructor(private readonly app: App) {
     const pictures = element("div", { class: "levers" });
     this.root = element("section", { class: "panel moment", "aria-label": "lever diagrams at the time of the cursor" }, element("h2", {}, "Its gears as levers"), pictures);
     for (const lever of app.data.levers) pictures.append(this.picture(lever));
     this.scale = LEVER.reach / this.fastest();
-    this.at();
-    watched(this.root, (seen) => {
-      this.seen = seen;
-      this.at();
-    });
-  }
-
-  update(): void {
+    this.update = this.at = whileSeen(this.root, () => this.draw());
     this.at();
   }
 
@@ -143,8 +133,7 @@ export class Levers implements Part {
     return most;
   }
 
-  at(): void {
-    if (!this.seen) return;
+  private draw(): void {
     const { run } = this.app;
     const start = this.app.row() * run.size;
     for (const { line, dots, labels, lever } of this.drawn) {

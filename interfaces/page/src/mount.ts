@@ -4,7 +4,7 @@ import { Bars } from "./bars";
 import { Chart } from "./chart";
 import { Core } from "./core";
 import type { PageData } from "./data";
-import { element, forgetColours } from "./dom";
+import { element } from "./dom";
 import { Editor } from "./editor";
 import { Clock, Levers, Schematic } from "./moment";
 import { Loop, Trade, trades } from "./planes";
@@ -15,7 +15,7 @@ import { tools } from "./tools";
 
 /** Fill an element with the page of a driveline; what is returned runs it. */
 export async function mount(root: HTMLElement, data: PageData, wasm: BufferSource): Promise<App> {
-  const app = new App(new Session(data, await Core.of(wasm)));
+  const app = new App(root, new Session(data, await Core.of(wasm)));
   const add = <P extends Part & { root: HTMLElement }>(part: P): HTMLElement => {
     app.add(part);
     return part.root;
@@ -36,13 +36,8 @@ export async function mount(root: HTMLElement, data: PageData, wasm: BufferSourc
   if (data.schematic) below.append(add(new Schematic(app)));
   if (data.levers.length) below.append(add(new Levers(app)));
   root.append(clock);
-  // in a frame of another page: shift.html#compact
-  root.classList.toggle("compact", location.hash === "#compact");
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  dark.addEventListener("change", () => {
-    forgetColours();
-    app.recolour();
-  });
+  // what shows a value would tell it at every picture; knots, sliders and the verdict tell theirs
+  for (const output of root.querySelectorAll("output")) output.setAttribute("aria-live", "off");
   app.look(app.time);
   return app;
 }

@@ -4,6 +4,7 @@ import type { App } from "./app";
 import type { PageData } from "./data";
 import { element } from "./dom";
 import { mount } from "./mount";
+import { watchTheme } from "./theme";
 
 declare global {
   interface Window {
@@ -13,10 +14,14 @@ declare global {
 
 async function start(): Promise<void> {
   const root = document.getElementById("page")!;
+  // in a frame of another page: shift.html#compact
+  root.classList.toggle("compact", location.hash === "#compact");
   const text = (id: string): string => document.getElementById(id)!.textContent;
   try {
     const [data, wasm] = await Promise.all([unpacked(text("data")), unpacked(text("core"))]);
-    window.clutchworkPage = await mount(root, JSON.parse(new TextDecoder().decode(data)) as PageData, wasm);
+    const app = await mount(root, JSON.parse(new TextDecoder().decode(data)) as PageData, wasm);
+    watchTheme(() => app.recolour());
+    window.clutchworkPage = app;
   } catch (error) {
     root.append(element("p", { role: "alert", class: "verdict bad" }, `This page cannot run here: ${String(error)}`));
     throw error;

@@ -1,7 +1,7 @@
 // Events with their times, and what the run comes to, beside the start.
 import type { App, Part } from "./app";
 import type { Result } from "./core";
-import { element, watched, write } from "./dom";
+import { element, whileSeen, write } from "./dom";
 import { number, quantity, seconds } from "./format";
 import { ending, eventTime, type Measure, measures, sentence, unlocked } from "./measures";
 
@@ -32,23 +32,19 @@ export class Events implements Part {
 
 export class Results implements Part {
   readonly root: HTMLElement;
+  readonly update: () => void;
   private readonly body = element("tbody");
   private readonly first: Measure[];
-  private seen = true;
 
   constructor(private readonly app: App) {
     this.first = measures(app.data, app.first);
     const head = element("thead", {}, element("tr", {}, ...["", "now", "at the start", "change"].map((word) => element("th", { scope: "col" }, word))));
     this.root = element("section", { class: "panel", "aria-label": "results" }, element("h2", {}, "What it comes to"), element("div", { class: "wide" }, element("table", {}, head, this.body)));
-    this.update(app.run);
-    watched(this.root, (seen) => {
-      this.seen = seen;
-      this.update(this.app.run);
-    });
+    this.update = whileSeen(this.root, () => this.draw(app.run));
+    this.update();
   }
 
-  update(run: Result): void {
-    if (!this.seen) return;
+  private draw(run: Result): void {
     const known = measures(this.app.data, run);
     const names = known.map((one) => one.name);
     const lost = this.first.filter((one) => !names.includes(one.name));
@@ -70,11 +66,14 @@ function line(body: HTMLTableSectionElement): HTMLTableRowElement {
   return row;
 }
 
-/** What is wrong with the run, said to everybody. */
+/** What is wrong with the run, said to everybody: shown at once, told aloud when the hand rests. */
 export class Verdict implements Part {
-  readonly root = element("p", { role: "status", class: "verdict" });
+  readonly root = element("div", { class: "verdict" });
+  private readonly shown = element("p", { "aria-hidden": "true" });
+  private readonly told = element("p", { role: "status", class: "unseen" });
 
   constructor(private readonly app: App) {
+    this.root.append(this.shown, this.told);
     this.update(app.run, true);
   }
 
@@ -84,11 +83,11 @@ export class Verdict implements Part {
     const refused = why && `There is no driveline with these numbers: ${why}. The curves are those before.`;
     const open = unlocked(data, first, run);
     const never = open.length ? `${open.join(" and ")} never ${open.length > 1 ? "lock" : "locks"}.` : "";
-    const said = [refused, ending(data, run), never].filter(Boolean).join(" ");
-    if (!said && this.root.classList.contains("bad")) this.root.textContent = "";
-    this.root.classList.toggle("bad", said !== "");
-    if (said) write(this.root, said);
-    else if (settled || this.root.textContent === "") this.root.textContent = `${run.events.length === 1 ? "1 event" : `${run.events.length} events`}; runs to ${number(run.reached)} s.`;
+    const wrong = [refused, ending(data, run), never].filter(Boolean).join(" ");
+    const well = `${run.events.length === 1 ? "1 event" : `${run.events.length} events`}; runs to ${number(run.reached)} s.`;
+    this.root.classList.toggle("bad", wrong !== "");
+    write(this.shown, wrong || well);
+    if (settled) write(this.told, wrong || well);
   }
 }
 

@@ -10,13 +10,13 @@ export function tools(app: App): HTMLElement {
     app.compute(true);
   });
   const made = element("div", { class: "tools", role: "group", "aria-label": "tools" }, reset);
-  if (app.data.model) made.append(copying("Copy as TOML", () => asToml(session) ?? ""));
-  made.append(copying("Copy as Python", () => asPython(session)));
+  if (app.data.model) made.append(copying(app, "Copy as TOML", () => asToml(session) ?? ""));
+  made.append(copying(app, "Copy as Python", () => asPython(session)));
   made.append(button("Download CSV", () => download(`${plain(app.data.name)}.csv`, asCsv(app.data, app.run))));
   return made;
 }
 
-function copying(label: string, text: () => string): HTMLElement {
+function copying(app: App, label: string, text: () => string): HTMLElement {
   const made = button(label, () => {
     const words = text();
     const done = (): void => {
@@ -24,19 +24,19 @@ function copying(label: string, text: () => string): HTMLElement {
       setTimeout(() => (made.textContent = label), 1200);
     };
     const copied = navigator.clipboard?.writeText(words) ?? Promise.reject(new Error("no clipboard"));
-    copied.then(done, () => show(label, words));
+    copied.then(done, () => show(app.root, label, words));
   });
   return made;
 }
 
 /** Where the browser gives no clipboard: the text, to be copied by hand. */
-function show(label: string, words: string): void {
+function show(root: HTMLElement, label: string, words: string): void {
   const area = element("textarea", { readonly: true, rows: "16", "aria-label": label });
   area.value = words;
   const box = element("dialog", { "aria-label": label }, area);
   box.append(button("Close", () => box.close()));
   box.addEventListener("close", () => box.remove());
-  document.body.append(box);
+  root.append(box);
   box.showModal();
   area.select();
 }

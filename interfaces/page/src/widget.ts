@@ -1,8 +1,9 @@
 // The page in a notebook: knots and sliders are traits, which Python reads and sets.
-import { setHost } from "./dom";
+import type { PageData } from "./data";
+import { element } from "./dom";
 import { mount } from "./mount";
 import { stateOf, take, type State } from "./state";
-import type { PageData } from "./data";
+import { darkness, isDark, watchTheme } from "./theme";
 
 interface Model {
   get(name: "page" | "style"): string;
@@ -15,18 +16,30 @@ interface Model {
   off(name: string, action: () => void): void;
 }
 
+const TRAITS = ["change:knots", "change:values"];
+
+/** Each view has a root, a style and a theme of its own; what is returned takes it away. */
 async function render({ model, el }: { model: Model; el: HTMLElement }): Promise<() => void> {
-  const shadow = el.attachShadow({ mode: "open" });
-  const style = document.createElement("style");
-  style.textContent = model.get("style").replaceAll(":root", ":host");
-  const root = document.createElement("main");
-  shadow.append(style, root);
-  setHost(root);
+  const place = element("div");
+  const root = element("main");
+  const sheet = new CSSStyleSheet();
+  sheet.replaceSync(model.get("style").replaceAll(":root", ":host"));
+  const inside = place.attachShadow({ mode: "open" });
+  inside.adoptedStyleSheets = [sheet];
+  inside.append(root);
+  el.append(place);
+  await shown(place);
+  const darken = darkness(sheet);
   const core = model.get("core");
-  const app = await mount(root, JSON.parse(model.get("page")) as PageData, new Uint8Array(core.buffer, core.byteOffset, core.byteLength).slice());
-  const given = (): Partial<State> => ({ knots: model.get("knots"), values: model.get("values") });
+  const bytes = new Uint8Array(core.buffer, core.byteOffset, core.byteLength).slice();
+  darken(isDark(el));
+  const app = await mount(root, JSON.parse(model.get("page")) as PageData, bytes);
+  const unwatch = watchTheme(() => {
+    darken(isDark(el));
+    app.recolour();
+  });
   const hear = (): void => {
-    if (take(app.session, given())) app.compute(true);
+    if (take(app.session, { knots: model.get("knots"), values: model.get("values") })) app.compute(true);
   };
   app.add({
     update: (_, settled) => {
@@ -38,12 +51,23 @@ async function render({ model, el }: { model: Model; el: HTMLElement }): Promise
     },
   });
   hear();
-  model.on("change:knots", hear);
-  model.on("change:values", hear);
+  TRAITS.forEach((name) => model.on(name, hear));
   return () => {
-    model.off("change:knots", hear);
-    model.off("change:values", hear);
+    TRAITS.forEach((name) => model.off(name, hear));
+    unwatch();
+    app.end();
+    place.remove();
   };
+}
+
+/** Notebooks give an element that they show later: until then nothing in it has a colour or a width. */
+function shown(place: Element): Promise<void> {
+  return new Promise((resolve) => {
+    new ResizeObserver((_, self) => {
+      self.disconnect();
+      resolve();
+    }).observe(place);
+  });
 }
 
 export default { render };

@@ -1,0 +1,38 @@
+// A headless browser with real mouse and keys: Chromium over its own protocol, Firefox over WebDriver BiDi.
+import { createRequire } from "node:module";
+
+export async function launched(modules, browser, options = {}) {
+  const puppeteer = createRequire(`${modules}/package.json`)("puppeteer-core");
+  const firefox = /firefox/i.test(browser);
+  return puppeteer.launch({ executablePath: browser, headless: true, browser: firefox ? "firefox" : "chrome", args: firefox ? [] : ["--no-sandbox"], ...options });
+}
+
+/** What a page says and asks for, as it comes. */
+export function heard(page) {
+  const errors = [];
+  const requests = [];
+  page.on("console", (message) => errors.push(message.text()));
+  page.on("pageerror", (error) => errors.push(error.message));
+  page.on("request", (request) => requests.push(request.url()));
+  return { errors, requests };
+}
+
+/** Take an element by its middle and move it by [x, y] px in steps. */
+export async function drag(page, handle, [x, y]) {
+  const box = await handle.boundingBox();
+  const from = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  for (let i = 1; i <= 8; i++) {
+    await page.mouse.move(from[0] + (x * i) / 8, from[1] + (y * i) / 8);
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+  await page.mouse.up();
+  await settled(page);
+}
+
+/** The hand rests: the last run is drawn. */
+export async function settled(page) {
+  await new Promise((resolve) => setTimeout(resolve, 260));
+  await page.evaluate(() => new Promise(requestAnimationFrame));
+}
