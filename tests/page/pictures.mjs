@@ -27,8 +27,10 @@ async function picture(opened, file, scheme, name, width) {
   const [knot] = (await page.$$(".knot:not([hidden])")).slice(2);
   if (knot) await drag(page, knot, [12, -24]);
   // parts that nobody sees are not drawn: all of the page in one window
-  await page.setViewport({ width, height: await page.evaluate(() => document.documentElement.scrollHeight) });
-  await settled(page);
+  for (let i = 0; i < 2; i++) {
+    await page.setViewport({ width, height: await page.evaluate(() => document.documentElement.scrollHeight) });
+    await settled(page);
+  }
   const stem = basename(file).replace(/\.html$/, "");
   await page.screenshot({ path: `${folder}/${stem}-${kind}-${name}-${scheme}.png` });
   if (errors.length) found[`${stem}-${kind}`] = errors;

@@ -5,10 +5,10 @@ import type { ContactData } from "./data";
 import { element, put, svg } from "./dom";
 import { seconds } from "./format";
 import { type State, strokes } from "./measures";
+import { LEFT, RIGHT } from "./timeplot";
 
 const ROW = 22;
 const LETTER = 7;
-const RIGHT = 8;
 const MOST = 400;
 const HEIGHTS: Record<State, number> = { locked: 14, slipping: 8, open: 2 };
 
@@ -26,7 +26,7 @@ export class Bars implements Part {
     this.contacts = app.data.contacts;
     this.bars = svg("g");
     const names = this.contacts.map(({ name }) => shortened(name));
-    this.left = Math.max(58, 14 + LETTER * Math.max(0, ...names.map((name) => name.length)));
+    this.left = Math.max(LEFT, 14 + LETTER * Math.max(0, ...names.map((name) => name.length)));
     const labels = names.map((name, row) => svg("text", { x: `${this.left - 8}`, y: `${ROW * (row + 0.5) + 4}`, "text-anchor": "end" }, svg("title", {}, this.contacts[row]!.name), name));
     this.picture.append(...labels, this.bars, this.cursor);
     const keys = element("p", { class: "states" }, ...(["locked", "slipping", "open"] as const).flatMap((state) => [element("span", { class: `state ${state}` }), state, " "]));

@@ -6,6 +6,7 @@ import type { PanelData } from "./data";
 import { element, whileSeen, write } from "./dom";
 import { number, shownUnit } from "./format";
 import { evaluated } from "./forms";
+import { ends } from "./plane";
 import { TimePlot } from "./timeplot";
 
 export class Chart implements Part {
@@ -16,7 +17,7 @@ export class Chart implements Part {
   private readonly values: HTMLElement[] = [];
   private readonly shown: boolean[];
   private readonly start: Float64Array[];
-  private readonly factor: number;
+  private factor = 1;
   private range: [number, number] = [0, 1];
   private now: Float64Array[] = [];
   private readonly ghosts = element("canvas");
@@ -26,9 +27,10 @@ export class Chart implements Part {
     private readonly app: App,
     private readonly panel: PanelData,
   ) {
-    const [factor, word] = shownUnit(panel.unit);
-    this.factor = factor;
     this.shown = panel.names.map(() => true);
+    const [, most] = ends(this.curves(app.first).map((curve) => curve.map(Math.abs)));
+    const [factor, word] = shownUnit(panel.unit, most);
+    this.factor = factor;
     this.start = this.curves(app.first);
     const place = element("div", { class: "plot" });
     const title = element("h3", {}, panel.title, element("span", { class: "unit" }, word ? ` in ${word}` : ""));

@@ -39,6 +39,26 @@ export function put(place: Element, name: string, value: string): void {
   if (place.getAttribute(name) !== value) place.setAttribute(name, value);
 }
 
+const REST = 300;
+
+/** Words for everybody: shown at once, told aloud when they rest. */
+export class Spoken {
+  readonly root: HTMLElement;
+  private readonly shown = element("p", { "aria-hidden": "true" });
+  private readonly told = element("p", { role: "status", class: "unseen" });
+  private resting: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(look: string) {
+    this.root = element("div", { class: look }, this.shown, this.told);
+  }
+
+  say(words: string): void {
+    write(this.shown, words);
+    clearTimeout(this.resting);
+    this.resting = setTimeout(() => write(this.told, words), REST);
+  }
+}
+
 /** What draws a place, only while it can be seen; what it missed it draws when it comes into view. */
 export function whileSeen(place: Element, draw: () => void): () => void {
   let seen = true;

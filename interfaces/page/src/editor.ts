@@ -30,7 +30,7 @@ export class Editor implements Part {
     const names = tables.map((i) => this.table(i).name);
     const keys = element("ul", { class: "legend" }, ...names.map((name, k) => element("li", {}, element("span", { class: `key c${k % 8}` }, element("span", { class: "swatch" }), name))));
     const help = element("p", { class: "help" }, "Drag a knot, or select one with Tab and move it with the arrow keys (Shift: finely). Double click: a new knot. Delete: away with it.");
-    const title = element("h2", {}, names.length > 1 ? "Drag these" : "Drag this", element("span", { class: "unit" }, this.word ? ` in ${this.word} over s` : " over s"));
+    const title = element("h2", {}, names.length > 1 ? "Drag these" : "Drag this", element("span", { class: "unit" }, this.word ? ` in ${this.word}` : ""));
     this.root = element("section", { class: "panel drag", "aria-label": `knots of ${names.join(", ")}` }, title, keys, place, help);
     this.over = new TimePlot(app, place, {
       height: 230,
@@ -113,8 +113,8 @@ export class Editor implements Part {
         const place = `translate(${this.plot.valToPos(t, "x")}px, ${this.plot.valToPos(y * this.factor, "y")}px)`;
         if (handle.style.transform !== place) handle.style.transform = place;
         handle.hidden = t < this.app.data.tStart || t > this.app.data.tEnd;
-        put(handle, "aria-valuemin", `${number(this.range[0])}`);
-        put(handle, "aria-valuemax", `${number(this.range[1])}`);
+        put(handle, "aria-valuemin", `${this.range[0]}`);
+        put(handle, "aria-valuemax", `${this.range[1]}`);
         put(handle, "aria-valuenow", `${y * this.factor}`);
         put(handle, "aria-valuetext", `${number(t)} s, ${number(y * this.factor)} ${this.word}`);
       });
@@ -124,7 +124,7 @@ export class Editor implements Part {
 
   private handle(table: number, k: number, i: number): HTMLElement {
     const label = `${this.table(table).name}, knot ${i + 1}`;
-    const made = element("div", { class: `knot c${k % 8}`, role: "slider", tabindex: "0", "aria-label": label, "aria-orientation": "vertical", title: label });
+    const made = element("div", { class: `knot c${k % 8}`, role: "slider", tabindex: "0", "aria-label": label, "aria-orientation": "vertical" });
     made.addEventListener("pointerdown", (event) => this.grab(event, made, table, i));
     made.addEventListener("keydown", (event) => this.key(event, table, i));
     made.addEventListener("focus", () => this.app.look(this.knots(table)[i]?.[0] ?? this.app.time));

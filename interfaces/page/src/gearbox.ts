@@ -1,7 +1,7 @@
 // The page of a gearbox: choose a gear, give speed and torque at the input, see what every part does.
 import { unpacked } from "./bytes";
-import { element } from "./dom";
-import { gearTables, type GearboxData, type GearData } from "./gears";
+import { element, Spoken } from "./dom";
+import { gearTables, sentence, type GearboxData, type GearData } from "./gears";
 
 const SPEEDS = { max: 6000, start: 1500, unit: "1/min" };
 const TORQUES = { max: 800, start: 300, unit: "N m" };
@@ -9,6 +9,7 @@ const CAPTIONS: Record<string, string> = { stick: "Power flow", lever: "Levers: 
 
 class Page {
   private readonly now = element("div", { class: "curves" });
+  private readonly words = new Spoken("panel");
   private readonly pictures = element("div", { class: "gearpictures" });
   private readonly buttons: HTMLButtonElement[] = [];
   private gear = 0;
@@ -17,7 +18,7 @@ class Page {
 
   constructor(root: HTMLElement, private readonly data: GearboxData) {
     const source = element("p", { class: "help" }, data.source);
-    const hand = element("div", { class: "hand" }, this.gears(), this.inputs(), this.now);
+    const hand = element("div", { class: "hand" }, this.gears(), this.inputs(), this.words.root, this.now);
     const columns = element("div", { class: "columns" }, hand, this.pictures);
     root.replaceChildren(element("header", {}, element("h1", {}, data.title)), columns, source);
     this.choose(0);
@@ -62,13 +63,16 @@ class Page {
   }
 
   private tell(): void {
-    this.now.replaceChildren(...gearTables(this.data, this.data.gears[this.gear]!, this.speed, this.torque));
+    const gear = this.data.gears[this.gear]!;
+    this.words.say(sentence(this.data, gear, this.speed, this.torque));
+    this.now.replaceChildren(...gearTables(this.data, gear, this.speed, this.torque));
   }
 }
 
 function slider(label: string, range: typeof SPEEDS, action: (value: number) => void): HTMLElement {
   const input = element("input", { type: "range", min: "0", max: `${range.max}`, value: `${range.start}`, step: "10", "aria-label": label });
-  const output = element("output", {}, `${range.start} ${range.unit}`);
+  const output = element("output", { "aria-live": "off" }, `${range.start} ${range.unit}`);
+  input.setAttribute("aria-valuetext", output.textContent);
   input.addEventListener("input", () => {
     output.textContent = `${input.value} ${range.unit}`;
     input.setAttribute("aria-valuetext", output.textContent);

@@ -55,7 +55,6 @@ export function memberRows(data: GearboxData, gear: GearData, speed: number): Ro
 
 export function gearTables(data: GearboxData, gear: GearData, speed: number, torque: number): HTMLElement[] {
   return [
-    element("section", { class: "panel", "aria-live": "polite" }, element("p", { class: "states" }, sentence(data, gear, speed, torque))),
     table("Shift elements", ["element", "kind", "state", "torque, N m", "slip, 1/min"], elementRows(data, gear, speed, torque)),
     table("Members", ["member", "speed, 1/min"], memberRows(data, gear, speed)),
   ];

@@ -5,6 +5,9 @@ import { button, element, svg, whileSeen, write } from "./dom";
 import { number, quantity, seconds } from "./format";
 
 const NOTHING = 1e-9;
+// size of a schematic, of that on paper
+const LEAST = 1.2;
+const MOST = 1.8;
 
 /** The time that is shown: a slider, and a button that lets it go. */
 export class Clock implements Part {
@@ -66,9 +69,13 @@ export class Schematic implements Part {
 
   constructor(private readonly app: App) {
     const source = app.data.schematic!;
-    const picture = document.importNode(new DOMParser().parseFromString(source.svg, "image/svg+xml").documentElement, true);
+    const picture = document.importNode(new DOMParser().parseFromString(source.svg, "image/svg+xml").documentElement as unknown as SVGSVGElement, true);
     this.root = element("section", { class: "panel moment", "aria-label": "schematic at the time of the cursor" }, element("h2", {}, "The driveline at this time"), element("div", { class: "wide" }));
     this.root.lastElementChild!.append(picture);
+    // its letters stay readable: what is wider than the page is moved sideways
+    const width = picture.viewBox.baseVal.width;
+    picture.style.minWidth = `${LEAST * width}px`;
+    picture.style.maxWidth = `${MOST * width}px`;
     for (const place of picture.querySelectorAll<SVGTextElement>("text[data-signal]")) {
       const signal = app.data.signals[place.dataset["signal"] ?? ""];
       if (signal && (signal.form[0] === "c" || (signal.form[0] === "t" && signal.form[1].length === 1))) {
@@ -105,7 +112,7 @@ export class Schematic implements Part {
   }
 }
 
-const LEVER = { height: 150, width: 190, top: 24, left: 70, reach: 100 };
+const LEVER = { height: 150, width: 222, top: 24, left: 100, reach: 100 };
 
 /** Each gear as a line through the speeds of its members: they stay on it, whatever they do. */
 export class Levers implements Part {
@@ -144,6 +151,10 @@ export class Levers implements Part {
       line.setAttribute("x2", x[last]!.toFixed(1));
       speeds.forEach((speed, i) => {
         dots[i]!.setAttribute("cx", x[i]!.toFixed(1));
+        // beside the line of rest, where the lever is not
+        const back = speed < -NOTHING;
+        labels[i]!.setAttribute("x", `${LEVER.left + (back ? 8 : -8)}`);
+        labels[i]!.setAttribute("text-anchor", back ? "start" : "end");
         labels[i]!.textContent = `${leaf(lever.points[i]!.name)} ${number(Math.abs(speed) > NOTHING ? speed : 0, 3)}`;
       });
     }
@@ -152,11 +163,11 @@ export class Levers implements Part {
   private picture(lever: LeverData): SVGElement {
     const { height, width, top, left } = LEVER;
     const y = (place: number): number => top + (1 - place) * (height - top - 16);
-    const made = svg("svg", { viewBox: `-30 0 ${width + 90} ${height}`, class: "lever", role: "img", "aria-label": `lever of ${lever.name}` });
+    const made = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "lever", role: "img", "aria-label": `lever of ${lever.name}` });
     const zero = svg("line", { class: "zero", x1: `${left}`, x2: `${left}`, y1: `${top}`, y2: `${height - 16}` });
     const line = svg("line", { class: "now", y1: `${y(lever.points[0]!.place)}`, y2: `${y(lever.points.at(-1)!.place)}` });
     const dots = lever.points.map(({ place }) => svg("circle", { r: "4", cy: `${y(place)}` }));
-    const labels = lever.points.map(({ place }) => svg("text", { x: `${left - 8}`, y: `${y(place) + 4}`, "text-anchor": "end" }));
+    const labels = lever.points.map(({ place }) => svg("text", { y: `${y(place) + 4}` }));
     made.append(svg("text", { x: `${left}`, y: "13", class: "title", "text-anchor": "middle" }, leaf(lever.name)), zero, line, ...dots, ...labels);
     this.drawn.push({ line, dots, labels, lever });
     return made;

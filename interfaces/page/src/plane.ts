@@ -1,6 +1,6 @@
 // A picture of one quantity over another one: axes with few ticks, lines and points that are drawn anew each time.
 import { element, svg } from "./dom";
-import { number } from "./format";
+import { tickWords } from "./format";
 
 export interface Line {
   xs: ArrayLike<number>;
@@ -14,33 +14,37 @@ export interface Spot {
   look: string;
 }
 
+const NARROW = 1e-3;
 type Ends = [number, number];
-const [WIDTH, HEIGHT, LEFT, BOTTOM, ROOM] = [420, 240, 62, 36, 8];
+const [WIDTH, HEIGHT, LEFT, RIGHT, BOTTOM, TOP] = [420, 240, 62, 20, 36, 8];
 
 export class Plane {
   readonly root: HTMLElement;
   private readonly axes = svg("g", { class: "planeaxes" });
   private readonly drawn = svg("g");
 
+  /** `over` and `up`: what the axes are, with their units; the latter goes on the title. */
   constructor(title: string, over: string, up: string) {
-    const across = svg("text", { x: `${(LEFT + WIDTH) / 2}`, y: `${HEIGHT - 3}`, "text-anchor": "middle" }, over);
-    const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "plane", role: "img", "aria-label": `${title}: ${up} over ${over}` }, this.axes, this.drawn, across);
-    this.root = element("figure", { class: "panel" }, element("h3", {}, title, element("span", { class: "unit" }, `: ${up}`)), picture);
+    const across = svg("text", { x: `${(LEFT + WIDTH - RIGHT) / 2}`, y: `${HEIGHT - 3}`, "text-anchor": "middle" }, over);
+    const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "plane", role: "img", "aria-label": `${title}${up}, over ${over}` }, this.axes, this.drawn, across);
+    this.root = element("figure", { class: "panel" }, element("h3", {}, title, element("span", { class: "unit" }, up)), picture);
   }
 
   draw(lines: readonly Line[], spots: readonly Spot[] = []): void {
     const x = ends([...lines.map((line) => line.xs), spots.map((spot) => spot.x)]);
     const y = ends([...lines.map((line) => line.ys), spots.map((spot) => spot.y)]);
-    const across = (value: number): number => LEFT + ((value - x[0]) / (x[1] - x[0])) * (WIDTH - LEFT - ROOM);
-    const up = (value: number): number => HEIGHT - BOTTOM - ((value - y[0]) / (y[1] - y[0])) * (HEIGHT - BOTTOM - ROOM);
+    const across = (value: number): number => LEFT + ((value - x[0]) / (x[1] - x[0])) * (WIDTH - LEFT - RIGHT);
+    const up = (value: number): number => HEIGHT - BOTTOM - ((value - y[0]) / (y[1] - y[0])) * (HEIGHT - BOTTOM - TOP);
+    const [xTicks, yTicks] = [ticks(x), ticks(y)];
+    const [xWords, yWords] = [tickWords(xTicks), tickWords(yTicks)];
     this.axes.replaceChildren(
-      ...ticks(x).flatMap((value) => [
-        svg("line", { x1: fixed(across(value)), x2: fixed(across(value)), y1: `${ROOM}`, y2: `${HEIGHT - BOTTOM}` }),
-        svg("text", { x: fixed(across(value)), y: `${HEIGHT - BOTTOM + 14}`, "text-anchor": "middle" }, number(value)),
+      ...xTicks.flatMap((value, i) => [
+        svg("line", { x1: fixed(across(value)), x2: fixed(across(value)), y1: `${TOP}`, y2: `${HEIGHT - BOTTOM}` }),
+        svg("text", { x: fixed(across(value)), y: `${HEIGHT - BOTTOM + 14}`, "text-anchor": "middle" }, xWords[i]!),
       ]),
-      ...ticks(y).flatMap((value) => [
-        svg("line", { x1: `${LEFT}`, x2: `${WIDTH - ROOM}`, y1: fixed(up(value)), y2: fixed(up(value)) }),
-        svg("text", { x: `${LEFT - 6}`, y: fixed(up(value) + 4), "text-anchor": "end" }, number(value)),
+      ...yTicks.flatMap((value, i) => [
+        svg("line", { x1: `${LEFT}`, x2: `${WIDTH - RIGHT}`, y1: fixed(up(value)), y2: fixed(up(value)) }),
+        svg("text", { x: `${LEFT - 6}`, y: fixed(up(value) + 4), "text-anchor": "end" }, yWords[i]!),
       ]),
     );
     this.drawn.replaceChildren(
@@ -60,7 +64,7 @@ function fixed(value: number): string {
   return value.toFixed(1);
 }
 
-/** Ends of an axis with some room; never empty. */
+/** Ends of an axis with some room; never empty, nor as narrow as the noise of what is shown. */
 export function ends(values: readonly ArrayLike<number>[]): Ends {
   let [low, high] = [Infinity, -Infinity];
   for (const some of values) {
@@ -71,7 +75,7 @@ export function ends(values: readonly ArrayLike<number>[]): Ends {
     }
   }
   if (!(low <= high)) return [0, 1];
-  const room = 0.06 * (high - low) || 0.1 * Math.abs(high) || 1;
+  const room = Math.max(0.06 * (high - low), NARROW * Math.max(-low, high)) || 1;
   return [low - room, high + room];
 }
 

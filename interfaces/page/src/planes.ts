@@ -17,7 +17,7 @@ export class Loop implements Part {
     private readonly loop: LoopData,
   ) {
     const { signals } = app.data;
-    this.plane = new Plane(`${loop.y} over ${loop.x}`, named(loop.x, signals[loop.x]!.unit), named(loop.y, signals[loop.y]!.unit));
+    this.plane = new Plane(`${loop.y} over ${loop.x}`, named(loop.x, signals[loop.x]!.unit), named("", signals[loop.y]!.unit));
     this.root = this.plane.root;
     this.start = this.line(app.first, "loop was");
     this.update(app.run);
@@ -44,12 +44,18 @@ const MOST_TRIED = 400;
 export class Trade implements Part {
   readonly root: HTMLElement;
   private readonly plane: Plane;
+  private readonly factor: number;
+  private readonly heat: string;
+  private readonly jerkFactor: number;
+  private readonly jerk: string;
   private readonly xs: number[] = [];
   private readonly ys: number[] = [];
 
   constructor(private readonly app: App) {
     const unit = app.data.signals[`${app.data.output}.jerk`]!.unit;
-    this.plane = new Plane("Jerk over heat", named("heat", "J"), named("largest jerk", unit));
+    [this.factor, this.heat] = shownUnit("J", traded(app.data, app.first)?.[0]);
+    [this.jerkFactor, this.jerk] = shownUnit(unit);
+    this.plane = new Plane("Jerk over heat", `heat in ${this.heat}`, `: largest jerk in ${this.jerk}`);
     this.root = this.plane.root;
     this.update(app.run);
   }
@@ -57,16 +63,16 @@ export class Trade implements Part {
   update(run: Result): void {
     const found = traded(this.app.data, run);
     if (!found) return;
-    const last = this.xs.length - 1;
-    if (this.xs[last] !== found[0] || this.ys[last] !== found[1]) {
+    const [x, y] = [found[0] * this.factor, found[1] * this.jerkFactor];
+    if (this.xs.at(-1) !== x || this.ys.at(-1) !== y) {
       if (this.xs.length >= MOST_TRIED) [this.xs, this.ys].forEach((list) => list.splice(1, 1));
-      this.xs.push(found[0]);
-      this.ys.push(found[1]);
+      this.xs.push(x);
+      this.ys.push(y);
     }
     const now = { x: this.xs.at(-1)!, y: this.ys.at(-1)!, look: "spot" };
     const was = { x: this.xs[0]!, y: this.ys[0]!, look: "spot was" };
     this.plane.draw([{ xs: this.xs, ys: this.ys, look: "trail" }], [was, now]);
-    this.root.setAttribute("aria-label", `heat ${number(now.x)} kJ, largest jerk ${number(now.y)}`);
+    this.root.setAttribute("aria-label", `heat ${number(now.x)} ${this.heat}, largest jerk ${number(now.y)} ${this.jerk}`);
   }
 }
 
@@ -75,17 +81,17 @@ export function trades(data: PageData): boolean {
   return `${data.output}.jerk` in data.signals && data.contacts.some((contact) => contact.heat);
 }
 
-/** Heat [kJ] and largest jerk of a run that reached its end. */
+/** Heat [J] and largest jerk, in SI, of a run that reached its end. */
 export function traded(data: PageData, run: Result): [number, number] | null {
   if (run.status !== 0) return null;
   const found = measures(data, run);
   const heats = found.filter((one) => one.name.startsWith("Heat of ") && one.name !== "Heat of all contacts");
   const jerk = found.find((one) => one.name.startsWith("Largest jerk"));
   if (!jerk || jerk.value === null) return null;
-  return [heats.reduce((sum, one) => sum + (one.value ?? 0), 0) * shownUnit("J")[0], jerk.value * shownUnit(jerk.unit)[0]];
+  return [heats.reduce((sum, one) => sum + (one.value ?? 0), 0), jerk.value];
 }
 
 function named(name: string, unit: string): string {
   const word = shownUnit(unit)[1];
-  return word ? `${name}, ${word}` : name;
+  return word ? `${name} in ${word}` : name;
 }

@@ -1,7 +1,7 @@
 // Events with their times, and what the run comes to, beside the start.
 import type { App, Part } from "./app";
 import type { Result } from "./core";
-import { element, whileSeen, write } from "./dom";
+import { element, Spoken, whileSeen, write } from "./dom";
 import { number, quantity, seconds } from "./format";
 import { ending, eventTime, type Measure, measures, sentence, unlocked } from "./measures";
 
@@ -47,6 +47,7 @@ export class Results implements Part {
   private draw(run: Result): void {
     const known = measures(this.app.data, run);
     const names = known.map((one) => one.name);
+    this.root.hidden = !known.length && !this.first.length;
     const lost = this.first.filter((one) => !names.includes(one.name));
     [...known, ...lost.map((one) => ({ ...one, value: null }))].forEach((one, i) => {
       const before = this.first.find((other) => other.name === one.name)?.value ?? null;
@@ -66,18 +67,17 @@ function line(body: HTMLTableSectionElement): HTMLTableRowElement {
   return row;
 }
 
-/** What is wrong with the run, said to everybody: shown at once, told aloud when the hand rests. */
+/** What is wrong with the run, said to everybody. */
 export class Verdict implements Part {
-  readonly root = element("div", { class: "verdict" });
-  private readonly shown = element("p", { "aria-hidden": "true" });
-  private readonly told = element("p", { role: "status", class: "unseen" });
+  readonly root: HTMLElement;
+  private readonly spoken = new Spoken("verdict");
 
   constructor(private readonly app: App) {
-    this.root.append(this.shown, this.told);
-    this.update(app.run, true);
+    this.root = this.spoken.root;
+    this.update(app.run);
   }
 
-  update(run: Result, settled: boolean): void {
+  update(run: Result): void {
     const { data, first, session } = this.app;
     const why = session.refusal();
     const refused = why && `There is no driveline with these numbers: ${why}. The curves are those before.`;
@@ -86,12 +86,12 @@ export class Verdict implements Part {
     const wrong = [refused, ending(data, run), never].filter(Boolean).join(" ");
     const well = `${run.events.length === 1 ? "1 event" : `${run.events.length} events`}; runs to ${number(run.reached)} s.`;
     this.root.classList.toggle("bad", wrong !== "");
-    write(this.shown, wrong || well);
-    if (settled) write(this.told, wrong || well);
+    this.spoken.say(wrong || well);
   }
 }
 
+/** Per cent with two decimals, or three digits where it is more. */
 function signed(value: number): string {
-  if (Math.abs(value) < 0.005) return "0";
-  return (value > 0 ? "+" : "") + number(value, 3);
+  const round = Math.round(100 * value) / 100;
+  return `${round > 0 ? "+" : ""}${number(round, 3)}`;
 }

@@ -2,7 +2,7 @@
 import uPlot from "uplot";
 import type { App } from "./app";
 import { element } from "./dom";
-import { number } from "./format";
+import { tickWords } from "./format";
 
 export interface Look {
   height: number;
@@ -18,7 +18,9 @@ export interface Look {
 }
 
 const NARROWEST = 120;
-const RIGHT = 8;
+/** Room beside the curves [px], of bars below them too. */
+export const LEFT = 58;
+export const RIGHT = 14;
 
 export class TimePlot {
   readonly plot: uPlot;
@@ -59,7 +61,9 @@ export class TimePlot {
   private options({ height, above, series, range, draw }: Look): uPlot.Options {
     const { palette, data } = this.app;
     const axis: uPlot.Axis = { stroke: () => palette.colour("text"), grid: { stroke: () => palette.colour("grid"), width: 1 }, ticks: { show: false }, font: "12px system-ui, sans-serif" };
-    const values = (_: uPlot, ticks: number[]): string[] => ticks.map((tick) => number(tick));
+    const values = (_: uPlot, ticks: number[]): string[] => tickWords(ticks);
+    // the last one has the unit
+    const times = (_: uPlot, ticks: number[]): string[] => tickWords(ticks).map((word, i) => (i === ticks.length - 1 ? `${word} s` : word));
     return {
       width: 400,
       height,
@@ -68,8 +72,8 @@ export class TimePlot {
       padding: [above, RIGHT, 0, 0],
       scales: { x: { time: false, range: () => [data.tStart, data.tEnd] }, y: { range } },
       axes: [
-        { ...axis, size: 26, values },
-        { ...axis, size: 58, values },
+        { ...axis, size: 26, values: times },
+        { ...axis, size: LEFT, gap: 10, values },
       ],
       series: [{}, ...series],
       hooks: { drawAxes: [draw] },

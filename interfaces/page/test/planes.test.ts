@@ -2,12 +2,27 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { elementRows, memberRows, sentence, type GearboxData } from "../src/gears";
+import { quantity, tickWords } from "../src/format";
 import { ends, ticks } from "../src/plane";
 
 test("axes hold all values and are never empty", () => {
   assert.deepEqual(ends([[0, 10], [5]]), [-0.6, 10.6]);
-  assert.deepEqual(ends([[3]]), [2.7, 3.3]);
+  assert.deepEqual(ends([[3]]), [2.997, 3.003]);
+  assert.deepEqual(ends([[0]]), [-1, 1]);
   assert.deepEqual(ends([]), [0, 1]);
+});
+
+test("each tick has a word of its own", () => {
+  assert.deepEqual(tickWords([17.655, 17.66, 17.665]), ["17.655", "17.66", "17.665"]);
+  assert.deepEqual(tickWords([-20000, 0, 20000]), ["−20000", "0", "20000"]);
+  assert.deepEqual(tickWords([0]), ["0"]);
+  assert.deepEqual(tickWords([]), []);
+});
+
+test("little energy is told in J", () => {
+  assert.equal(quantity(19.68, "J"), "19.68 J");
+  assert.equal(quantity(98560, "J"), "98.56 kJ");
+  assert.equal(quantity(10, "Pa"), "0.0001 bar");
 });
 
 test("ticks are few and round", () => {

@@ -39,7 +39,7 @@ def _made(run: Trajectory, data: dict[str, Any]) -> Any:
         def system(self) -> Any:
             """The driveline as it is now."""
             tables = {name: Table([tuple(knot) for knot in knots]) for name, knots in self.knots.items()}
-            values = {name: value for one in turned for name, value in _values(one, self.values[one["name"]])}
+            values = {name: value for one in turned for name, value in _values(one, self.values.get(one["name"], one["start"]))}
             return run.system.changed({**tables, **values})
 
     return DrivelineWidget(
