@@ -19,6 +19,7 @@ import clutchwork  # noqa: F401  importing the package fills the registry
 import element_figures
 import element_pages
 import gearbox_page
+import law_pages
 import option_page
 import parts_page
 from clutchwork.declare.schema import REGISTRY, Role, State, specs
@@ -97,7 +98,15 @@ def _law(kind: str, cls: Any) -> Iterator[str]:
         yield f"State: {'; '.join(_states(cls.states))}.{_in_use(cls)}\n"
     yield header(kind, "laws")
     yield f"## Example\n\n{_example(kind, cls)}\n"
+    yield f"## Turn the parameters\n\n{_live(kind, cls)}\n"
     yield f"## Equations\n\n{_symbols(cls)}\n\n{_equations(kind)}\n"
+
+
+def _live(kind: str, cls: type) -> str:
+    """The page on which the law is turned, in words, and in a frame."""
+    title = f"{cls.__name__}: torque over slip, small movements, a disc on a drum"
+    frame = f'<iframe class="live" loading="lazy" src="../../live/law-{kind}.html#compact" title="{title}"></iframe>'
+    return f"{law_pages.words(kind)}\n\n```{{raw}} html\n{frame}\n```"
 
 
 def _example(kind: str, cls: type) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 
@@ -35,10 +35,17 @@ def fingerprint() -> str:
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 
-def write(draw: Callable[[Path], list[Path]], folder: Path) -> None:
-    """Let a function write its pictures into a folder, unless those there are of the same fingerprint."""
+def write(
+    draw: Callable[[Path], list[Path]], folder: Path, also: Iterable[Path] = ()
+) -> None:
+    """Let a function write its pictures into a folder, unless those there are of the same fingerprint.
+
+    Parameters: also, other files that they depend on.
+    """
     mark = folder / "fingerprint"
-    if mark.exists() and mark.read_text() == fingerprint():
+    known = [hashlib.sha256(file.read_bytes()).hexdigest() for file in sorted(also)]
+    now = " ".join([fingerprint(), *known])
+    if mark.exists() and mark.read_text() == now:
         return
     draw(folder)
-    mark.write_text(fingerprint())
+    mark.write_text(now)

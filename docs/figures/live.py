@@ -6,12 +6,15 @@ import sys
 from pathlib import Path
 
 import clutchwork as cw
+from clutchwork.page import static
 from clutchwork.page.static import missing
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-sys.path[:0] = [str(EXAMPLES / "calibrate_shift")]
+sys.path[:0] = [str(EXAMPLES / "calibrate_shift"), str(EXAMPLES.parent / "tools")]
 
 import calibrate_shift  # noqa: E402
+
+import law_pages  # noqa: E402
 
 BOXES = (
     "zf-8hp70",
@@ -131,9 +134,22 @@ PAGES = {
 }
 
 
+def built() -> list[Path]:
+    """Files that all pages are made of, as far as they are there."""
+    return [
+        path
+        for path in static.FOLDER.glob("*")
+        if path.suffix in (".js", ".css", ".wasm")
+    ]
+
+
+def _names() -> list[str]:
+    return [*PAGES, *(f"law-{kind}" for kind in law_pages.kinds()), *BOXES]
+
+
 def write(folder: Path) -> list[Path]:
     """All pages, below `live` of the folder, as they are in the documentation."""
-    made = [folder / "live" / f"{name}.html" for name in (*PAGES, *BOXES)]
+    made = [folder / "live" / f"{name}.html" for name in _names()]
     made[0].parent.mkdir(parents=True, exist_ok=True)
     if missing():
         for path in made:
@@ -141,6 +157,8 @@ def write(folder: Path) -> list[Path]:
         return made
     for name, page in PAGES.items():
         page(folder / "live" / f"{name}.html")
+    for kind in law_pages.kinds():
+        law_pages.write(kind, folder / "live" / f"law-{kind}.html")
     for name in BOXES:
         cw.Gearbox.load(name).page(folder / "live" / f"{name}.html")
     return made

@@ -79,11 +79,11 @@ export function ends(values: readonly ArrayLike<number>[]): Ends {
   return [low - room, high + room];
 }
 
-/** Some four round numbers between the ends. */
+/** Some five round numbers between the ends, two at least. */
 export function ticks([low, high]: Ends): number[] {
-  const rough = (high - low) / 4;
+  const rough = (high - low) / 5;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((one) => one * power).find((one) => one >= rough) ?? 10 * power;
+  const step = [1, 2, 2.5, 5, 10].map((one) => one * power).find((one) => one >= rough) ?? 10 * power;
   const made: number[] = [];
   for (let k = Math.ceil(low / step); k * step <= high; k++) made.push(k * step + 0);
   return made;

@@ -12,7 +12,7 @@ export class Sliders implements Part {
   private readonly outputs: HTMLOutputElement[] = [];
 
   constructor(private readonly app: App) {
-    this.root = element("section", { class: "panel", "aria-label": "numbers to turn" }, element("h2", {}, "Turn these"));
+    this.root = element("section", { class: "panel turn", "aria-label": "numbers to turn" }, element("h2", {}, "Turn these"));
     app.data.sliders.forEach((slider, i) => this.root.append(this.line(slider, i)));
     this.update();
   }
@@ -41,7 +41,7 @@ export class Sliders implements Part {
     });
     this.inputs[i] = input;
     this.outputs[i] = output;
-    const ends = element("span", { class: "ends" }, quantity(slider.values[0]!, slider.unit), element("span", {}, quantity(slider.values.at(-1)!, slider.unit)));
+    const ends = element("span", { class: "ends" }, ...[slider.values[0]!, slider.values.at(-1)!].map((end) => element("span", {}, quantity(end, slider.unit))));
     return element("div", { class: "slider" }, element("label", { for: `slider-${i}`, title: title(slider) }, slider.name), output, input, ends);
   }
 }

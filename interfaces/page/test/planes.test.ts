@@ -26,8 +26,9 @@ test("little energy is told in J", () => {
 });
 
 test("ticks are few and round", () => {
-  assert.deepEqual(ticks([-0.6, 10.6]), [0, 5, 10]);
-  assert.deepEqual(ticks([0, 1]), [0, 0.5, 1]);
+  assert.deepEqual(ticks([-0.6, 10.6]), [0, 2.5, 5, 7.5, 10]);
+  assert.deepEqual(ticks([0, 1]), [0, 0.2, 0.4, 0.6, 0.8, 1].map((one) => ticks([0, 1]).find((other) => Math.abs(other - one) < 1e-12)));
+  for (let high = 1; high < 10; high += 0.01) assert.ok(ticks([-high, high]).length >= 3 && ticks([-high, high]).length <= 6, `${high}`);
   assert.ok(ticks([1e-7, 9e-7]).length <= 6);
 });
 

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
 STOPS, MOST_USUAL = 41, 3
+# of these, to see whether a number is a word by itself
+FEW = 5
 Numbers = NDArray[np.float64]
 Words = NDArray[np.uint64]
 Bytes = Callable[[Any], bytes]
@@ -202,7 +204,19 @@ def _number(aim: Target, text: str) -> float:
 
 
 def _with_words(system: System, made: Slider, bytes_of: Bytes) -> Slider:
-    """Words that any value changes, and what each value makes of them; values that are refused are left out."""
+    """Words that any value changes, and what each value makes of them; values that are refused are left out.
+
+    A number that a few values show to be words by itself, and of which none is refused, needs no others.
+    """
+    few = replace(made, values=np.unique(np.append(made.values[:: (STOPS - 1) // FEW], made.values[[0, -1]])))
+    try:
+        found = _at_all(system, few, bytes_of)
+    except ValueError:
+        found = made
+    return found if found.direct and len(found.values) == len(few.values) else _at_all(system, made, bytes_of)
+
+
+def _at_all(system: System, made: Slider, bytes_of: Bytes) -> Slider:
     lines, kept = list[Words](), list[float]()
     refused = ""
     own = np.frombuffer(bytes_of(system), dtype=np.uint64)
@@ -221,7 +235,7 @@ def _with_words(system: System, made: Slider, bytes_of: Bytes) -> Slider:
     places = np.flatnonzero((whole != own).any(axis=0))
     words = np.ascontiguousarray(whole[:, places])
     turned = values != made.start
-    direct = bool(np.all(words[turned].view(np.float64) == values[turned, None]))
+    direct = bool(len(places)) and bool(np.all(words[turned].view(np.float64) == values[turned, None]))
     return replace(made, values=values, places=places, words=words, direct=direct)
 
 
