@@ -43,7 +43,9 @@ def test_its_page_is_that_of_the_file():
     data = json.loads(widget.page)
     assert [table["name"] for table in data["tables"]] == ["c1.pressure"]
     assert np.frombuffer(widget.core[:4], dtype=np.uint8).tolist() == [0, 97, 115, 109]
-    assert ":root" in widget.style
+    assert ":root" in widget.css
+    # notebooks make a view of the style of any widget that has one, and fail where it is a text
+    assert "style" not in widget.keys
 
 
 def test_wrong_names_are_explained():
@@ -58,7 +60,7 @@ def shown(browse, tmp_path_factory):
     """What a browser made of two widgets on one page."""
     folder = tmp_path_factory.mktemp("widget")
     widget = run().widget(drag="c1.pressure", sliders=["c1.gain"])
-    traits = {name: getattr(widget, name) for name in ("page", "style", "knots", "values")}
+    traits = {name: getattr(widget, name) for name in ("page", "css", "knots", "values")}
     (folder / "traits.json").write_text(
         json.dumps({**traits, "core": b64encode(widget.core).decode()}), encoding="utf-8"
     )

@@ -1,5 +1,5 @@
 // The widget in a page that holds two of them, as anywidget gives it a model: node widget.mjs NODE_MODULES BROWSER FOLDER
-// FOLDER: widget.js, and traits.json with page, style, core (base64), knots, values. What it prints: what came of each deed.
+// FOLDER: widget.js, and traits.json with page, css, core (base64), knots, values. What it prints: what came of each deed.
 import { readFile } from "node:fs/promises";
 import { drag, heard, launched, settled } from "./driver.mjs";
 

@@ -9,7 +9,7 @@ const CAPTIONS: Record<string, string> = { stick: "Power flow", lever: "Levers: 
 
 class Page {
   private readonly now = element("div", { class: "curves" });
-  private readonly words = new Spoken("panel");
+  private readonly words = new Spoken("panel drag");
   private readonly pictures = element("div", { class: "gearpictures" });
   private readonly buttons: HTMLButtonElement[] = [];
   private gear = 0;

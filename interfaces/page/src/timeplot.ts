@@ -19,7 +19,7 @@ export interface Look {
 
 const NARROWEST = 120;
 /** Room beside the curves [px], of bars below them too. */
-export const LEFT = 58;
+export const LEFT = 64;
 export const RIGHT = 14;
 
 export class TimePlot {

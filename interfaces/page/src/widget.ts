@@ -6,7 +6,7 @@ import { stateOf, take, type State } from "./state";
 import { darkness, isDark, watchTheme } from "./theme";
 
 interface Model {
-  get(name: "page" | "style"): string;
+  get(name: "page" | "css"): string;
   get(name: "core"): DataView;
   get(name: "knots"): State["knots"];
   get(name: "values"): State["values"];
@@ -20,10 +20,11 @@ const TRAITS = ["change:knots", "change:values"];
 
 /** Each view has a root, a style and a theme of its own; what is returned takes it away. */
 async function render({ model, el }: { model: Model; el: HTMLElement }): Promise<() => void> {
-  const place = element("div");
+  // keys on knots and sliders are theirs, not shortcuts of JupyterLab
+  const place = element("div", { "data-lm-suppress-shortcuts": true });
   const root = element("main");
   const sheet = new CSSStyleSheet();
-  sheet.replaceSync(model.get("style").replaceAll(":root", ":host"));
+  sheet.replaceSync(model.get("css").replaceAll(":root", ":host"));
   const inside = place.attachShadow({ mode: "open" });
   inside.adoptedStyleSheets = [sheet];
   inside.append(root);

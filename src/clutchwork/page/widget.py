@@ -30,7 +30,8 @@ def _made(run: Trajectory, data: dict[str, Any]) -> Any:
 
         _esm = FOLDER / WIDGET
         page = traitlets.Unicode().tag(sync=True)
-        style = traitlets.Unicode().tag(sync=True)
+        # not `style`, which notebooks take for a model of ipywidgets
+        css = traitlets.Unicode().tag(sync=True)
         core = traitlets.Bytes().tag(sync=True)
         knots = traitlets.Dict().tag(sync=True)  # signal -> [[time, value], ...], SI
         values = traitlets.Dict().tag(sync=True)  # number -> value, SI
@@ -39,12 +40,16 @@ def _made(run: Trajectory, data: dict[str, Any]) -> Any:
         def system(self) -> Any:
             """The driveline as it is now."""
             tables = {name: Table([tuple(knot) for knot in knots]) for name, knots in self.knots.items()}
-            values = {name: value for one in turned for name, value in _values(one, self.values.get(one["name"], one["start"]))}
+            values = {
+                name: value
+                for one in turned
+                for name, value in _values(one, self.values.get(one["name"], one["start"]))
+            }
             return run.system.changed({**tables, **values})
 
     return DrivelineWidget(
         page=json.dumps(data, allow_nan=False, default=list),
-        style=built(STYLE).decode(),
+        css=built(STYLE).decode(),
         core=built(CORE),
         knots={one["name"]: one["points"] for one in data["tables"]},
         values={one["name"]: one["start"] for one in data["sliders"]},
