@@ -1,8 +1,9 @@
-"""The reference page of the catalogue of gearboxes, from its files."""
+"""The reference page of the catalogue of gearboxes, from its files, and what chooses one of their live pages."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from html import escape
 
 from clutchwork.base.text import counted
 from clutchwork.gearbox.gearbox import Gearbox, catalogue
@@ -16,10 +17,51 @@ Members whose wheels are one part share a name, such as `R2S3`: ring of the seco
 | name | gearbox | gears | elements | largest deviation |
 |---|---|---|---|---|"""
 
+# the box that is there before one is chosen
+FIRST = "zf-8hp70"
+LIVE = "../live/{}.html"
+# a new frame each time, so that the browser does not go back through all that were chosen
+CHOOSER = """<p><label for="gearbox">Gearbox:</label> <select id="gearbox">
+{options}
+</select></p>
+<iframe class="live" id="gearbox-page" loading="lazy" src="{first}"
+ title="A gearbox whose gears can be chosen"></iframe>
+<script>
+(() => {{
+  const select = document.getElementById("gearbox");
+  const show = () => {{
+    const old = document.getElementById("gearbox-page");
+    const frame = old.cloneNode();
+    frame.src = select.value;
+    old.replaceWith(frame);
+  }};
+  select.addEventListener("change", show);
+  // a browser may remember what was chosen
+  if (select.value !== "{first}") show();
+}})();
+</script>
+<noscript><p>Without scripts the pages of all gearboxes are reached from their list in the reference.</p></noscript>
+"""
+
+
+def chooser() -> str:
+    """HTML that shows the live page of the gearbox that is chosen."""
+    options = "\n".join(map(_option, _sorted()))
+    return CHOOSER.format(options=options, first=LIVE.format(FIRST))
+
+
+def _option(box: Gearbox) -> str:
+    selected = " selected" if box.name == FIRST else ""
+    return f'<option value="{LIVE.format(box.name)}"{selected}>{escape(box.title)}</option>'
+
+
+def _sorted() -> list[Gearbox]:
+    return sorted(catalogue().values(), key=lambda box: box.title.lower())
+
 
 def page() -> str:
     """The page."""
-    boxes = sorted(catalogue().values(), key=lambda box: box.title.lower())
+    boxes = _sorted()
     rows = [
         f"| [`{box.name}`](#{box.name}) | {box.title} | {len(box.gears)} | {len(box.elements)} | {_deviation(box)} |"
         for box in boxes
@@ -40,7 +82,8 @@ def _deviation(box: Gearbox) -> str:
 def _section(box: Gearbox) -> Iterator[str]:
     form = "output over input" if box.ratio_form == "out/in" else "input over output"
     yield f"\n({box.name})=\n## {box.title}\n"
-    yield f"`{box.name}`, {counted(len(box.sets), 'gear sets')}; ratios {form}.\n"
+    live = f'<a href="{LIVE.format(box.name)}">choose a gear</a>'
+    yield f"`{box.name}`, {counted(len(box.sets), 'gear sets')}; ratios {form}; {live}.\n"
     yield "| gear | closed | ratio by teeth | published |\n|---|---|---|---|"
     for gear, ratio in said(box).items():
         published = f"{box.published[gear]:g}" if gear in box.published else ""

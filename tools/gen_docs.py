@@ -51,6 +51,7 @@ def write(folder: Path) -> list[Path]:
     texts |= {"laws": "\n".join(_overview(laws)), "options": option_page.page(), "parts": parts_page.page()}
     texts |= {"gearboxes": gearbox_page.page()}
     texts |= {f"laws/{kind}": "\n".join(_law(kind, cls)) for kind, cls in laws}
+    (folder / "chooser.html").write_text(gearbox_page.chooser(), encoding="utf-8")
     for picture in element_figures.KEPT.glob("*.svg"):
         shutil.copy2(picture, folder / "elements" / f"{picture.stem.rpartition('-')[0]}.svg")
     return [_write(folder / f"{name}.md", text) for name, text in texts.items()]

@@ -16,14 +16,6 @@ import calibrate_shift  # noqa: E402
 
 import law_pages  # noqa: E402
 
-BOXES = (
-    "zf-8hp70",
-    "zf-6hp26",
-    "ford-10r80",
-    "aisin-tf-80sc",
-    "toyota-p410",
-    "ford-model-t",
-)
 NOT_BUILT = (
     "<p>This page computes, but was not built here: run make wasm page docs.</p>"
 )
@@ -144,7 +136,7 @@ def built() -> list[Path]:
 
 
 def _names() -> list[str]:
-    return [*PAGES, *(f"law-{kind}" for kind in law_pages.kinds()), *BOXES]
+    return [*PAGES, *(f"law-{kind}" for kind in law_pages.kinds()), *cw.catalogue()]
 
 
 def write(folder: Path) -> list[Path]:
@@ -159,6 +151,6 @@ def write(folder: Path) -> list[Path]:
         page(folder / "live" / f"{name}.html")
     for kind in law_pages.kinds():
         law_pages.write(kind, folder / "live" / f"law-{kind}.html")
-    for name in BOXES:
-        cw.Gearbox.load(name).page(folder / "live" / f"{name}.html")
+    for name, box in cw.catalogue().items():
+        box.page(folder / "live" / f"{name}.html")
     return made

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from math import ceil
 
 from clutchwork.base.classes import dataclass
@@ -29,8 +30,28 @@ class Levers:
     plan: Layout
 
 
+class _Structure:
+    """What a layout depends on: not on gears."""
+
+    def __init__(self, box: Definition, merged: bool) -> None:
+        self.box, self.merged = box, merged
+        self.key = repr((box.sets, box.elements, box.members, box.input, box.output, merged))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Structure) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+
 def layout(box: Definition, *, merged: bool) -> Levers:
-    """A lever for each set, or for those together that share two members."""
+    """A lever for each set, or for those together that share two members; one that is known is not sought again."""
+    return _laid(_Structure(box, merged))
+
+
+@lru_cache(maxsize=32)
+def _laid(structure: _Structure) -> Levers:
+    box, merged = structure.box, structure.merged
     made = hung(levers(box.sets, merged=merged))
     for more in range(0, MORE * TRIES, MORE):
         rows = _rows(made, more)

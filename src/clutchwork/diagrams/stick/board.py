@@ -129,7 +129,10 @@ class Board:
 
     def cost(self, node: Node, way: int, member: str) -> float | None:
         """What it costs to get there in a direction; None where one must not."""
-        if node in self.solid or self.ends.get(node, member) != member or not self.inside(node):
+        x, y = node
+        if not (0 <= x < self.columns and 1 <= y < self.rows) or node in self.solid:
+            return None
+        if self.ends.get(node, member) != member:
             return None
         here = self.at.get(node)
         if here is not None and (len(here) > 1 or member not in here):

@@ -9,7 +9,7 @@ from math import inf
 from clutchwork.diagrams.stick.board import CROSSING, Board, Edge, edge, edges
 from clutchwork.diagrams.stick.bodies import Body, Node, Piece
 from clutchwork.diagrams.stick.search import BEND, Symbol, Task, Way, find
-from clutchwork.diagrams.stick.spots import between_members, on_housing
+from clutchwork.diagrams.stick.spots import below_housing, between_members, on_housing
 from clutchwork.gearbox.definition import Definition, ShiftElement
 from clutchwork.gearbox.gear_set import HOUSING
 
@@ -175,9 +175,13 @@ class Router:
         first, second = sorted(element.members, key=lambda m: (m == HOUSING, not self.board.nodes(m)))
         if second == HOUSING:
             placer, goals = on_housing(self.board, element.name), set[Node]()
+            toward = below_housing(self.board)
         else:
+            toward = []
             placer, goals = between_members(self.board, element.name), self.board.nodes(second)
-        way = find(self.board, Task((first, second), self.board.nodes(first), goals, placer, limit=self.limit))
+        way = find(
+            self.board, Task((first, second), self.board.nodes(first), goals, placer, limit=self.limit, toward=toward)
+        )
         if way is None or way.symbol is None:
             raise NoRoomError(element.name)
         self._put(element, first, second, way, way.symbol)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Collection, Iterator
 from heapq import heappop, heappush
 from math import inf
@@ -42,11 +43,9 @@ class Way(NamedTuple):
     symbol: Symbol | None = None
 
 
-class _State(NamedTuple):
-    node: Node
-    way: int
-    symbol: Symbol | None
-
+# node, direction, symbol that was placed
+_State = tuple[Node, int, Symbol | None]
+BEGIN = -1  # where a start was reached from
 
 # symbols that may be placed from a node in a direction
 Placer = Callable[[Node, int], Iterator[Symbol]]
@@ -57,7 +56,8 @@ class Task:
     """A way that is sought: from one of some nodes to a goal, through one symbol where a placer is given.
 
     Parameters: members, before and behind the symbol; placer, symbols that may stand at a node; price, what a goal
-    costs; limit, what a way may cost. Without goals a way ends behind its symbol.
+    costs; limit, what a way may cost; toward, where symbols may stand where there are no goals. Without goals a way
+    ends behind its symbol.
     """
 
     members: tuple[str, str]
@@ -66,23 +66,41 @@ class Task:
     placer: Placer | None = None
     price: Callable[[Node], float] | None = None
     limit: float = inf
+    toward: Collection[Node] = ()
 
-    def ends(self, state: _State) -> bool:
+    def ends(self, node: Node, way: int, symbol: Symbol | None) -> bool:
         """Whether a way may end there."""
-        if state.way == NO_WAY or (self.placer is not None and state.symbol is None):
+        if way == NO_WAY or (self.placer is not None and symbol is None):
             return False
-        return state.node in self.goals if self.goals else state.symbol is not None
+        return node in self.goals if self.goals else symbol is not None
 
 
 def find(board: Board, task: Task) -> Way | None:
     """The cheapest way; None: there is none."""
     banned, spots = set[Symbol](), dict[tuple[Node, int], list[Symbol]]()
+    least = _least(board, task) if task.limit < inf else {}
     for _ in range(MOST_BANNED):
-        found = _Search(board, task, banned, spots).run()
+        found = _Search(board, task, banned, spots, least).run()
         if found is None or found.symbol is None or _clean(found, found.symbol):
             return found
         banned.add(found.symbol)
     return None
+
+
+def _least(board: Board, task: Task) -> dict[Node, float]:
+    """The least that is left to pay at a node: steps to the nearest goal around what is solid."""
+    made = dict.fromkeys(task.goals or task.toward, 0.0)
+    queue = deque(made)
+    while queue:
+        x, y = queue.popleft()
+        more = made[x, y] + 1.0
+        for a, b in STEPS:
+            node = (x + a, y + b)
+            if node not in made:
+                made[node] = more
+                if board.inside(node) and node not in board.solid and board.ends.get(node, "") in ("", *task.members):
+                    queue.append(node)
+    return made
 
 
 def _clean(way: Way, symbol: Symbol) -> bool:
@@ -93,74 +111,91 @@ def _clean(way: Way, symbol: Symbol) -> bool:
 
 
 class _Search:
-    """The method of Dijkstra over nodes, directions, and whether the symbol is placed."""
+    """The method of Dijkstra over nodes, directions, and whether the symbol is placed; most time of a picture."""
 
     def __init__(
-        self, board: Board, task: Task, banned: set[Symbol], spots: dict[tuple[Node, int], list[Symbol]]
+        self,
+        board: Board,
+        task: Task,
+        banned: set[Symbol],
+        spots: dict[tuple[Node, int], list[Symbol]],
+        least: dict[Node, float],
     ) -> None:
-        self.board, self.task, self.banned, self.spots = board, task, banned, spots
+        self.board, self.task, self.banned, self.spots, self.least = board, task, banned, spots, least
         self.open: list[tuple[float, int, _State]] = []
         self.best: dict[tuple[Node, int, bool], float] = {}
-        self.before: dict[_State, _State] = {}
-        self.count = 0
+        # of each state in the order in which they were reached: where it was reached from
+        self.reached: list[tuple[_State, int]] = []
 
     def run(self) -> Way | None:
         """The cheapest way."""
         for node in sorted(self.task.starts):
-            self.push(0.0, _State(node, NO_WAY, None), None)
+            self.push(0.0, (node, NO_WAY, None), BEGIN)
+        best, ends = self.best, self.task.ends
         while self.open:
-            cost, _, state = heappop(self.open)
-            if cost > self.best[state.node, state.way, state.symbol is not None]:
+            cost, number, state = heappop(self.open)
+            node, way, symbol = state
+            if cost > best[node, way, symbol is not None]:
                 continue
-            if self.task.ends(state):
-                return self.back(cost, state)
-            for way in range(len(STEPS)):
-                self.step(cost, state, way)
+            if ends(node, way, symbol):
+                return self.back(cost, number)
+            self.step(cost, number, state)
         return None
 
-    def push(self, cost: float, state: _State, source: _State | None) -> None:
+    def push(self, cost: float, state: _State, source: int) -> None:
         """A state that may be reached at a cost."""
-        key = (state.node, state.way, state.symbol is not None)
-        if cost > self.task.limit or cost >= self.best.get(key, inf):
+        node, way, symbol = state
+        key = (node, way, symbol is not None)
+        rest = self.least.get(node, inf) if self.least else 0.0
+        if cost >= self.best.get(key, inf) or cost + rest > self.task.limit:
             return
         self.best[key] = cost
-        if source is not None:
-            self.before[state] = source
-        self.count += 1
-        heappush(self.open, (cost, self.count, state))
+        heappush(self.open, (cost, len(self.reached), state))
+        self.reached.append((state, source))
 
-    def step(self, cost: float, state: _State, way: int) -> None:
-        """One node on in a direction, or through a symbol."""
-        straight = state.way in (way, NO_WAY)
-        member = self.task.members[state.symbol is not None]
-        crossing = self.board.crossed(state.node, member)
-        fresh = state.symbol is not None and state.node == state.symbol.second
-        if not straight and (crossing or fresh or state.way == BACK[way]):
-            return
-        node = (state.node[0] + STEPS[way][0], state.node[1] + STEPS[way][1])
-        more = self.board.cost(node, way, member)
-        if more is not None:
-            more += 1.0 + (0.0 if straight else BEND) + (JOIN if state.way == NO_WAY else 0.0)
-            more += self.task.price(node) if self.task.price is not None and node in self.task.goals else 0.0
-            self.push(cost + more, _State(node, way, state.symbol), state)
-        if self.task.placer is not None and state.symbol is None and straight and not crossing:
-            key = (state.node, way)
-            if key not in self.spots:
-                self.spots[key] = [one for one in self.task.placer(state.node, way) if self.fits(one, way)]
-            for symbol in self.spots[key]:
-                if symbol not in self.banned:
-                    self.push(cost + 2.0, _State(symbol.second, way, symbol), state)
+    def step(self, cost: float, number: int, state: _State) -> None:
+        """One node on in every direction, or through a symbol."""
+        task, board, push = self.task, self.board, self.push
+        (x, y), before, symbol = state
+        member = task.members[symbol is not None]
+        crossing = board.crossed((x, y), member)
+        # no bend where lines cross, nor at the end of a symbol
+        bound = crossing or (symbol is not None and (x, y) == symbol.second)
+        start = JOIN if before == NO_WAY else 0.0
+        placer = None if symbol is not None or crossing else task.placer
+        for way, (a, b) in enumerate(STEPS):
+            straight = before in (way, NO_WAY)
+            if not straight and (bound or before == BACK[way]):
+                continue
+            node = (x + a, y + b)
+            more = board.cost(node, way, member)
+            if more is not None:
+                more += 1.0 + (0.0 if straight else BEND) + start
+                if task.price is not None and node in task.goals:
+                    more += task.price(node)
+                push(cost + more, (node, way, symbol), number)
+            if placer is not None and straight:
+                for one in self.symbols(placer, (x, y), way):
+                    if one not in self.banned:
+                        push(cost + 2.0, (one.second, way, one), number)
+
+    def symbols(self, placer: Placer, node: Node, way: int) -> list[Symbol]:
+        """Symbols that may stand at a node."""
+        key = (node, way)
+        if key not in self.spots:
+            self.spots[key] = [one for one in placer(node, way) if self.fits(one, way)]
+        return self.spots[key]
 
     def fits(self, symbol: Symbol, way: int) -> bool:
         """Whether a symbol ends at the housing, on a free node or on the other member."""
         member = self.task.members[1]
         return symbol.second == symbol.first or self.board.cost(symbol.second, way, member) in (0.0, NEAR)
 
-    def back(self, cost: float, state: _State) -> Way:
+    def back(self, cost: float, number: int) -> Way:
         """The way to a state."""
         nodes: list[list[Node]] = [[], []]
-        now: _State | None = state
-        while now is not None:
-            nodes[now.symbol is not None].append(now.node)
-            now = self.before.get(now)
-        return Way(cost, tuple(reversed(nodes[0])), tuple(reversed(nodes[1])), state.symbol)
+        (_, _, last), _ = self.reached[number]
+        while number != BEGIN:
+            (node, _, symbol), number = self.reached[number]
+            nodes[symbol is not None].append(node)
+        return Way(cost, tuple(reversed(nodes[0])), tuple(reversed(nodes[1])), last)

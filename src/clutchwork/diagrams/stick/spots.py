@@ -11,6 +11,7 @@ from clutchwork.diagrams.stick.bodies import Node
 from clutchwork.diagrams.stick.search import Placer, Symbol
 
 CELL = 12.0  # px from line to line
+BELOW = 2  # rows from the housing down to where a symbol begins
 NAME = 10.5  # px, size of names
 
 
@@ -43,9 +44,10 @@ def between_members(board: Board, name: str) -> Placer:
 def on_housing(board: Board, name: str) -> Placer:
     """Symbols below the housing, which is the uppermost row; the name stands above it."""
     across, top = _reach(name), board.rows - 1
+    row = top - BELOW
 
     def place(node: Node, way: int) -> Iterator[Symbol]:
-        if way != 2 or node[1] != top - 2:
+        if way != 2 or node[1] != row:
             return
         x = node[0]
         words = [(x + n, top) for n in range(-across, across + 1)]
@@ -54,6 +56,11 @@ def on_housing(board: Board, name: str) -> Placer:
             yield Symbol(node, node, way, (x, top + 1), cells)
 
     return place
+
+
+def below_housing(board: Board) -> list[Node]:
+    """Nodes at which a symbol below the housing may begin."""
+    return [(column, board.rows - 1 - BELOW) for column in range(board.columns)]
 
 
 def _reach(name: str) -> int:
