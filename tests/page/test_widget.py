@@ -106,6 +106,13 @@ def test_each_widget_has_the_theme_around_it(shown):
     assert [light(one) for one in shown["unsaid"]] == [True, True]
     assert [light(one) for one in shown["preferred"]] == [False, False]
     assert shown["unsaid"][1]["picture"] != shown["preferred"][1]["picture"]
+    # VS Code and Colab, where the reader prefers the dark
+    assert {name: [light(one) for one in both] for name, both in shown["said"].items()} == {
+        "data-vscode-theme-kind vscode-light": [True, True],
+        "data-vscode-theme-kind vscode-dark": [False, False],
+        "theme light": [True, True],
+        "theme dark": [False, False],
+    }
 
 
 def test_a_widget_that_is_taken_away_hears_nothing_and_may_come_back(shown):

@@ -34,6 +34,13 @@ const unsaid = await both();
 await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: "dark" }]);
 await settled(page);
 const preferred = await both();
+const said = {};
+for (const [where, name, value] of [["body", "data-vscode-theme-kind", "vscode-light"], ["body", "data-vscode-theme-kind", "vscode-dark"], ["html", "theme", "light"], ["html", "theme", "dark"]]) {
+  await page.evaluate((...given) => document.querySelector(given[0]).setAttribute(given[1], given[2]), where, name, value);
+  await settled(page);
+  said[`${name} ${value}`] = await both();
+  await page.evaluate((...given) => document.querySelector(given[0]).removeAttribute(given[1]), where, name);
+}
 await page.evaluate(() => window.places[0].away());
 const listeners = await page.evaluate(() => window.places.map(({ model, el }) => [model.count(), el.childElementCount]));
 await page.evaluate(() => window.places[0].again());
@@ -41,7 +48,7 @@ await settled(page);
 const again = await page.evaluate(() => window.places[0].inside().querySelectorAll(".knot").length);
 await opened.close();
 const asked = requests.filter((url) => !url.startsWith("data:") && !url.startsWith("about:"));
-process.stdout.write(JSON.stringify({ errors, asked, start, dragged, typed, received, dark, unsaid, preferred, listeners, again }));
+process.stdout.write(JSON.stringify({ errors, asked, start, dragged, typed, received, dark, unsaid, preferred, said, listeners, again }));
 
 /** The knots of the first table, lower and later, as Python sets them. */
 function later({ knots }) {

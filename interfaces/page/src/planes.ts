@@ -2,6 +2,7 @@
 import type { App, Part } from "./app";
 import type { Result } from "./core";
 import type { LoopData, PageData } from "./data";
+import { whileSeen } from "./dom";
 import { number, shownUnit } from "./format";
 import { evaluated } from "./forms";
 import { measures } from "./measures";
@@ -9,6 +10,7 @@ import { Plane, type Line } from "./plane";
 
 export class Loop implements Part {
   readonly root: HTMLElement;
+  readonly update: () => void;
   private readonly plane: Plane;
   private readonly start: Line;
 
@@ -20,10 +22,11 @@ export class Loop implements Part {
     this.plane = new Plane(`${loop.y} over ${loop.x}`, named(loop.x, signals[loop.x]!.unit), named("", signals[loop.y]!.unit));
     this.root = this.plane.root;
     this.start = this.line(app.first, "loop was");
-    this.update(app.run);
+    this.update = whileSeen(this.root, () => this.draw(app.run));
+    this.update();
   }
 
-  update(run: Result): void {
+  private draw(run: Result): void {
     this.plane.draw(run === this.app.first ? [this.line(run, "loop")] : [this.start, this.line(run, "loop")]);
   }
 
@@ -48,6 +51,7 @@ export class Trade implements Part {
   private readonly heat: string;
   private readonly jerkFactor: number;
   private readonly jerk: string;
+  private readonly drawn: () => void;
   private readonly xs: number[] = [];
   private readonly ys: number[] = [];
 
@@ -57,6 +61,7 @@ export class Trade implements Part {
     [this.jerkFactor, this.jerk] = shownUnit(unit);
     this.plane = new Plane("Jerk over heat", `heat in ${this.heat}`, `: largest jerk in ${this.jerk}`);
     this.root = this.plane.root;
+    this.drawn = whileSeen(this.root, () => this.draw());
     this.update(app.run);
   }
 
@@ -69,6 +74,10 @@ export class Trade implements Part {
       this.xs.push(x);
       this.ys.push(y);
     }
+    this.drawn();
+  }
+
+  private draw(): void {
     const now = { x: this.xs.at(-1)!, y: this.ys.at(-1)!, look: "spot" };
     const was = { x: this.xs[0]!, y: this.ys[0]!, look: "spot was" };
     this.plane.draw([{ xs: this.xs, ys: this.ys, look: "trail" }], [was, now]);
