@@ -6,7 +6,7 @@ import { heard, launched, settled } from "./driver.mjs";
 
 const ROLES = new Set(["button", "slider", "link", "textbox", "checkbox", "combobox", "spinbutton", "radio", "tab"]);
 // words are told when they rest
-const REST = 500;
+const REST = 700;
 const MOST_TABS = 80;
 const [modules, browser, ...pages] = process.argv.slice(2);
 const opened = await launched(modules, browser);
@@ -96,8 +96,7 @@ async function typedOn(page) {
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
   const [, during] = await state();
-  await settled(page);
-  await new Promise((resolve) => setTimeout(resolve, REST));
+  await settled(page, REST);
   const [after, told] = await state();
   return { before, after, during, told };
 }

@@ -31,8 +31,7 @@ export async function drag(page, handle, [x, y]) {
   await settled(page);
 }
 
-/** The hand rests: the last run is drawn. */
-export async function settled(page) {
-  await new Promise((resolve) => setTimeout(resolve, 260));
-  await page.evaluate(() => new Promise(requestAnimationFrame));
+/** The hand rests: what moved last is drawn, then timers of the page up to so many ms are over, however busy the machine is. */
+export function settled(page, rest = 260) {
+  return page.evaluate((ms) => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(() => requestAnimationFrame(done), ms)))), rest);
 }
