@@ -24,12 +24,13 @@ async function looked(file) {
   const after = await state(page);
   if (dragged) await keys(page);
   const typed = await state(page);
+  const taken = await closest(page);
   await page.evaluate(() => window.scrollTo(0, document.body.scrollHeight));
   await page.evaluate(() => window.clutchworkPage.look(0.3 * window.clutchworkPage.data.tEnd));
   await settled(page);
   const words = await page.evaluate(() => document.body.innerText);
   await page.close();
-  return { errors, requests: requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:")), ready, dragged, before, after, typed, words };
+  return { errors, requests: requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:")), ready, dragged, before, after, typed, taken, words };
 }
 
 /** Numbers that follow from the present run, and the picture of the first curves. */
@@ -40,6 +41,29 @@ function state(page) {
     const canvas = document.querySelector(".curves canvas");
     return { sum, status: run.status, knots: session.knots, runs: work.length, picture: canvas ? canvas.toDataURL().length : 0 };
   });
+}
+
+/** Which of two knots of one table, so close that their handles overlap, a hand takes that is on the first one: names. */
+async function closest(page) {
+  const asked = await page.evaluate(() => {
+    const middle = (one) => {
+      const { x, y, width, height } = one.getBoundingClientRect();
+      return [x + width / 2, y + height / 2];
+    };
+    const knots = [...document.querySelectorAll(".knot:not([hidden])")];
+    for (const [i, one] of knots.entries()) {
+      const others = knots.filter((other) => other !== one).map((other) => Math.hypot(...middle(other).map((place, k) => place - middle(one)[k])));
+      const after = knots[i + 1];
+      const away = after && Math.hypot(...middle(after).map((place, k) => place - middle(one)[k]));
+      if (away > 4 && away < 15 && Math.min(...others) > 4) return { at: middle(one), name: one.getAttribute("aria-label") };
+    }
+    return null;
+  });
+  if (!asked) return null;
+  await page.mouse.move(...asked.at);
+  await page.mouse.down();
+  await page.mouse.up();
+  return [asked.name, await page.evaluate(() => document.activeElement.getAttribute("aria-label"))];
 }
 
 async function keys(page) {

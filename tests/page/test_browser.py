@@ -75,6 +75,12 @@ def test_what_is_dragged_moves_the_curves(looked: dict[str, Any]) -> None:
         assert before["picture"] != after["picture"], name
 
 
+def test_a_hand_takes_the_nearest_of_knots_that_overlap(looked: dict[str, Any]) -> None:
+    taken = [one["taken"] for one in looked.values() if one["taken"]]
+    assert taken
+    assert [pair for pair in taken if pair[0] != pair[1]] == []
+
+
 def test_names_are_shown_as_they_are(looked: dict[str, Any]) -> None:
     assert NASTY in looked["nasty"]["words"]
 

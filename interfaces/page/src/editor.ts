@@ -125,23 +125,39 @@ export class Editor implements Part {
   private handle(table: number, k: number, i: number): HTMLElement {
     const label = `${this.table(table).name}, knot ${i + 1}`;
     const made = element("div", { class: `knot c${k % 8}`, role: "slider", tabindex: "0", "aria-label": label, "aria-orientation": "vertical" });
-    made.addEventListener("pointerdown", (event) => this.grab(event, made, table, i));
+    made.addEventListener("pointerdown", (event) => this.grab(event, made));
     made.addEventListener("keydown", (event) => this.key(event, table, i));
     made.addEventListener("focus", () => this.app.look(this.knots(table)[i]?.[0] ?? this.app.time));
     this.plot.over.append(made);
     return made;
   }
 
-  private grab(event: PointerEvent, handle: HTMLElement, table: number, i: number): void {
+  /** The knot whose middle is nearest to a pointer: where they are close, their handles overlap. */
+  private nearest(event: PointerEvent, hit: HTMLElement): [HTMLElement, number, number] {
+    const away = (handle: HTMLElement): number => {
+      const { left, right, top, bottom } = handle.getBoundingClientRect();
+      // of two in one place the one that is seen
+      return Math.hypot((left + right) / 2 - event.clientX, (top + bottom) / 2 - event.clientY) - (handle === hit ? 1 : 0);
+    };
+    const all = this.handles.flatMap((row, k) => row.map((handle, i): [HTMLElement, number, number] => [handle, this.tables[k]!, i]));
+    return all.filter(([handle]) => !handle.hidden).reduce((best, one) => (away(one[0]) < away(best[0]) ? one : best));
+  }
+
+  private grab(event: PointerEvent, hit: HTMLElement): void {
     if (event.button !== 0) return;
     event.preventDefault();
+    const [handle, table, i] = this.nearest(event, hit);
+    // a hand that takes it beside its middle does not move it yet
+    const [t, y] = this.knots(table)[i]!;
+    const [tHand, yHand] = this.over.under(event);
+    const off: Knot = [t - tHand, y * this.factor - yHand];
     handle.focus({ preventScroll: true });
     handle.setPointerCapture(event.pointerId);
     handle.classList.add("held");
     this.held = true;
     const drag = (to: PointerEvent): void => {
       const [time, value] = this.over.under(to);
-      this.move(table, i, [time, Math.min(value, this.range[1]) / this.factor]);
+      this.move(table, i, [time + off[0], Math.min(value + off[1], this.range[1]) / this.factor]);
     };
     const drop = (): void => {
       handle.classList.remove("held");
