@@ -12,15 +12,18 @@ import subprocess
 import sys
 from base64 import b64encode
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import clutchwork as cw
+import law_pages
+from clutchwork.page.static import WIDGET, built
+
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.append(str(ROOT / "docs" / "figures"))
-import live  # noqa: E402
-
-import clutchwork as cw  # noqa: E402
-from clutchwork.page.static import WIDGET, built  # noqa: E402
+# makes the pages of the documentation
+live: Any = import_module("live")
 
 BROWSERS = ("chromium", "firefox-esr", "firefox")
 # as anywidget calls it, in a light notebook and in a dark one
@@ -43,6 +46,8 @@ def pages(folder: Path) -> Iterator[Path]:
     for name, page in live.PAGES.items():
         page(folder / f"{name}.html")
         yield folder / f"{name}.html"
+    law_pages.write("gms", folder / "law.html")
+    yield folder / "law.html"
     yield cw.Gearbox.load("zf-8hp70").page(folder / "gearbox.html")
     run = cw.Driveline.load(ROOT / "examples" / "six_speed" / "model.toml").simulate()
     yield run.page(folder / "six_speed.html")
