@@ -25,12 +25,13 @@ async function looked(file) {
   if (dragged) await keys(page);
   const typed = await state(page);
   const taken = await closest(page);
+  const turned = await turn(page);
   await page.evaluate(() => window.scrollTo(0, document.body.scrollHeight));
   await page.evaluate(() => window.clutchworkPage.look(0.3 * window.clutchworkPage.data.tEnd));
   await settled(page);
   const words = await page.evaluate(() => document.body.innerText);
   await page.close();
-  return { errors, requests: requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:")), ready, dragged, before, after, typed, taken, words };
+  return { errors, requests: requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:")), ready, dragged, before, after, typed, taken, turned, words };
 }
 
 /** Numbers that follow from the present run, and the picture of the first curves. */
@@ -64,6 +65,16 @@ async function closest(page) {
   await page.mouse.down();
   await page.mouse.up();
   return [asked.name, await page.evaluate(() => document.activeElement.getAttribute("aria-label"))];
+}
+
+/** The first slider by keys; what follows then, null where there is none. */
+async function turn(page) {
+  const slider = await page.$(".turn input");
+  if (!slider) return null;
+  await slider.focus();
+  for (let i = 0; i < 3; i++) await page.keyboard.press("ArrowLeft");
+  await settled(page);
+  return state(page);
 }
 
 async function keys(page) {

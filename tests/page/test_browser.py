@@ -81,6 +81,13 @@ def test_a_hand_takes_the_nearest_of_knots_that_overlap(looked: dict[str, Any]) 
     assert [pair for pair in taken if pair[0] != pair[1]] == []
 
 
+def test_what_is_turned_moves_the_curves(looked: dict[str, Any]) -> None:
+    with_sliders = {name: one for name, one in looked.items() if one["turned"]}
+    assert len(with_sliders) > len(MODELS) / 2
+    for name, one in with_sliders.items():
+        assert one["typed"]["sum"] != one["turned"]["sum"], name
+
+
 def test_names_are_shown_as_they_are(looked: dict[str, Any]) -> None:
     assert NASTY in looked["nasty"]["words"]
 

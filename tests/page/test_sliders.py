@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 import clutchwork as cw
+from clutchwork.model.changes import named, target, unit_of
 from clutchwork.page.data import Wanted, data_of
 from support.project import ROOT
 
@@ -127,3 +128,16 @@ def test_more_than_two_that_go_together_are_refused() -> None:
     said = "w1.inertia, w3.inertia and divider.ratio depend on each other in this driveline, and a page has at most two"
     with pytest.raises(cw.UseError, match=said):
         page_data(system, "w1.inertia", "w3.inertia", "F1.gain", "divider.ratio")
+
+
+def test_numbers_of_a_law_have_the_units_of_what_is_joined() -> None:
+    law = cw.LuGre(static=0.15, kinetic=0.1, speed=0.2, stiffness=100.0, damping=0.01, viscous=0.1)
+    d = cw.Driveline("both")
+    mass, shaft = d.mass("mass", mass=1.0), d.shaft("shaft", inertia=1.0)
+    for name, node in (("slides", mass), ("turns", shaft)):
+        d.add(cw.Brake(name, shaft=node, friction=law, gain=1.0, normal_force=10.0))
+    owners = named(d.assemble().source)
+    units = {"speed": "m/s rad/s", "stiffness": "1/m 1/rad", "viscous": "s/m s/rad", "static": "1 1"}
+    for word, both in units.items():
+        found = [unit_of(target(owners, f"{name}.friction.{word}")) for name in ("slides", "turns")]
+        assert found == both.split(), word
