@@ -122,6 +122,9 @@ PARTNERS = {
     "N m/rad": "N/m",
     "N m s/rad": "N s/m",
     "m3": "m2",
+    # of a law, per slip and deflection
+    "s/rad": "s/m",
+    "1/rad": "1/m",
     # of a gain, per force
     "m": "1",
 }

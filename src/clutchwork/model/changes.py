@@ -141,8 +141,14 @@ def unit_of(aim: Target) -> str:
     spec = _spec(thing, name)
     if spec.what == "law" or spec.flag or spec.choices:
         return ""
-    unit = settled(name, spec, type(thing), vars(thing)).unit
+    # what is inside of a law is over the speeds of what the element joins
+    joined = {} if thing is aim.owner else {word: node for word, node in _ports(aim.owner) if word not in vars(thing)}
+    unit = settled(name, spec, type(thing), {**vars(thing), **joined}).unit
     return driven if unit == "*" else unit
+
+
+def _ports(owner: Any) -> list[tuple[str, Node]]:
+    return [(name, value) for name, value in vars(owner).items() if isinstance(value, Node)]
 
 
 def field_of(aim: Target) -> tuple[Any, Spec]:
