@@ -31,14 +31,13 @@ CORE_SOURCES := $(shell find CMakeLists.txt cpp interfaces/python interfaces/was
 	-name '*.py' -o -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.txt' 2>/dev/null) \
 	$(wildcard tools/gen_registry.py tools/registry/*.py tools/gen_stubs.py)
 WASM := src/clutchwork/page/static/core.wasm
-BITS := build/wasm/native/runs
 # the page that computes: bundled where node is there
 NODE := $(shell command -v npm 2>/dev/null)
 PAGE := $(if $(NODE),build/page/stamp)
 PAGE_SOURCES := $(wildcard interfaces/page/*.* interfaces/page/src/*)
-CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*.cpp' 'interfaces/*.hpp' 'tests/cpp/*.cpp' 'tests/cpp/*.hpp' 'tests/wasm/*.cpp')
+CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*.cpp' 'interfaces/*.hpp' 'tests/cpp/*.cpp' 'tests/cpp/*.hpp')
 
-.PHONY: help setup demo test test-cpp test-python page test-page check-page check format bench wasm wasm-bits wheel docs picture clean
+.PHONY: help setup demo test test-cpp test-python page test-page check-page check format bench wasm wheel docs picture clean
 .DELETE_ON_ERROR:
 
 help:
@@ -139,12 +138,6 @@ wasm: $(WASM)
 $(WASM): $(STAMPS)/wasm $(CORE_SOURCES) tools/build_wasm.py
 	@echo "compiling the core to WebAssembly (half a minute)"
 	@JOBS=$(JOBS) $(BIN)/python tools/build_wasm.py
-
-# the same sources, compiler and libm for this machine: tests compare the bits
-wasm-bits: $(BITS)
-
-$(BITS): $(STAMPS)/wasm $(CORE_SOURCES) tools/build_wasm.py tests/wasm/native.cpp
-	@$(BIN)/python tools/build_wasm.py --native $@
 
 # repaired to a manylinux tag on Linux, then tried in an environment of its own
 # what it holds of pages needs npm here

@@ -1,15 +1,12 @@
-"""Compile the core to WebAssembly, from the sources of the native one; ziglang brings compiler and libm.
+"""Compile the core to WebAssembly, from the sources of the native one, into src/clutchwork/page/static/core.wasm.
 
-`build_wasm.py` writes src/clutchwork/page/static/core.wasm. `build_wasm.py --native OUT` writes a program of the same
-sources, compiler and libm that runs here: tests compare the bits. docs/guide/wasm.md
+docs/guide/wasm.md
 """
 
 from __future__ import annotations
 
-import argparse
 import gzip
 import os
-import platform
 import re
 import subprocess
 import sys
@@ -17,15 +14,14 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 MADE = ROOT / "build" / "wasm"
 WASM = ROOT / "src" / "clutchwork" / "page" / "static" / "core.wasm"
 HEADER = ROOT / "cpp" / "include" / "clutchwork" / "c_api.h"
 
-# exact forms, as speeds and states: the one that shifts and launches are in most often; the sparse form runs the others
-FORMS = "FORM(2, 1)"
+# no exact forms: one dense form runs all small sizes, to their bits
+FORMS = ""
 CORE = [ROOT / "cpp" / "src" / f"{name}.cpp" for name in ("c_api", "components", "phases_sparse", "phases_full")]
 SOURCES = [*CORE, ROOT / "interfaces" / "wasm" / "small_forms.cpp"]
 # what a step spends its time in is inlined by force, as in the native build
@@ -44,18 +40,8 @@ FLAGS = [
 SECTION = "clutchwork"
 
 
-class Target(NamedTuple):
-    """For what it is compiled, and how."""
-
-    name: str
-    triple: str
-    flags: tuple[str, ...]
-
-
 # small rather than fast, and as a whole: every part of the core is there once
-TO_WASM = Target("wasm32", "wasm32-wasi", ("-Os", "-flto"))
-# bits do not depend on it, so what is quick to compile will do
-TO_NATIVE = Target("native", f"{platform.machine()}-linux-musl", ("-O1", "-ffunction-sections"))
+TARGET = ("-target", "wasm32-wasi", "-Os", "-flto")
 
 
 def exports() -> list[str]:
@@ -81,22 +67,22 @@ def generated() -> Path:
     return folder.parent
 
 
-def compiled(target: Target, sources: list[Path]) -> list[Path]:
+def compiled() -> list[Path]:
     """Objects of all sources, made side by side."""
     places = [ROOT / "cpp" / "include", ROOT / "cpp" / "src", generated()]
     includes = [f"-I{place}" for place in places]
     forms = f"-DCLUTCHWORK_SMALL_FORMS(FORM)={FORMS}"
-    folder = MADE / target.name
+    folder = MADE / "objects"
     folder.mkdir(parents=True, exist_ok=True)
 
     def one(source: Path) -> Path:
         made = folder / f"{source.stem}.o"
         inlined = () if source.stem in HOT else ("-DCLUTCHWORK_INLINE=inline",)
-        zig("-target", target.triple, *FLAGS, *target.flags, *inlined, forms, *includes, "-c", source, "-o", made)
+        zig(*TARGET, *FLAGS, *inlined, forms, *includes, "-c", source, "-o", made)
         return made
 
     # the longest first
-    order = sorted(sources, key=lambda source: source.stem not in {*HOT, "phases_full"})
+    order = sorted(SOURCES, key=lambda source: source.stem not in {*HOT, "phases_full"})
     with ThreadPoolExecutor(int(os.environ.get("JOBS") or os.cpu_count() or 2)) as pool:
         return list(pool.map(one, order))
 
@@ -115,12 +101,12 @@ def marked(module: bytes) -> bytes:
 def wasm() -> Iterator[str]:
     """Make core.wasm; yields what to report."""
     began = time.monotonic()
-    objects = compiled(TO_WASM, SOURCES)
+    objects = compiled()
     names = [f"-Wl,--export={name}" for name in (*exports(), "__heap_base")]
     linked = MADE / "core.wasm"
     flags = ("-mexec-model=reactor", "-Wl,--no-entry", "-Wl,--gc-sections", "-Wl,--strip-all")
     # as C: the library of C++, which nothing needs, would be compiled first
-    zig("-target", TO_WASM.triple, *TO_WASM.flags, *flags, *names, *objects, "-o", linked, mode="cc")
+    zig(*TARGET, *flags, *names, *objects, "-o", linked, mode="cc")
     module = marked(linked.read_bytes())
     WASM.parent.mkdir(parents=True, exist_ok=True)
     WASM.write_bytes(module)
@@ -129,23 +115,5 @@ def wasm() -> Iterator[str]:
     yield f"{WASM.relative_to(ROOT)}: {len(module) / 1e3:.0f} kB, {packed / 1e3:.0f} kB as gzip, {took:.0f} s"
 
 
-def native(out: Path) -> None:
-    """Make the program that tests compare with."""
-    objects = compiled(TO_NATIVE, [*SOURCES, ROOT / "tests" / "wasm" / "native.cpp"])
-    out.parent.mkdir(parents=True, exist_ok=True)
-    zig("-target", TO_NATIVE.triple, *TO_NATIVE.flags, "-Wl,--gc-sections", *objects, "-o", out, mode="cc")
-
-
-def main() -> None:
-    """What the command line asks for."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0] if __doc__ else "")
-    parser.add_argument("--native", type=Path, help="write the program for this machine here")
-    given = parser.parse_args()
-    if given.native is not None:
-        native(given.native)
-    else:
-        print("\n".join(wasm()))
-
-
 if __name__ == "__main__":
-    main()
+    print("\n".join(wasm()))

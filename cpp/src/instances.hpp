@@ -45,6 +45,7 @@ CLUTCHWORK_SMALL_ROW(extern, 1)
 CLUTCHWORK_SMALL_ROW(extern, 2)
 CLUTCHWORK_SMALL_ROW(extern, 3)
 CLUTCHWORK_SMALL_ROW(extern, 4)
+extern template Status run_phase<SomeForm<double>>(Workspace<double>&, double, Sink&);
 extern template Status run_phase<SparseForm<double>>(Workspace<double>&, double, Sink&);
 extern template Status run_phase<FullForm<double>>(Workspace<double>&, double, Sink&);
 #endif

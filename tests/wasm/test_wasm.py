@@ -1,29 +1,23 @@
-"""The core as WebAssembly computes what the native one does, and the bits of one of its own compiler and libm."""
+"""The core as WebAssembly has the bits of the native one."""
 
 from __future__ import annotations
 
 import shutil
 import subprocess
-import sys
 import warnings
 from collections.abc import Iterator
 
-import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.assembly.wiring import wiring
 from clutchwork.declare.core import core
 from clutchwork.page import core as module
 from support import random_drivelines, random_parts, random_stops, six_speed
 from support.amount import amount
 from support.project import ROOT
-from support.wasm import NATIVE, WASM, Answer, Job, Stretch, grid, here, in_native, in_node
+from support.wasm import WASM, Answer, Job, Stretch, grid, here, in_node
 
 CASES = max(4, amount() // 40)
-# what two libms and another form of the same equations may make of a run, of the scale of its signals of a sort, and
-# of times of events [s]; bodies that bounce carry it on from impact to impact
-CLOSE, BOUNCING = 1e-10, 1e-8
 
 
 def jobs() -> Iterator[Job]:
@@ -40,7 +34,7 @@ def jobs() -> Iterator[Job]:
         for seed in range(CASES):
             yield Job(random_drivelines.describe(seed).driveline().assemble(), [Stretch(grid(2.0))])
             yield Job(random_parts.driveline(seed).assemble(), [Stretch(grid(1.0))])
-            yield Job(random_stops.driveline(seed).assemble(), [Stretch(grid(0.5))], bounces=True)
+            yield Job(random_stops.driveline(seed).assemble(), [Stretch(grid(0.5))])
 
 
 JOBS = list(jobs())
@@ -73,34 +67,17 @@ def test_it_is_small_and_asks_for_nothing() -> None:
         pytest.skip("needs node, and make wasm")
     import gzip
 
-    assert len(gzip.compress(WASM.read_bytes(), 9)) <= 330e3
+    assert len(gzip.compress(WASM.read_bytes(), 9)) <= 345e3
     asked = "const m = new WebAssembly.Module(require('fs').readFileSync(process.argv[1]));"
     asked += "console.log(WebAssembly.Module.imports(m).length)"
     done = subprocess.run([node, "-e", asked, str(WASM)], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "0"
 
 
-def test_runs_are_those_of_the_native_core(as_wasm: list[Answer]) -> None:
-    """Rows and events, at tight tolerances: at usual ones another form has errors of its own."""
+def test_runs_have_the_bits_of_the_native_core(as_wasm: list[Answer]) -> None:
+    """Another compiler, another processor, other forms of motion: the same bits of rows and events."""
     for place, (job, one, other) in enumerate(zip(JOBS, as_wasm, here(JOBS), strict=True)):
-        name, close = f"{place}, {job.system.name}", BOUNCING if job.bounces else CLOSE
+        name = f"{place}, {job.system.name}"
         assert one.status == other.status, name
-        assert one.rows.shape == other.rows.shape, name
-        for sort, columns in wiring(job.system).columns.items():
-            scale = np.max(np.abs(other.rows[:, columns]), initial=0.0)
-            away = np.max(np.abs(one.rows[:, columns] - other.rows[:, columns]), initial=0.0)
-            assert away <= close * scale, f"{sort} of {name}"
-        assert np.array_equal(one.events[:, 1:5], other.events[:, 1:5]), name
-        assert np.allclose(one.events[:, 0], other.events[:, 0], rtol=0.0, atol=close), name
-
-
-def test_runs_have_the_bits_of_the_same_compiler_and_libm(as_wasm: list[Answer]) -> None:
-    """Nothing of WebAssembly itself shows in a run."""
-    if not sys.platform.startswith("linux"):
-        pytest.skip("the program of the same compiler and libm is made for Linux")
-    if not NATIVE.is_file():
-        pytest.skip("it was not built: run make wasm-bits")
-    for job, one, other in zip(JOBS, as_wasm, in_native(JOBS), strict=True):
-        assert one.status == other.status, job.system.name
-        assert one.rows.tobytes() == other.rows.tobytes(), job.system.name
-        assert one.events.tobytes() == other.events.tobytes(), job.system.name
+        assert one.rows.tobytes() == other.rows.tobytes(), name
+        assert one.events.tobytes() == other.events.tobytes(), name

@@ -1,15 +1,10 @@
 #pragma once
-#include <cmath>
-#include <type_traits>
+#include <clutchwork/components/elementary.hpp>
 
-#ifndef CLUTCHWORK_INLINE
-#define CLUTCHWORK_INLINE inline __attribute__((always_inline))
-#endif
+#include <type_traits>
 
 /// What the core asks of a number. Scalars: double, float, Dual<double, N>, Dual<float, N>.
 namespace clutchwork {
-
-using std::abs, std::atan, std::cos, std::exp, std::log, std::pow, std::sin, std::sqrt, std::tanh;
 
 /// The plain number behind a scalar: comparisons and decisions use it, in double whatever the scalar.
 template <class T>

@@ -54,7 +54,7 @@ struct Retarder : declared::Retarder {
   /// Speed at the end of range i.
   template <class T>
   static double border(const Params<T>& p, int i) {
-    if (!is_flat(p)) return std::cbrt(value(p.max_power) / value(p.capacity));
+    if (!is_flat(p)) return cbrt(value(p.max_power) / value(p.capacity));
     return i == 0 ? std::sqrt(value(p.max_torque) / value(p.capacity)) : value(p.max_power) / value(p.max_torque);
   }
   /// Size of the torque of a full one in range i away from rest.

@@ -63,13 +63,26 @@ void take_mode(Workspace<Lanes<R>>& ws, const Workspace<double>& run) {
   }
 }
 
+/// What the speeds bring into the rates of the branches with states.
+template <int R>
+void put_gross(Workspace<Lanes<R>>& ws, const Workspace<double>& run, int i) {
+  const int nv = int(run.sys.speeds);
+  for (int k = 0; k < run.n_branches; ++k) {
+    if (run.branch[k].states == 0) continue;
+    Lanes<R>* to = ws.reduced.gross + k * nv;
+    for (int j = 0; j < nv; ++j) to[j][i] = 0;
+    const auto row = rate_row(run.sys, run.branch[k].direction);
+    for (int e = 0; e < row.n; ++e) to[row.column[e]][i] = abs(row.value[e]);
+  }
+}
+
 /// The reduced motion of the mode of one lane.
 template <int R>
 void put_motion(Workspace<Lanes<R>>& ws, const Workspace<double>& run, int i) {
   const int nz = run.reduced.nz, nv = int(run.sys.speeds), np = int(run.sys.prescribed), m = run.held.n;
   put(ws.reduced.z_basis, run.reduced.z_basis, nv * nz, i);
   put(ws.reduced.span, run.reduced.span, int(run.sys.states), i);
-  put(ws.reduced.row_z, run.reduced.row_z, run.n_rates * nz, i);
+  put(ws.reduced.row_z, run.reduced.row_z, run.n_rates * nz, i), put_gross(ws, run, i);
   put(ws.reduced.offset, run.reduced.offset, run.n_rates * np, i);
   put(ws.held.reach, run.held.reach, m * run.n_branches, i);
   put(ws.held.reach_prescribed, run.held.reach_prescribed, m * np, i);

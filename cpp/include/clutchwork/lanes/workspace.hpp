@@ -67,6 +67,7 @@ struct Workspace<Lanes<R>> {
   struct {
     int nz = 0;
     Lanes<R>*z_basis = nullptr, *row_z = nullptr, *offset = nullptr;
+    Lanes<R>* gross = nullptr;  ///< of each branch with states: what each speed brings into its rate, without sign
     Lanes<R>*span = nullptr, *size = nullptr, *missed = nullptr, *floor = nullptr;
   } reduced;
   Jacobian<Lanes<R>> jacobian;
@@ -88,7 +89,7 @@ struct Workspace<Lanes<R>> {
     a.take(p.params, sys.n_params), a.take(p.points, 3 * sys.n_points), a.take(p.branch, n.directions);
     a.take(p.held.reach, n.contacts * n.directions), a.take(p.held.reach_prescribed, n.contacts * n.prescribed);
     a.take(p.reduced.z_basis, n.speeds * n.speeds), a.take(p.reduced.row_z, n.directions * n.speeds);
-    a.take(p.reduced.offset, n.directions * n.prescribed);
+    a.take(p.reduced.offset, n.directions * n.prescribed), a.take(p.reduced.gross, n.directions * n.speeds);
     a.take(p.reduced.span, n.states), a.take(p.reduced.floor, n.states);
     a.take(p.reduced.size, n.speeds), a.take(p.reduced.missed, n.speeds);
     a.take(p.seen.torque, n.directions), a.take(p.seen.drift, n.directions);
@@ -114,10 +115,19 @@ std::int64_t carve(Workspace<Lanes<R>>& ws, const System& sys, unsigned char* me
   return a.size();
 }
 
+/// As for one run: the ratios may differ from lane to lane.
+template <int R>
+CLUTCHWORK_INLINE Lanes<R> rate_size(const Workspace<Lanes<R>>& ws, int k, const Lanes<R>* size) {
+  const int nv = int(ws.sys.speeds);
+  Lanes<R> sum(0);
+  for (int i = 0; i < nv; ++i) sum += ws.reduced.gross[k * nv + i] * size[i];
+  return sum;
+}
+
 /// Any of the small sizes, in memory alike. NZ: number of speeds where the compiler knows it, else -1.
 template <int NZ = -1>
 struct LaneSize {
-  static constexpr int most_speeds = small_speeds, most = small_speeds + small_states;
+  static constexpr int most_speeds = small_speeds, least_states = small_states, rows = small_speeds + small_states;
   int speeds, states;
   CLUTCHWORK_INLINE int nz() const { return NZ < 0 ? speeds : NZ; }
   CLUTCHWORK_INLINE int ns() const { return states; }

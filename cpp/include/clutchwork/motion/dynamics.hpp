@@ -256,8 +256,17 @@ void expand(Form& form, const T* z, T* v, bool offset = true) {
   }
 }
 
-/// Absolute tolerance of each own state: what counts as an error of the rate that bends it, over its span.
-/// docs/theory/integrators.md
+/// Size of what makes the rate of branch k, from the sizes of the speeds.
+template <class T>
+CLUTCHWORK_INLINE Real<T> rate_size(const Workspace<T>& ws, int k, const Real<T>* size) {
+  const auto row = rate_row(ws.sys, ws.branch[k].direction);
+  Real<T> sum = 0;
+  for (int e = 0; e < row.n; ++e) sum += abs(value(row.value[e])) * size[row.column[e]];
+  return sum;
+}
+
+/// Absolute tolerance of each own state: what counts as an error of the rate that bends it, over its span. The sizes of
+/// the speeds are known. docs/theory/integrators.md
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE void floor_states(Form& form, const T* y) {
   Workspace<T>& ws = form.ws;
@@ -267,34 +276,39 @@ CLUTCHWORK_INLINE void floor_states(Form& form, const T* y) {
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
     if (b.states == 0) continue;
-    const Real<T> rate = atol + rtol * form.rate_size(k, y);
+    const Real<T> rate = atol + rtol * rate_size(ws, k, ws.reduced.size);
     for (int i = b.state; i < b.state + b.states; ++i)
       ws.reduced.floor[i] += ws.reduced.span[i] * abs(value(ws.jacobian.g_rate[i])) * rate;
   }
 }
 
+/// f(share, j) for each reduced speed j that speed i is made of.
+template <class Form, class F, class T = typename Form::Scalar>
+CLUTCHWORK_INLINE void each_share(const Form& form, int i, F&& f) {
+  if constexpr (Form::small) {
+    for (int j = 0; j < form.nz(); ++j) f(value(form.ws.reduced.z_basis[i * form.nz() + j]), j);
+  } else {
+    const Compressed<T>& expansion = form.ws.rows.expansion;
+    for (int e = expansion.first[i]; e < expansion.first[i + 1]; ++e) f(value(expansion.val[e]), expansion.col[e]);
+  }
+}
+
 /// Weighted RMS norm of an error in (v, states), relative to the larger of two points; a speed counts as no slower than
-/// a share of the fastest. docs/theory/integrators.md
+/// a share of the fastest. The same in every form. docs/theory/integrators.md
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_INLINE Real<T> error_norm(Form& form, const T* error, const T* a, const T* b) {
   // of the fastest speed
   constexpr double slow = 1e-3;
   const Workspace<T>& ws = form.ws;
   const Real<T> rtol = ws.options.rtol, atol = ws.options.atol;
-  const int nv = Form::small ? int(ws.sys.speeds) : form.nz(), nz = form.nz(), ns = form.ns();
+  const int nv = int(ws.sys.speeds), nz = form.nz(), ns = form.ns();
   Real<T>*size = ws.reduced.size, *missed = ws.reduced.missed, fastest = 0, sum = 0;
   for (int i = 0; i < nv; ++i) {
-    T e = T(0), va = T(0), vb = T(0);
-    if constexpr (Form::small) {
-      for (int j = 0; j < nz; ++j) {
-        const T z = ws.reduced.z_basis[i * nz + j];
-        e += z * error[j], va += z * a[j], vb += z * b[j];
-      }
-    } else {
-      e = error[i], va = a[i], vb = b[i];
-    }
-    missed[i] = value(e);
-    size[i] = larger(abs(value(va)), abs(value(vb)));
+    Real<T> e = 0, va = 0, vb = 0;
+    each_share(form, i,
+               [&](Real<T> z, int j) { e += z * value(error[j]), va += z * value(a[j]), vb += z * value(b[j]); });
+    missed[i] = e;
+    size[i] = larger(abs(va), abs(vb));
     fastest = larger(fastest, size[i]);
   }
   for (int i = 0; i < nv; ++i) {

@@ -7,9 +7,21 @@ namespace clutchwork {
 /// Numbers of speeds and states that the compiler knows.
 template <int NZ, int NS>
 struct KnownSize {
-  static constexpr int most_speeds = NZ, most = NZ + NS;
+  static constexpr int most_speeds = NZ, least_states = NS, rows = NZ + NS;
+  template <class T>
+  explicit KnownSize(const Workspace<T>&) {}
   static constexpr int nz() { return NZ; }
   static constexpr int ns() { return NS; }
+};
+
+/// Any of the small sizes, in place of exact ones.
+struct SomeSize {
+  static constexpr int most_speeds = small_speeds, least_states = 0, rows = 0;
+  int speeds, states;
+  template <class T>
+  explicit SomeSize(const Workspace<T>& ws) : speeds(ws.reduced.nz), states(int(ws.sys.states)) {}
+  int nz() const { return speeds; }
+  int ns() const { return states; }
 };
 
 /// Up to a handful of speeds: M = 1, dense rows.
@@ -17,25 +29,19 @@ template <class T, class Size>
 struct DenseForm : Size {
   using Scalar = T;
   static constexpr bool small = true, full = false;
-  static constexpr int fixed_size = Size::most, own_states = Size::most - Size::most_speeds;
+  static constexpr int fixed_size = Size::rows, least_states = Size::least_states;
   using Size::ns, Size::nz;
   Workspace<T>& ws;
   T w[Size::most_speeds > 0 ? Size::most_speeds * Size::most_speeds : 1];
 
-  explicit DenseForm(Workspace<T>& workspace, const Size& size = {}) : Size(size), ws(workspace) {}
+  explicit DenseForm(Workspace<T>& workspace) : Size(workspace), ws(workspace) {}
+  DenseForm(Workspace<T>& workspace, const Size& size) : Size(size), ws(workspace) {}
   constexpr int n() const { return nz() + ns(); }
 
   CLUTCHWORK_INLINE T rate(int k, const T* z) const {
     const T* r = ws.reduced.row_z + k * nz();
     T s = T(0);
     for (int i = 0; i < nz(); ++i) s += r[i] * z[i];
-    return s;
-  }
-  /// Size of what makes the rate of branch k.
-  CLUTCHWORK_INLINE Real<T> rate_size(int k, const T* z) const {
-    const T* r = ws.reduced.row_z + k * nz();
-    Real<T> s = 0;
-    for (int i = 0; i < nz(); ++i) s += abs(value(r[i] * z[i]));
     return s;
   }
   CLUTCHWORK_INLINE void push(int k, T torque, T* q) const {
@@ -97,13 +103,16 @@ struct DenseForm : Size {
 /// The exact sizes that are compiled for one run.
 template <class T, int NZ, int NS>
 using SmallForm = DenseForm<T, KnownSize<NZ, NS>>;
+/// One for all of them where a build has not all.
+template <class T>
+using SomeForm = DenseForm<T, SomeSize>;
 
 /// Any size: compressed rows, reduced mass, LDL' in an envelope.
 template <class T>
 struct SparseForm {
   using Scalar = T;
   static constexpr bool small = false, full = false;
-  static constexpr int fixed_size = 0, own_states = -1;
+  static constexpr int fixed_size = 0, least_states = -1;
   Workspace<T>& ws;
   T* w;
   bool mass_factored = false;

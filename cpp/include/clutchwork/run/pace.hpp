@@ -4,8 +4,19 @@
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/workspace.hpp>
 
+#include <bit>
+#include <cstdint>
+
 /// What decides the length of the next step of a phase, whatever its form and its integrator.
 namespace clutchwork {
+
+/// A length to seven binary digits, so that round-off in an error estimate does not reach the steps.
+/// docs/theory/integrators.md (14)
+inline double rounded_step(double h) {
+  constexpr std::uint64_t last = std::uint64_t(1) << (52 - 6);
+  const std::uint64_t bits = (std::bit_cast<std::uint64_t>(h) + last / 2) & ~(last - 1);
+  return std::bit_cast<double>(bits);
+}
 
 /// Where a phase is between its steps.
 template <class T>
@@ -54,7 +65,7 @@ struct Pace {
   /// A shorter step. False: it is too short.
   CLUTCHWORK_INLINE bool shorten() {
     ++ws_.statistics.rejected;
-    h_ = reach_ * (error_ < 1e300 ? larger(0.2, 0.9 * pow(error_, -0.2)) : 0.1);
+    h_ = rounded_step(reach_ * (error_ < 1e300 ? larger(0.2, 0.9 * pow(error_, -0.2)) : 0.1));
     rejected_ = true;
     before_ = 0;
     return h_ > 1e-14 * larger(1e-2, abs(ws_.time));
@@ -71,7 +82,7 @@ struct Pace {
   CLUTCHWORK_INLINE void move_on() {
     ws_.time = end_of_step();
     const double growth = 0.9 * pow(larger(error_, 1e-10), -0.2);
-    const double next = reach_ * smaller(rejected_ ? 1.0 : 6.0, larger(0.2, growth));
+    const double next = rounded_step(reach_ * smaller(rejected_ ? 1.0 : 6.0, larger(0.2, growth)));
     h_ = cut_ ? larger(next, h_) : larger(next, before_);
     rejected_ = false;
     before_ = 0, landings_ = 0;
