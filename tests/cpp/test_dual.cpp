@@ -9,6 +9,9 @@ using D = Dual<double, 2>;
 
 namespace {
 
+// not those of the library
+using clutchwork::cos, clutchwork::exp, clutchwork::log, clutchwork::pow, clutchwork::sin, clutchwork::tanh;
+
 /// f at (x, y): both partial derivatives, and the value as plain numbers give it to the last bit.
 template <class F>
 void differentiate(F&& f, double x, double y) {

@@ -17,7 +17,7 @@ from support.amount import amount
 from support.project import ROOT
 from support.wasm import WASM, Answer, Job, Stretch, grid, here, in_node
 
-CASES = max(4, amount() // 40)
+CASES = max(4, amount() // 6)
 
 
 def jobs() -> Iterator[Job]:
