@@ -102,6 +102,4 @@ def test_what_is_moved_is_told_once_and_not_at_every_step(looked: list[dict[str,
         assert typed["before"] != typed["after"]
         assert typed["during"] == 0
         # one region, or two where a run ends early as well
-        assert typed["told"] <= 2
-    # the words of the gearbox follow its slider
-    assert looked[1]["typed"]["told"] > 0
+        assert 1 <= typed["told"] <= 2

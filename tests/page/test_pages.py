@@ -135,6 +135,17 @@ def test_without_the_built_files_it_says_what_to_do(tmp_path: Path, monkeypatch:
         braked().simulate(1.0).page(tmp_path / "x.html")
 
 
+@pytest.mark.usefixtures("built")
+@pytest.mark.parametrize("given", [str, Path], ids=["str", "Path"])
+def test_a_path_may_be_a_string(given: Any, tmp_path: Path) -> None:
+    """As the guides write it, also where its folder is not there yet."""
+    run, box = braked().simulate(1.0), cw.Gearbox.load("zf-6hp26")
+    for door, name in ((run.page, "run"), (box.page, "box")):
+        made = door(given(tmp_path / given.__name__ / f"{name}.html"))
+        assert made == tmp_path / given.__name__ / f"{name}.html"
+        assert made.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+
+
 def test_a_path_must_be_one_of_html() -> None:
     with pytest.raises(cw.UseError, match="html"):
         braked().simulate(1.0).page("x.pdf")

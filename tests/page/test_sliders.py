@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import clutchwork as cw
+from clutchwork.assembly.system import System
 from clutchwork.model.changes import named, target, unit_of
+from clutchwork.page import pairs
+from clutchwork.page import sliders as page
 from clutchwork.page.data import Wanted, data_of
 from support.project import ROOT
 
-# tolerance of the solver, and what may be between page and Python: as in test_parity
-TIGHT, CLOSE = {"rtol": 1e-11, "atol": 1e-13}, 1e-9
+# over the largest that a signal becomes: as in test_parity
+SAME = 1e-13
 LAW = cw.Stribeck(static=0.3, kinetic=0.2, speed=2.0)
 
 
@@ -29,24 +35,27 @@ def braked(gains: tuple[float, float] = (1e-4, 1e-4), law: cw.Law = LAW) -> cw.S
 
 def page_data(system: cw.System, *sliders: str, t_end: float = 1.0) -> dict[str, Any]:
     """What a page with sliders holds."""
-    data = data_of(system, t_end, cw.Options(), Wanted(sliders=sliders))
-    data["options"] |= TIGHT
-    return data
+    return data_of(system, t_end, cw.Options(), Wanted(sliders=sliders))
 
 
 def same(system: cw.System, data: dict[str, Any], values: list[float], found: Any, names: list[str]) -> None:
     """The page has at its end what Python has with the same numbers."""
     turned = zip(data["sliders"], values, strict=True)
     changes = {name: value for one, value in turned if value != one["start"] for name in one["names"]}
-    run = cw.simulate(system.changed(changes), data["tEnd"], times=[data["tEnd"]], **TIGHT)
+    run = cw.simulate(system.changed(changes), data["tEnd"], times=times(data).tolist())
     for name in names:
-        assert found["signals"][name][0] == pytest.approx(run[name][-1], rel=CLOSE, abs=CLOSE)
+        assert np.abs(np.array(found["signals"][name]) - run[name]).max() <= SAME * np.abs(run[name]).max(), name
+
+
+def times(data: dict[str, Any]) -> NDArray[np.float64]:
+    """When page and Python are compared."""
+    return np.linspace(data["tStart"], data["tEnd"], 21)
 
 
 def asked(data: dict[str, Any], values: list[float], names: list[str], **more: Any) -> dict[str, Any]:
     """A job of the engine."""
     turned = {str(number): value for number, value in enumerate(values)}
-    return {"values": turned, "times": [data["tEnd"]], "signals": names, **more}
+    return {"values": turned, "times": times(data).tolist(), "signals": names, **more}
 
 
 @pytest.mark.parametrize("slider", ["on_*.gain=5e-5:4e-4", "on_a.gain, on_b.gain=5e-5:4e-4"])
@@ -92,8 +101,9 @@ def test_two_sliders_that_change_the_same_words_have_all_pairs(engine: Any) -> N
     (pair,) = data["pairs"]
     assert pair["refused"] == {}
     one, other = ([*slider["values"]] for slider in data["sliders"])
-    assert len(one) == len(other) == 18
-    places = [[one[i], other[k]] for i, k in ((0, 0), (17, 3), (5, 17))] + [
+    # the start of the inertia is one more, that of the ratio is outside of the ends
+    assert (len(one), len(other)) == (18, 17)
+    places = [[one[i], other[k]] for i, k in ((0, 0), (17, 3), (5, 16))] + [
         [data["sliders"][0]["start"], other[9]],
         [one[9], data["sliders"][1]["start"]],
         [slider["start"] for slider in data["sliders"]],
@@ -121,6 +131,73 @@ def test_sliders_within_what_is_allowed_do_not_go_together() -> None:
     data = page_data(braked(), "*.static=0.25:0.5", "*.kinetic=0.05:0.25")
     assert data["pairs"] == []
     assert all(one["direct"] for one in data["sliders"])
+
+
+def twisted() -> cw.System:
+    """Two shafts with a spring without initial twist: its torque then is stiffness times twist."""
+    d = cw.Driveline("twisted")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.Spring("s", base=a, follower=b, stiffness=100.0))
+    return d.assemble()
+
+
+def test_a_product_of_which_one_factor_is_zero_at_the_start_has_all_pairs(engine: Any) -> None:
+    """Neither slider alone shows that the other one counts."""
+    system = twisted()
+    data, names = page_data(system, "s.initial_twist=0:0.1", "s.stiffness=50:200"), ["s.torque", "a.speed"]
+    assert [pair["sliders"] for pair in data["pairs"]] == [[0, 1]]
+    one, other = ([*slider["values"]] for slider in data["sliders"])
+    places = [[one[i], other[k]] for i, k in ((-1, -1), (-1, 0), (5, 9), (0, 5))]
+    for values, found in zip(places, engine(data, [asked(data, values, names) for values in places]), strict=True):
+        same(system, data, values, found, names)
+
+
+def test_what_two_make_together_may_not_be_what_a_third_makes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Words that only both of a pair change, and one that goes with neither: one would undo the other."""
+    system = twisted()
+    alone = pairs._pair
+
+    def wider(*given: Any) -> pairs.Pair:
+        made = alone(*given)
+        places = np.append(made.places, page.sliders(system, ["a.inertia=1:2"], [], System.to_bytes)[0].places[:1])
+        return replace(made, places=places)
+
+    monkeypatch.setattr(pairs, "_pair", wider)
+    with pytest.raises(cw.UseError, match=r"s\.initial_twist, s\.stiffness and a\.inertia depend on each other"):
+        page_data(system, "s.initial_twist=0:0.1", "s.stiffness=50:200", "a.inertia=1:2")
+
+
+@pytest.mark.parametrize("name", ["a=b", "a,b", "a:b", "a=1:2"])
+def test_names_may_have_what_separates(name: str) -> None:
+    d = cw.Driveline("named")
+    for shaft in (name, "c"):
+        d.shaft(shaft, inertia=1.0, speed=10.0)
+    system, own = d.assemble(), f"{name}.inertia"
+    asked = {own: (own,), f"{own}=1:2": (own,), f"{own}, c.inertia": (own, "c.inertia")}
+    asked |= {f"c.inertia, {own}=1:2": ("c.inertia", own), f"{name}*tia=1:2": (own,), f"{name}.*tia": (own,)}
+    for text, names in asked.items():
+        (one,) = page_data(system, text)["sliders"]
+        assert one["names"] == list(names), text
+        assert (one["values"][0], one["values"][-1]) == ((1.0, 2.0) if text.endswith("=1:2") else (0.5, 2.0)), text
+    with pytest.raises(cw.UseError, match=r"inertiaa.*did you mean"):
+        page_data(system, "c.inertiaa=1:2")
+
+
+def test_a_start_outside_of_the_ends_is_no_stop(engine: Any) -> None:
+    """A pair keeps the ends that were asked for; one of it is turned from where the other one starts."""
+    system = braked()
+    data, names = page_data(system, "*.static=0.32:0.5", "*.kinetic=0.25:0.5"), ["a.speed", "b.speed"]
+    assert [one["values"][0] for one in data["sliders"]] == [0.32, 0.25]
+    assert [one["values"][-1] for one in data["sliders"]] == [0.5, 0.5]
+    (pair,) = data["pairs"]
+    assert [values[0] for values in pair["values"]] == [0.3, 0.2]
+    starts = [one["start"] for one in data["sliders"]]
+    places = [starts, [0.5, starts[1]], [starts[0], 0.25], [0.5, 0.25], [0.5, 0.5], [0.32, 0.25]]
+    for values, found in zip(places, engine(data, [asked(data, values, names) for values in places]), strict=True):
+        assert found["refusal"] == ""
+        same(system, data, values, found, names)
+    (wrong,) = engine(data, [asked(data, [starts[0], 0.5], names)])
+    assert "below the kinetic coefficient 0.5" in wrong["refusal"]
 
 
 def test_more_than_two_that_go_together_are_refused() -> None:

@@ -39,6 +39,7 @@ export interface SliderData {
 /** Two sliders that go together: words of all pairs of their values, and why some of these have no driveline. */
 export interface PairData {
   sliders: [number, number];
+  values: [number[], number[]]; // stops and start of each
   places: number[];
   words: string;
   refused: Record<string, string>;

@@ -1,7 +1,7 @@
 // What a run comes to: states of contacts over time, events and results in words.
 import type { CoreEvent, Result } from "./core";
 import type { ContactData, PageData } from "./data";
-import { seconds } from "./format";
+import { quantity, seconds } from "./format";
 import { evaluated } from "./forms";
 
 export type State = "locked" | "slipping" | "open";
@@ -77,6 +77,15 @@ export function measures(data: PageData, run: Result): Measure[] {
     if (last) made.push({ name: `${contact.name} locks at`, unit: "s", value: last[TIME]! });
   }
   return [...made, ...felt(data, run)];
+}
+
+/** Heat and jerk of a run that reached its end, in a few words; empty where it has neither. */
+export function brief(data: PageData, run: Result): string {
+  if (run.status !== 0) return "";
+  const known = measures(data, run);
+  const heat = known.find((one) => one.name === "Heat of all contacts") ?? known.find((one) => one.name.startsWith("Heat of "));
+  const jerk = known.find((one) => one.name.startsWith("Largest jerk"));
+  return [heat, jerk].flatMap((one) => (one === undefined || one.value === null ? [] : [`${one.name} ${quantity(one.value, one.unit)}`])).join(", ");
 }
 
 function felt(data: PageData, run: Result): Measure[] {

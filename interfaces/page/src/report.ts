@@ -3,7 +3,7 @@ import type { App, Part } from "./app";
 import type { Result } from "./core";
 import { element, Spoken, whileSeen, write } from "./dom";
 import { number, quantity, seconds } from "./format";
-import { ending, eventTime, type Measure, measures, sentence, unlocked } from "./measures";
+import { brief, ending, eventTime, type Measure, measures, sentence, unlocked } from "./measures";
 
 const MOST_EVENTS = 60;
 
@@ -86,7 +86,9 @@ export class Verdict implements Part {
     const wrong = [refused, ending(data, run), never].filter(Boolean).join(" ");
     const well = `${run.events.length === 1 ? "1 event" : `${run.events.length} events`}; runs to ${number(run.reached)} s.`;
     this.root.classList.toggle("bad", wrong !== "");
-    this.spoken.say(wrong || well);
+    // what any move changes, so that there is something to tell of each
+    const amounts = why ? "" : brief(data, run);
+    this.spoken.say([wrong || well, amounts && `${amounts}.`].filter(Boolean).join(" "));
   }
 }
 

@@ -65,10 +65,10 @@ export class Session {
     if (words) put(view, slider.places, words, slider.values.indexOf(this.values[i]!));
   }
 
-  private line({ sliders: [first, second] }: PairData): number {
-    const { sliders } = this.data;
-    const at = (i: number): number => sliders[i]!.values.indexOf(this.values[i]!);
-    return at(first) * sliders[second]!.values.length + at(second);
+  /** The line of a pair; the start of a slider has one wherever it is. */
+  private line({ sliders, values }: PairData): number {
+    const [first, second] = sliders.map((slider, i) => values[i]!.indexOf(this.values[slider]!));
+    return first! * values[1].length + second!;
   }
 }
 

@@ -3,6 +3,7 @@ import type { App, Part } from "./app";
 import type { SliderData } from "./data";
 import { element } from "./dom";
 import { quantity } from "./format";
+import { nearest } from "./state";
 
 const STEPS = 400;
 
@@ -65,7 +66,7 @@ export function valueAt(slider: SliderData, place: number): number {
 }
 
 export function position(slider: SliderData, value: number): number {
-  if (!slider.direct) return Math.max(slider.values.indexOf(value), 0);
+  if (!slider.direct) return slider.values.indexOf(nearest(slider.values, value));
   const low = slider.values[0]!;
   return Math.round((STEPS * (value - low)) / (slider.values.at(-1)! - low));
 }

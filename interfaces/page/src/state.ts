@@ -30,6 +30,7 @@ export function take(session: Session, given: Partial<State>): boolean {
   return JSON.stringify(stateOf(session)) !== before;
 }
 
-function nearest(stops: readonly number[], value: number): number {
+/** The stop that is nearest, the lower one of two. */
+export function nearest(stops: readonly number[], value: number): number {
   return stops.reduce((best, one) => (Math.abs(one - value) < Math.abs(best - value) ? one : best));
 }

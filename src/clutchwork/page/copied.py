@@ -10,7 +10,7 @@ from clutchwork.base.errors import ModelError
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.page.knots import Dragged
-    from clutchwork.page.sliders import Slider
+    from clutchwork.page.slider import Slider
 
 Path = tuple[str | int, ...]
 

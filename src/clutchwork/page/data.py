@@ -18,7 +18,8 @@ from clutchwork.page.live import live
 from clutchwork.page.live import plain as plain_live
 from clutchwork.page.pairs import paired
 from clutchwork.page.signals import listed, loops, output_of, panels, plain_panels
-from clutchwork.page.sliders import Bytes, sliders
+from clutchwork.page.slider import Bytes
+from clutchwork.page.sliders import sliders
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Slip
 from clutchwork.sweeps.words import Layout

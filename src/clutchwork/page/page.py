@@ -24,7 +24,7 @@ ENDINGS = (".html", ".htm")
 def page_of(run: Trajectory, path: Any, drag: Any, sliders: Any, show: Any) -> Path:
     """What `run.page` does: write the page of a run; its path."""
     refuse("run.page", list(_path_problems(path)), drag=drag, sliders=sliders, show=show)
-    target = made(path)
+    target = made(Path(path))
     wanted = wanted_of(drag, sliders, show)
     target.write_text(page(run.system, run.t_end, run.options, wanted), encoding="utf-8")
     return target

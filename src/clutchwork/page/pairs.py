@@ -1,4 +1,4 @@
-"""Sliders of which two go together, as they change the same words or are refused at some of their ends: all pairs."""
+"""Sliders of which two go together, as they depend on each other or are refused at some of their ends: all pairs."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, UseError
-from clutchwork.page.sliders import Bytes, Numbers, Slider, Words, packed, shared
+from clutchwork.base.errors import UseError
+from clutchwork.page.slider import Bytes, Numbers, Slider, Words, packed
+from clutchwork.page.together import dependent, made, refused, words_of
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -26,6 +27,8 @@ class Pair:
     """Two sliders, and the words of all pairs of their values: those of the first value of the first one first."""
 
     sliders: tuple[int, int]
+    # their stops and starts: one is turned from the start of the other, wherever that is
+    values: tuple[Numbers, Numbers]
     places: NDArray[np.int64]
     words: Words
     refused: dict[int, str]  # why a pair has no driveline
@@ -35,6 +38,7 @@ class Pair:
         refused = {str(line): why for line, why in self.refused.items()}
         return {
             "sliders": list(self.sliders),
+            "values": [values.tolist() for values in self.values],
             "places": self.places.tolist(),
             "words": packed(self.words),
             "refused": refused,
@@ -43,15 +47,19 @@ class Pair:
 
 def paired(system: System, turned: Sequence[Slider], bytes_of: Bytes) -> tuple[list[Slider], list[Pair]]:
     """The sliders, with stops of their pairs, and the pairs; UseError where more than two go together."""
-    groups = list(_groups(system, turned))
-    wide = [group for group in groups if len(group) > 2]
-    if wide:
-        raise UseError("page", [_too_many([turned[number].name for number in group]) for group in wide])
-    made, pairs = list(turned), list[Pair]()
+    groups = list(_groups(system, turned, bytes_of))
+    _refuse(turned, [group for group in groups if len(group) > 2])
+    found, pairs = list(turned), list[Pair]()
     for first, second in groups:
-        made[first], made[second] = _coarse(turned[first]), _coarse(turned[second])
-        pairs.append(_pair(system, made, (first, second), bytes_of))
-    return made, pairs
+        found[first], found[second] = _coarse(turned[first]), _coarse(turned[second])
+        pairs.append(_pair(system, found, (first, second), bytes_of))
+    _refuse(turned, list(_meeting(found, pairs)))
+    return found, pairs
+
+
+def _refuse(turned: Sequence[Slider], groups: Sequence[Sequence[int]]) -> None:
+    if groups:
+        raise UseError("page", [_too_many([turned[number].name for number in group]) for group in groups])
 
 
 def _too_many(names: Sequence[str]) -> str:
@@ -59,12 +67,23 @@ def _too_many(names: Sequence[str]) -> str:
     return f"slider: {told} depend on each other in this driveline, and a page has at most two such; give two of them"
 
 
-def _groups(system: System, turned: Sequence[Slider]) -> Iterator[list[int]]:
+def _meeting(found: Sequence[Slider], pairs: Sequence[Pair]) -> Iterator[list[int]]:
+    """Sliders of which a pair changes words, both turned, that others change too."""
+    alone = [(number,) for number in range(len(found)) if not any(number in pair.sliders for pair in pairs)]
+    changed = {(number,): found[number].places for (number,) in alone} | {pair.sliders: pair.places for pair in pairs}
+    for one, other in combinations(changed, 2):
+        if np.intersect1d(changed[one], changed[other]).size:
+            yield sorted([*one, *other])
+
+
+def _groups(system: System, turned: Sequence[Slider], bytes_of: Bytes) -> Iterator[list[int]]:
     """Numbers of the sliders that go together, of two and more."""
     group = list(range(len(turned)))
     for first, second in combinations(range(len(turned)), 2):
         one, other = turned[first], turned[second]
-        if group[first] != group[second] and (shared(one, other) or _refused(system, one, other)):
+        if group[first] == group[second]:
+            continue
+        if dependent(system, one, other, bytes_of) or refused(system, one, other):
             old, new = group[second], group[first]
             group = [new if number == old else number for number in group]
     for number in sorted(set(group)):
@@ -73,40 +92,29 @@ def _groups(system: System, turned: Sequence[Slider]) -> Iterator[list[int]]:
             yield members
 
 
-def _refused(system: System, one: Slider, other: Slider) -> bool:
-    """Whether there is no driveline at some of their ends, as with a static coefficient below the kinetic one."""
-    return any(_made(system, one, other, *at)[1] for at in product(one.ends, other.ends))
-
-
-def _made(system: System, one: Slider, other: Slider, first: float, second: float) -> tuple[System | None, str]:
-    """The System at two values, or why there is none."""
-    try:
-        return system.changed(one.changes(first) | other.changes(second)), ""
-    except ModelError as error:
-        return None, str(error).strip().splitlines()[-1].strip()
-
-
 def _coarse(slider: Slider) -> Slider:
     """A slider with the stops of a pair, whose words the pair has."""
-    # the start is there wherever it is: the other slider is turned from it
-    values: Numbers = np.unique(np.append(np.linspace(*slider.ends, STOPS), slider.start))
+    low, high = slider.ends
+    start = slider.start if low <= slider.start <= high else low
+    values: Numbers = np.unique(np.append(np.linspace(low, high, STOPS), start))
     places, words = np.zeros(0, dtype=np.int64), np.zeros((len(values), 0), dtype=np.uint64)
     return replace(slider, values=values, places=places, words=words, direct=False)
 
 
 def _pair(system: System, turned: Sequence[Slider], which: tuple[int, int], bytes_of: Bytes) -> Pair:
     one, other = turned[which[0]], turned[which[1]]
-    own = np.frombuffer(bytes_of(system), dtype=np.uint64)
-    lines, refused = list[Words](), dict[int, str]()
-    for line, at in enumerate(product(one.values.tolist(), other.values.tolist())):
-        made, why = _made(system, one, other, *at)
-        data = own if made is None else np.frombuffer(bytes_of(made), dtype=np.uint64)
+    values = (np.union1d(one.values, one.start), np.union1d(other.values, other.start))
+    own = words_of(system, bytes_of)
+    lines, none = list[Words](), dict[int, str]()
+    for line, at in enumerate(product(values[0].tolist(), values[1].tolist())):
+        there, why = made(system, one, other, *at)
+        data = own if there is None else words_of(there, bytes_of)
         if why or len(data) != len(own):
-            data, refused[line] = own, why or "these values make another driveline, which a page cannot become"
+            data, none[line] = own, why or "these values make another driveline, which a page cannot become"
         lines.append(data)
-    if len(refused) > len(lines) - 2:
+    if len(none) > len(lines) - 2:
         names = f"{one.name} and {other.name}"
-        raise UseError("page", [f"slider: {names} cannot be turned together: {next(iter(refused.values()))}"])
+        raise UseError("page", [f"slider: {names} cannot be turned together: {next(iter(none.values()))}"])
     whole = np.array(lines)
     places = np.flatnonzero((whole != own).any(axis=0))
-    return Pair(which, places, np.ascontiguousarray(whole[:, places]), refused)
+    return Pair(which, values, places, np.ascontiguousarray(whole[:, places]), none)

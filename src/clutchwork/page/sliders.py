@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
-from collections.abc import Callable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import combinations
 from math import inf, isfinite
@@ -11,12 +10,12 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError
 from clutchwork.declare.schema import Spec
 from clutchwork.model.changes import Target, all_names, field_of, in_si, named, target, targets_of, unit_of
+from clutchwork.page.slider import Bytes, Slider, Words, start_of
+from clutchwork.page.together import dependent
 from clutchwork.results.selection import meant
 
 if TYPE_CHECKING:
@@ -25,51 +24,6 @@ if TYPE_CHECKING:
 STOPS, MOST_USUAL = 41, 3
 # of these, to see whether a number is a word by itself
 FEW = 5
-Numbers = NDArray[np.float64]
-Words = NDArray[np.uint64]
-Bytes = Callable[[Any], bytes]
-
-
-@dataclass(frozen=True, eq=False)
-class Slider:
-    """A number, or several that are turned together, its values, and the words of each of them."""
-
-    name: str  # as it was asked for
-    names: tuple[str, ...]
-    unit: str
-    doc: str
-    starts: tuple[float, ...]  # of each name
-    ends: tuple[float, float]
-    values: Numbers
-    places: NDArray[np.int64]  # words that change
-    words: Words  # of each value
-    direct: bool  # every word is the number itself, so that it may have any value between
-
-    @property
-    def start(self) -> float:
-        """Where it stands at first; numbers with different starts keep them until the slider is turned."""
-        return start_of(self.starts)
-
-    def changes(self, value: float) -> dict[str, float]:
-        """What `System.changed` takes for a value."""
-        return {} if value == self.start else dict.fromkeys(self.names, value)
-
-    def plain(self) -> dict[str, Any]:
-        """As a page has it."""
-        made: dict[str, Any] = {"name": self.name, "names": list(self.names), "unit": self.unit, "doc": self.doc}
-        made |= {"start": self.start, "starts": sorted(set(self.starts)), "values": self.values.tolist()}
-        made |= {"places": self.places.tolist(), "direct": self.direct}
-        return made if self.direct else made | {"words": packed(self.words)}
-
-
-def packed(words: Words) -> str:
-    """Words as letters."""
-    return b64encode(words.astype("<u8").tobytes()).decode()
-
-
-def start_of(starts: Sequence[float]) -> float:
-    """The start of all numbers of a slider, or the middle of what they start from."""
-    return starts[0] if len(set(starts)) == 1 else sum(starts) / len(starts)
 
 
 def sliders(system: System, wanted: Sequence[str] | None, dragged: Sequence[str], bytes_of: Bytes) -> list[Slider]:
@@ -105,19 +59,13 @@ def usual(system: System, dragged: Sequence[str], bytes_of: Bytes) -> list[Slide
             one = _slider(system, name, bytes_of)
         except ValueError:
             continue
-        if not any(shared(one, other) for other in found):
+        if not any(dependent(system, one, other, bytes_of) for other in found):
             found.append(one)
     return found
 
 
-def shared(one: Slider, other: Slider) -> bool:
-    """Whether two sliders change the same words."""
-    return bool(set(one.places.tolist()) & set(other.places.tolist()))
-
-
 def _slider(system: System, asked: str, bytes_of: Bytes) -> Slider:
-    name, _, span = (part.strip() for part in asked.partition("="))
-    names = _names(system, name)
+    name, span, names = _asked(system, asked)
     aims = [_aim(system, one) for one in names]
     unit = _unit(name, dict(zip(names, map(unit_of, aims), strict=True)))
     starts, declared = zip(*(_number_at(one, aim) for one, aim in zip(names, aims, strict=True)), strict=True)
@@ -132,20 +80,50 @@ def _slider(system: System, asked: str, bytes_of: Bytes) -> Slider:
     return made if span else replace(made, ends=(float(made.values[0]), float(made.values[-1])))
 
 
-def _names(system: System, name: str) -> tuple[str, ...]:
-    """Numbers that a name, a wildcard, or several of them with commas stand for."""
+def _asked(system: System, asked: str) -> tuple[str, str, tuple[str, ...]]:
+    """What a text stands for: its name, the ends after the last "=", empty where it has none, and the numbers."""
     if system.source is None:
         raise ValueError("the driveline of this System is not known; make the page from a model")
-    known = list(all_names(system.source))
-    parts = [name] if name in known else [part.strip() for part in name.split(",") if part.strip()]
+    known, whole = dict.fromkeys(all_names(system.source)), asked.strip()
+    name, mark, span = (part.strip() for part in whole.rpartition("="))
+    # names may have "=" themselves
+    if not mark or all(_fitting(system, part, known) for part in _parts(system, whole, known)):
+        name, span = whole, ""
+    return name, span, _names(system, name, known)
+
+
+def _names(system: System, name: str, known: Collection[str]) -> tuple[str, ...]:
+    """Numbers that a name, a wildcard, or several of them with commas stand for."""
     found = list[str]()
-    for part in parts or [name]:
-        wild = part not in known and ("*" in part or "?" in part)
-        fitting = [one for one in meant(part, known) if _turns(system, one)] if wild else [part]
-        if not fitting:
+    for part in _parts(system, name, known):
+        fitting = _fitting(system, part, known)
+        if not fitting and _is_wild(part):
             raise ValueError(f"{part!r} fits no number of this driveline; clutchwork check MODEL --names lists them")
-        found += fitting
+        # what is unknown is explained with its aim
+        found += fitting or [part]
     return tuple(dict.fromkeys(found))
+
+
+def _parts(system: System, text: str, known: Collection[str]) -> list[str]:
+    """What stands between commas; what fits with its commas is one."""
+    pieces, found = text.split(","), list[str]()
+    while pieces:
+        joined = ((n, ",".join(pieces[:n]).strip()) for n in range(len(pieces), 0, -1))
+        count, part = next(((n, one) for n, one in joined if _fitting(system, one, known)), (1, pieces[0].strip()))
+        found += [part] if part else []
+        pieces = pieces[count:]
+    return found or [text]
+
+
+def _fitting(system: System, part: str, known: Collection[str]) -> list[str]:
+    """Numbers that a name or a wildcard stands for."""
+    if part in known:
+        return [part]
+    return [one for one in meant(part, known) if _turns(system, one)] if _is_wild(part) else []
+
+
+def _is_wild(part: str) -> bool:
+    return "*" in part or "?" in part
 
 
 def _turns(system: System, name: str) -> bool:

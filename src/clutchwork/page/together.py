@@ -1,0 +1,57 @@
+"""Whether two sliders depend on each other: both at once make other words than the page would put together."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clutchwork.base.errors import ModelError
+from clutchwork.page.slider import Bytes, Slider, Words
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+
+
+def made(system: System, one: Slider, other: Slider, first: float, second: float) -> tuple[System | None, str]:
+    """The System at two values, or why there is none."""
+    try:
+        return system.changed(one.changes(first) | other.changes(second)), ""
+    except ModelError as error:
+        return None, str(error).strip().splitlines()[-1].strip()
+
+
+def words_of(system: System, bytes_of: Bytes) -> Words:
+    """The words of a System, as the page has them."""
+    return np.frombuffer(bytes_of(system), dtype=np.uint64)
+
+
+def refused(system: System, one: Slider, other: Slider) -> bool:
+    """Whether there is no driveline at some of their ends, as with a static coefficient below the kinetic one."""
+    places = [*product(one.ends, other.ends), *zip(_few(one), _few(other), strict=True)]
+    return any(made(system, one, other, *at)[1] for at in places)
+
+
+def dependent(system: System, one: Slider, other: Slider, bytes_of: Bytes) -> bool:
+    """Whether they change the same words, or make other words at once than one after the other."""
+    if set(one.places.tolist()) & set(other.places.tolist()):
+        return True
+    # a product of which one factor is zero at the start is seen only where neither is there
+    return any(_differs(system, one, other, *at, bytes_of) for at in zip(_few(one), _few(other), strict=True))
+
+
+def _few(slider: Slider) -> tuple[float, float]:
+    """Two of its values, neither of them its start."""
+    turned = slider.values[slider.values != slider.start]
+    return float(turned[-1]), float(turned[len(turned) // 3])
+
+
+def _differs(system: System, one: Slider, other: Slider, first: float, second: float, bytes_of: Bytes) -> bool:
+    found, _ = made(system, one, other, first, second)
+    if found is None:
+        return False
+    words = words_of(system, bytes_of).copy()
+    one.turned(words, first)
+    other.turned(words, second)
+    return not np.array_equal(words, words_of(found, bytes_of))
