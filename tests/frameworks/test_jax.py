@@ -52,7 +52,9 @@ class TestTransformations:
         """By hand: the derivatives of a sum of squares are 2 of values times their derivatives."""
         value, gradient = compiled(jax.value_and_grad(lambda x: (g(3.0 * x / 3.0) ** 2).sum()))(F.x0)
         np.testing.assert_allclose(value, VALUES @ VALUES, **CLOSE)
-        np.testing.assert_allclose(gradient, 2.0 * VALUES @ MATRIX, **CLOSE)
+        # the smaller one is what large parts leave of each other
+        wanted = 2.0 * VALUES @ MATRIX
+        np.testing.assert_allclose(gradient, wanted, rtol=1e-9, atol=1e-11 * np.abs(wanted).max())
 
     def test_one_value(self, compiled):
         """Goes by `f.vjp`."""

@@ -43,12 +43,17 @@ class Job(NamedTuple):
     stretches: Sequence[Stretch]
     rtol: float = OPTIONS["rtol"]
     atol: float = OPTIONS["atol"]
+    method: int = 0
+
+    def options(self) -> dict[str, float]:
+        """What the run is told."""
+        return {**OPTIONS, "rtol": self.rtol, "atol": self.atol, "method": float(self.method)}
 
     def words(self) -> bytes:
         """What the programs read."""
         data = self.system.to_bytes()
         parts: list[Any] = [[len(data) // 8], np.frombuffer(data, "<f8")]
-        parts += [list({**OPTIONS, "rtol": self.rtol, "atol": self.atol}.values()), [len(self.stretches)]]
+        parts += [list(self.options().values()), [len(self.stretches)]]
         for one in self.stretches:
             rows = np.array(one.segments, dtype=float).reshape(-1, 13)
             parts += [[one.signal, len(rows)], rows[:, 0], rows[:, 1:].ravel()]
@@ -114,7 +119,7 @@ def _answers(output: bytes, jobs: Sequence[Job]) -> Iterator[Answer]:
 
 def _here(job: Job) -> Answer:
     run = core().Run(job.system.to_bytes())
-    for name, value in {**OPTIONS, "rtol": job.rtol, "atol": job.atol}.items():
+    for name, value in job.options().items():
         run.set_option(name, value)
     answer, events = Answer([], [], np.empty((0, run.row_size)), np.empty((0, 10))), []
     for one in job.stretches:

@@ -1,6 +1,6 @@
 // Runs of core.wasm for tests: `node run.mjs core.wasm STATUS`, where STATUS is that of events_full. Jobs come on
-// standard input and results go to standard output as words of eight bytes that are doubles: jobs.py says what they are,
-// native.cpp does the same without WebAssembly.
+// standard input and results go to standard output as words of eight bytes that are doubles: tests/support/wasm.py
+// says what they are.
 import { readFileSync, writeSync } from "node:fs";
 
 const [, , path, full] = process.argv;

@@ -11,8 +11,9 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.declare.core import core
+from clutchwork.declare.layout import METHODS
 from clutchwork.page import core as module
-from support import random_drivelines, random_parts, random_stops, six_speed
+from support import example_models, random_drivelines, random_parts, random_stops, six_speed
 from support.amount import amount
 from support.project import ROOT
 from support.wasm import WASM, Answer, Job, Stretch, grid, here, in_node
@@ -21,7 +22,7 @@ CASES = max(4, amount() // 6)
 
 
 def jobs() -> Iterator[Job]:
-    """Two shifts, random drivelines of every sort, one of them with another table on the way."""
+    """Two shifts, one of them with another table on the way, all examples, random drivelines of every sort."""
     system = cw.Driveline.load(ROOT / "examples" / "six_speed" / "model.toml").assemble()
     yield Job(system, [Stretch(grid(4.0, 201))])
     system = six_speed.gearbox(six_speed.SHIFT, {"w1": 150.0, "w2": 150.0, "w8": 0.0}).assemble()
@@ -29,10 +30,14 @@ def jobs() -> Iterator[Job]:
     number = next(k for k, item in enumerate(system.inputs) if item.name == "F1.pressure")
     later = cw.Table(((2.0, 0.0), (2.15, 0.2e6), (2.7, 0.7e6), (3.1, 2e6))).segments()[1:]
     yield Job(system, [Stretch(grid(2.1, 21)), Stretch(grid(4.0, 101, 2.1), number, later)])
+    for name in example_models.MODELS:
+        system, t_end = example_models.model(name)
+        yield Job(system, [Stretch(grid(t_end))])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for seed in range(CASES):
-            yield Job(random_drivelines.describe(seed).driveline().assemble(), [Stretch(grid(2.0))])
+            driveline = random_drivelines.describe(seed).driveline().assemble()
+            yield Job(driveline, [Stretch(grid(2.0))], method=seed % len(METHODS))
             yield Job(random_parts.driveline(seed).assemble(), [Stretch(grid(1.0))])
             yield Job(random_stops.driveline(seed).assemble(), [Stretch(grid(0.5))])
 

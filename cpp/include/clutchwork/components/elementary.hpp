@@ -1,5 +1,6 @@
 #pragma once
 #include <bit>
+#include <cfloat>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -8,9 +9,17 @@
 #define CLUTCHWORK_INLINE inline __attribute__((always_inline))
 #endif
 
+// what compilers may do with sums has to stop here
+#if defined(__FAST_MATH__)
+#error "clutchwork computes the same bits everywhere: compile it without -ffast-math"
+#endif
+
 /// Elementary functions from additions, products and divisions alone, so that every machine has the same bits of them:
 /// mathematical libraries differ in the last one. Within one unit of it. docs/theory/elementary.md
 namespace clutchwork {
+
+static_assert(FLT_EVAL_METHOD == 0,
+              "clutchwork needs doubles without further digits: compile it with -msse2 -mfpmath=sse");
 
 // these are exact in every library
 using std::abs, std::floor, std::fmod, std::sqrt;
@@ -111,13 +120,12 @@ inline Pair log_parts(double x) {
   // 2 atanh(s) = 2 s (1 + s^2 / 3 + s^4 / 5 ...)
   constexpr double series[] = {1.0 / 3,  1.0 / 5,  1.0 / 7,  1.0 / 9,  1.0 / 11,
                                1.0 / 13, 1.0 / 15, 1.0 / 17, 1.0 / 19, 1.0 / 21};
-  constexpr std::int64_t one = 0x3ff0000000000000, root_half = 0x3fe6a09e667f3bcd;
+  constexpr std::int64_t root_half = 0x3fe6a09e667f3bcd;
   std::int64_t k = 0;
   if (x < 0x1p-1022) x *= 0x1p54, k = -54;
   const std::int64_t above = std::bit_cast<std::int64_t>(x) - root_half;
   k += above >> 52;
   const double m = std::bit_cast<double>(std::bit_cast<std::int64_t>(x) - ((above >> 52) << 52));
-  static_assert(one > root_half);
   const double f = m - 1, g = 2 + f, g_low = f - (g - 2), s = f / g;
   const Pair back = exact_product(s, g);
   const double s_low = (((f - back.high) - back.low) - s * g_low) / g, z = s * s;
@@ -149,7 +157,8 @@ inline double pow(double x, double y) {
   if (!(rough < 800 && rough > -800)) return rough > 0 ? infinity : 0;
   const Pair p = exact_product(y, l.high);
   const double e = exp(p.high);
-  return e + e * (p.low + y * l.low);
+  // the end of numbers lies before that of the product
+  return e < infinity ? e + e * (p.low + y * l.low) : e;
 }
 
 /// An angle less so many right angles: the rest, within an eighth of a turn, in two parts.
@@ -163,6 +172,7 @@ inline Quarter quarter_of(double x) {
   constexpr double part[] = {0x1.921fb4p+0, 0x1.4442dp-24, 0x1.846988p-48, 0x1.8cc516p-72};
   constexpr double turn = 0x1.921fb54442d18p+2, far = 5e8;
   if (abs(x) <= 0x1.921fb54442d18p-1) return {{x, 0}, 0};
+  if (!(abs(x) < std::numeric_limits<double>::infinity())) return {{std::numeric_limits<double>::quiet_NaN(), 0}, 0};
   if (abs(x) > far) x = fmod(x, turn);
   const double k = nearest(x * 0x1.45f306dc9c883p-1);
   Pair r = {x - k * part[0], 0};

@@ -111,7 +111,7 @@ struct Lanes {
   friend CLUTCHWORK_INLINE Lanes sqrt(const Lanes& x) {
     return each(x, [](double y) { return sqrt(y); });
   }
-  // the C library speaks to doubles: the same call in each lane
+  // these are functions of doubles: the same call in each lane
   friend CLUTCHWORK_INLINE Lanes exp(const Lanes& x) {
     return each(x, [](double y) { return exp(y); });
   }

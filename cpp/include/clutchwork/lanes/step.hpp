@@ -18,6 +18,7 @@ CLUTCHWORK_INLINE Mask<R> doubtful_inline(const Workspace<Lanes<R>>& ws, const L
     clear = clear && stays_clear(ws, g.branch, g.sign, g.level, h, ws.noise, start, end);
   }
   for (int a = 0; a < ws.held.n; ++a) clear = clear && holds_on(ws, a, h, start, end);
+  clear = clear && !nears_rest(ws);
   // open contacts that have started to move get their direction
   for (int k = ws.n_branches; ws.guard.n_undirected > 0 && k < ws.n_rates; ++k) {
     if (ws.branch[k].sign == 0) clear = clear && abs(ws.there.rate[k]) <= 1e-10;

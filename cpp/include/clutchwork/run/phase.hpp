@@ -36,6 +36,8 @@ class Phase : public Pace<typename Form::Scalar> {
   static constexpr int most_landings = 4;
   // of the tolerance: cuts come on top of steps, and there may be one every few steps
   static constexpr double most_cut_error = 0.3;
+  // of a step towards rest: where inside it is checked, and how much of the tolerance an interpolant may miss there
+  static constexpr double inner = 0.7, most_inner_error = 10;
   // steps at the limit of stability, of the length over the fastest rate, before an implicit method goes on
   static constexpr int most_strained = 8;
   static constexpr double strain = 1.5;
@@ -191,6 +193,8 @@ class Phase : public Pace<typename Form::Scalar> {
     const Hit hit = find_hit<Form, Integrator>(form_, step_);
     if (must_land(hit)) {
       land(hit.s);
+    } else if (misses_rest(hit)) {
+      retake();
     } else if (write(hit.s)) {
       hit.what == Hit::nothing ? accept() : meet(hit);
     }
@@ -213,9 +217,30 @@ class Phase : public Pace<typename Form::Scalar> {
     ++ws_.statistics.rejected;
     if (landings_++ == 0) before_ = larger(h_, reach_);
     h_ = s * reach_;
-    // the derivatives are those of the other end
+    look_back();
+  }
+  /// The derivatives are those of the other end.
+  void look_back() {
     ws_.in.time = -infinity;
     look_here();
+  }
+
+  /// Whether a step towards rest has run over a change of the coefficient: the two solutions whose difference is its
+  /// error may agree by chance. docs/theory/events.md, rule 7
+  bool misses_rest(const Hit& hit) {
+    if constexpr (!Integrator::stiff) return false;
+    if (hit.what != Hit::nothing || !nears_rest(ws_)) return false;
+    if (!step_.dense) Integrator::prepare_dense(form_, step_);
+    const double missed = error_until(form_, step_, inner);
+    if (missed > most_inner_error) return error_ = missed, true;
+    look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
+    return false;
+  }
+
+  void retake() {
+    --ws_.statistics.steps;
+    look_back();
+    reject();
   }
 
   /// Rows and integrals of the step up to the share s. False: a row is not finite, or the caller wants to stop.

@@ -193,6 +193,17 @@ double error_until(Form& form, Step<Form>& step, double s) {
   return error_norm(form, miss, step.y0(), y);
 }
 
+/// Whether a sliding contact loses more than half of its slip in a step.
+template <class T>
+CLUTCHWORK_INLINE Truth<T> nears_rest(const Workspace<T>& ws) {
+  Truth<T> slides_on(true);
+  for (int k = 0; k < ws.n_branches; ++k) {
+    if (ws.branch[k].law < 0 || ws.branch[k].compliant) continue;
+    slides_on = slides_on && abs(value(ws.there.rate[k])) >= Real<T>(0.5) * abs(value(ws.here.rate[k]));
+  }
+  return !slides_on;
+}
+
 /// Name the branch whose torque is not finite.
 template <class Form>
 void blame(Form& form, Step<Form>& step) {
