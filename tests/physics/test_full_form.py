@@ -49,8 +49,9 @@ def test_examples_move_as_in_their_own_form(path: Path) -> None:
     options: dict[str, Any] = {"rtol": 1e-9, "atol": 1e-9, "dt": 0.02, "method": "rodas5p"}
     own, whole = (cw.simulate(each, 1.0, **options) for each in (system, full(system)))
     assert [(e.element, e.after) for e in own.events] == [(e.element, e.after) for e in whole.events]
-    # at this tolerance the steps may differ: ten times of it, of each full scale; a shaft that is held has round-off
-    assert worst(own, whole, 1e-3) <= 1e-8
+    # at this tolerance the steps may differ: thirty times of it, of each full scale, accelerations
+    # among them; a shaft that is held has round-off
+    assert worst(own, whole, 1e-3) <= 3e-8
 
 
 def line(seed: int) -> tuple[cw.Driveline, Any, np.ndarray]:
