@@ -62,7 +62,7 @@ $(EXTRAS:%=$(STAMPS)/%): $(STAMPS)/%: $(STAMPS)/venv pyproject.toml tools/extras
 	@touch $@
 
 $(STAMPS)/package: $(STAMPS)/build $(CORE_SOURCES)
-	@echo "building and installing clutchwork (a minute or two)"
+	@echo "building and installing clutchwork (some nine minutes of one core)"
 	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH" \
 		$(PIP) install --no-build-isolation --no-deps --editable .
 	@touch $@
@@ -136,7 +136,7 @@ docs: $(STAMPS)/package $(STAMPS)/docs $(WASM) $(PAGE)
 wasm: $(WASM)
 
 $(WASM): $(STAMPS)/wasm $(CORE_SOURCES) tools/build_wasm.py
-	@echo "compiling the core to WebAssembly (half a minute)"
+	@echo "compiling the core to WebAssembly (a minute or so)"
 	@JOBS=$(JOBS) $(BIN)/python tools/build_wasm.py
 
 # repaired to a manylinux tag on Linux, then tried in an environment of its own

@@ -3,7 +3,7 @@ import { readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
 const [engine, core, asked] = process.argv.slice(2);
-const { Core, Session, evaluated, asPython, asToml } = await import(pathToFileURL(engine));
+const { Core, Session, evaluated, measures, asPython, asToml } = await import(pathToFileURL(engine));
 const { data, jobs } = JSON.parse(readFileSync(asked, "utf8"));
 const session = new Session(data, await Core.of(readFileSync(core)));
 const made = jobs.map((job) => {
@@ -19,6 +19,7 @@ const made = jobs.map((job) => {
     count: run.count,
     events: run.events.map((event) => [...event]),
     signals: Object.fromEntries(signals),
+    ...(job.measures ? { measures: measures(data, session.run({ steps: job.measures })) } : {}),
     ...(job.copies ? { python: asPython(session), toml: asToml(session) } : {}),
   };
 });

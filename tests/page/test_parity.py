@@ -156,3 +156,18 @@ def test_a_slider_with_stops_has_the_words_of_python(engine: Any) -> None:
         for name in names:
             scale = np.abs(run[name]).max()
             assert np.abs(np.array(found["signals"][name]) - run[name]).max() <= SAME * scale
+
+
+def test_the_largest_jerk_is_that_of_calibration(engine: Any) -> None:
+    """docs/theory/calibration.md (3), in which the jump of a lock-up counts."""
+    (found,) = engine(page_data("six_speed"), [{"measures": 4}])
+    (jerk,) = (one["value"] for one in found["measures"] if one["name"] == "Largest jerk of w8 over 0.05 s")
+    window, end = 0.05, 4.0
+    at = np.arange(window, end - window + 1e-9, window / 16)
+    times = np.unique(np.concatenate([at - window, at, at + window]).round(12))
+    system, _ = model_of("six_speed")
+    speed = dict(zip(times, cw.simulate(system, end, times=times)["w8.speed"], strict=True))
+    v = [[speed[key] for key in (at + shift).round(12)] for shift in (-window, 0.0, window)]
+    wanted = np.max(np.abs(np.array(v[0]) - 2 * np.array(v[1]) + v[2])) / window**2
+    # a page knows the acceleration four times a step, and takes it as straight between
+    assert jerk == pytest.approx(wanted, rel=0.01)

@@ -62,3 +62,30 @@ export function slope(values: Float64Array, times: Float64Array): Float64Array {
   }
   return made;
 }
+
+/** The largest jerk that a person feels: the change of the mean accelerations before and behind an instant over a window, in
+ * which a jump counts; null for a run of less than two windows. docs/theory/calibration.md (3) */
+export function feltJerk(acceleration: Float64Array, times: Float64Array, window = 0.05): number | null {
+  const n = times.length;
+  const [first, last] = [times[0] ?? 0, times[n - 1] ?? 0];
+  if (last - first < 2 * window) return null;
+  const sums = new Float64Array(n);
+  for (let i = 1; i < n; i++) sums[i] = sums[i - 1]! + 0.5 * (acceleration[i]! + acceleration[i - 1]!) * (times[i]! - times[i - 1]!);
+  const speedAt = (): ((t: number) => number) => {
+    let i = 0;
+    return (t) => {
+      while (i < n - 2 && times[i + 1]! < t) i++;
+      const [h, s] = [times[i + 1]! - times[i]!, t - times[i]!];
+      const rise = h > 0 ? (acceleration[i + 1]! - acceleration[i]!) / h : 0;
+      return sums[i]! + s * (acceleration[i]! + 0.5 * s * rise);
+    };
+  };
+  const [before, here, after] = [speedAt(), speedAt(), speedAt()];
+  let most = 0;
+  const instants = Math.floor((16 * (last - first - 2 * window)) / window + 1e-9);
+  for (let k = 0; k <= instants; k++) {
+    const t = first + window + (k * window) / 16;
+    most = Math.max(most, Math.abs(after(t + window) - 2 * here(t) + before(t - window)) / (window * window));
+  }
+  return most;
+}

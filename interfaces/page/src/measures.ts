@@ -2,7 +2,7 @@
 import type { CoreEvent, Result } from "./core";
 import type { ContactData, PageData } from "./data";
 import { quantity, seconds } from "./format";
-import { evaluated } from "./forms";
+import { evaluated, feltJerk } from "./forms";
 
 export type State = "locked" | "slipping" | "open";
 
@@ -89,16 +89,14 @@ export function brief(data: PageData, run: Result): string {
 }
 
 function felt(data: PageData, run: Result): Measure[] {
-  const made: Measure[] = [];
-  for (const [word, title] of [
-    ["acceleration", "Largest acceleration of"],
-    ["jerk", "Largest jerk of"],
-  ] as const) {
-    const signal = data.signals[`${data.output}.${word}`];
-    if (!signal) continue;
-    const value = evaluated(signal.form, run).reduce((most, one) => Math.max(most, Math.abs(one)), 0);
-    made.push({ name: `${title} ${data.output}`, unit: signal.unit, value });
-  }
+  const acceleration = data.signals[`${data.output}.acceleration`];
+  const jerk = data.signals[`${data.output}.jerk`];
+  if (!acceleration) return [];
+  const values = evaluated(acceleration.form, run);
+  const most = values.reduce((most, one) => Math.max(most, Math.abs(one)), 0);
+  const made: Measure[] = [{ name: `Largest acceleration of ${data.output}`, unit: acceleration.unit, value: most }];
+  const jolt = jerk ? feltJerk(values, run.times) : null;
+  if (jerk && jolt !== null) made.push({ name: `Largest jerk of ${data.output} over 0.05 s`, unit: jerk.unit, value: jolt });
   return made;
 }
 

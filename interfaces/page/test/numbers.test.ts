@@ -4,7 +4,7 @@ import { test } from "node:test";
 import type { Result } from "../src/core";
 import type { ContactData, SliderData, TableData } from "../src/data";
 import { number, quantity } from "../src/format";
-import { evaluated, slope } from "../src/forms";
+import { evaluated, feltJerk, slope } from "../src/forms";
 import { strokes } from "../src/measures";
 import { position, told, valueAt } from "../src/sliders";
 import { added, limits, moved, pieces, removed, valueAt as tableAt, written } from "../src/tables";
@@ -85,4 +85,13 @@ test("numbers as people read them", () => {
   assert.equal(number(-1234567), "−1.235e+6");
   assert.equal(quantity(250000, "Pa"), "2.5 bar");
   assert.equal(quantity(-12.5, "rad/s2"), "−12.5 rad/s²");
+});
+
+test("a jump of the acceleration is felt as its height over the window", () => {
+  const times = Float64Array.from([0, 0.5, 0.5, 1]);
+  const jump = feltJerk(Float64Array.from([1, 1, 4, 4]), times) ?? 0;
+  assert.ok(jump <= 3 / 0.05 + 1e-6 && jump >= (3 / 0.05) * (1 - 1 / 32));
+  // a steady jerk is what it is
+  assert.ok(Math.abs((feltJerk(Float64Array.from([0, 1, 1, 2]), times) ?? 0) - 2) < 1e-6);
+  assert.equal(feltJerk(Float64Array.from([0, 1]), Float64Array.from([0, 0.09])), null);
 });
