@@ -1,4 +1,4 @@
-"""Every friction law has a live page: all its numbers are turned, every position of a slider runs to the end."""
+"""Every friction law has a live page: all its numbers are turned, and wherever its sliders stand it runs to the end."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import warnings
 from functools import cache
 from itertools import combinations, product
 from numbers import Real
+from operator import mul
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,8 @@ import law_pages
 KINDS = sorted(REGISTRY[Role.LAW])
 # it ends where its disc first comes to rest
 ENDS_EARLY = "naive_sign"
+# random positions
+ANYWHERE = 4
 # of which a slider would leave what other numbers allow
 STAYS = {"elastoplastic": {"plastic"}}
 
@@ -72,17 +75,36 @@ def test_a_law_has_three_rigs_and_all_its_numbers(kind: str) -> None:
     assert made["pairs"] == []
 
 
+def positions(count: int) -> list[list[float]]:
+    """Where so many sliders stand, from 0 to 1: any two of them at each pair of low, middle, high; then anywhere.
+
+    The first ones are an orthogonal array: linear functions, none a multiple of another, of three digits of base 3.
+    """
+    digits = [*product(range(3), repeat=3)]
+    functions = [one for one in digits if next((digit for digit in one if digit), 0) == 1]
+    assert count <= len(functions)
+    levels = [[sum(map(mul, one, at)) % 3 / 2 for one in functions[:count]] for at in digits]
+    return levels + np.random.default_rng(15).uniform(size=(ANYWHERE, count)).tolist()
+
+
+def test_any_two_sliders_stand_at_all_pairs_of_places() -> None:
+    places = positions(13)
+    for one, other in combinations(range(13), 2):
+        assert len({(row[one], row[other]) for row in places[:-ANYWHERE]}) == 9
+
+
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_position_of_a_slider_runs_to_the_end(kind: str) -> None:
+def test_wherever_its_sliders_stand_it_runs_to_the_end(kind: str) -> None:
     # without a fall of the coefficient its disc slides on
     expected = {"chatter", "done"} if kind == ENDS_EARLY else {"done"}
     assert status(kind, {}) == ("chatter" if kind == ENDS_EARLY else "done")
     sliders = data(kind)["sliders"]
-    for one, other in combinations(sliders, 2):
-        for at, beside in product((0, -1), repeat=2):
-            changes = dict.fromkeys(one["names"], one["values"][at])
-            changes |= dict.fromkeys(other["names"], other["values"][beside])
-            assert status(kind, changes) in expected, changes
+    for row in positions(len(sliders)):
+        changes = {}
+        for one, place in zip(sliders, row, strict=True):
+            low, high = one["values"][0], one["values"][-1]
+            changes |= dict.fromkeys(one["names"], high if place == 1.0 else low + place * (high - low))
+        assert status(kind, changes) in expected, changes
 
 
 @pytest.mark.parametrize("kind", KINDS)
