@@ -60,7 +60,7 @@ def test_a_law_has_three_rigs_and_all_its_numbers(kind: str) -> None:
         ("sweep.torque", "swept.speed"),
         ("loop.torque", "moved.angle"),
     ]
-    assert made["panels"][0]["names"] == ["disc.speed", "drum.speed"]
+    assert [panel["names"] for panel in made["panels"]] == [["disc.speed", "drum.speed"]]
     numbers = {
         item.name
         for item, spec in specs(type(law))

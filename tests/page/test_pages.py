@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import re
 import subprocess
@@ -119,6 +120,47 @@ def test_a_constant_pressure_has_two_knots() -> None:
 def test_what_cannot_be_on_a_page_is_said(wanted: dict[str, Any], said: str) -> None:
     with pytest.raises((cw.UseError, cw.UnknownName), match=said):
         data_of(braked().assemble(), 1.0, cw.Options(), Wanted(**wanted))
+
+
+FEELS = ["Acceleration of the output", "Jerk of the output"]
+
+
+@pytest.mark.parametrize(
+    ("drag", "show", "titles"),
+    [
+        (None, None, ["Speed", "Slip", "Torque", "Heat", *FEELS]),
+        (None, ["disc.speed"], ["Speed", *FEELS]),
+        (None, ["disc.jerk", "disc.acceleration"], FEELS),
+        ([], None, ["Speed", "Slip", "Torque", "Heat"]),
+        ([], ["disc.speed"], ["Speed"]),
+        ([], ["disc.jerk"], ["Jerk"]),
+        ([], ["disc.acceleration", "disc.jerk"], ["Acceleration", "Jerk"]),
+    ],
+)
+def test_how_the_output_feels_is_there_where_it_is_moved_or_asked_for(drag: Any, show: Any, titles: list[str]) -> None:
+    """A pressure is dragged, or nothing is; the jerk over the heat follows the jerk."""
+    data = data_of(braked().assemble(), 1.0, cw.Options(), Wanted(drag, ["b.gain"], show))
+    assert [panel["title"] for panel in data["panels"]] == titles
+    assert ("disc.jerk" in data["signals"]) == any(title.startswith("Jerk") for title in titles)
+
+
+@pytest.mark.usefixtures("built")
+@pytest.mark.parametrize("name", ["stick_slip", "hysteresis"])
+def test_pages_of_friction_show_no_jerk(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(ROOT / "docs" / "figures")
+    live = importlib.import_module("live")
+    live.PAGES[name](tmp_path / "x.html")
+    data = content((tmp_path / "x.html").read_text(encoding="utf-8"))
+    assert data["loops"]
+    assert not [signal for signal in data["signals"] if signal.endswith((".jerk", ".acceleration"))]
+
+
+def test_names_may_have_the_word_of_a_loop() -> None:
+    data = data_of(braked(shaft="a over b").assemble(), 1.0, cw.Options(), Wanted([], [], ["a over b.speed"]))
+    assert (data["loops"], data["panels"][0]["names"]) == ([], ["a over b.speed"])
+    over = ["b.torque over a over b.speed", "a over b.speed over b.torque"]
+    data = data_of(braked(shaft="a over b").assemble(), 1.0, cw.Options(), Wanted([], [], over))
+    assert data["loops"] == [{"y": "b.torque", "x": "a over b.speed"}, {"y": "a over b.speed", "x": "b.torque"}]
 
 
 def test_a_controller_in_python_has_no_page() -> None:

@@ -38,6 +38,37 @@ def test_what_was_changed_comes_back_as_a_system():
     assert after.events.of("c1")[0].time == pytest.approx(16.0 / 18.0 + 0.05, rel=1e-9)
 
 
+def test_a_value_between_stops_is_the_nearest_one_in_python_too():
+    """An inertia of a rigid train has stops: the page shows the nearest, and so does what Python reads back."""
+    d = cw.Driveline("rigid")
+    a, b = d.shaft("a", inertia=0.2), d.shaft("b", inertia=0.8, speed=10.0)
+    d.add(cw.Gear("g", input=a, output=b, ratio=2.0))
+    widget = d.simulate(0.1).widget(drag=[], sliders=["a.inertia=0.1:0.5", "b.inertia=0.1:0.9"])
+    stops = {one["name"]: one["values"] for one in json.loads(widget.page)["sliders"]}
+    assert not any(one["direct"] for one in json.loads(widget.page)["sliders"])
+    assert widget.values == {"a.inertia": 0.2, "b.inertia": 0.8}
+    widget.values = {"a.inertia": 0.3333}
+    nearest = min(stops["a.inertia"], key=lambda stop: abs(stop - 0.3333))
+    # the other one stays
+    assert widget.values == {"a.inertia": nearest, "b.inertia": 0.8}
+    assert {node.name: node.inertia for node in widget.system.source.nodes} == {"a": nearest, "b": 0.8}
+
+
+def test_what_python_sets_has_known_names():
+    widget = run().widget(drag="c1.pressure", sliders=["c1.gain"])
+    for name, value, said in [
+        ("values", {"c1.gian": 6e-4}, "'c1.gian' is no slider of this widget; did you mean 'c1.gain'"),
+        ("values", {"c1.gain": "6e-4"}, "not a finite number in m3"),
+        ("values", {"c1.gain": float("nan")}, "not a finite number in m3"),
+        ("knots", {"c1.presure": [[0.0, 1e5]]}, "'c1.presure' is no table of this widget; did you mean 'c1.pressure'"),
+        ("knots", {"c1.pressure": [0.0, 1e5]}, "give knots"),
+    ]:
+        before = getattr(widget, name)
+        with pytest.raises(cw.UseError, match=re.escape(said)):
+            setattr(widget, name, value)
+        assert getattr(widget, name) == before
+
+
 def test_its_page_is_that_of_the_file():
     widget = run().widget(drag="c1.pressure", show=["a.speed"])
     data = json.loads(widget.page)

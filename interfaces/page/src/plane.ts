@@ -15,6 +15,8 @@ export interface Spot {
 }
 
 const NARROW = 1e-3;
+// of one value, but for rounding
+const SAME = 1e-9;
 type Ends = [number, number];
 const [WIDTH, HEIGHT, LEFT, RIGHT, BOTTOM, TOP] = [420, 240, 62, 20, 36, 8];
 
@@ -64,7 +66,7 @@ function fixed(value: number): string {
   return value.toFixed(1);
 }
 
-/** Ends of an axis with some room; never empty, nor as narrow as the noise of what is shown. */
+/** Ends of an axis with some room; never empty, nor as narrow as the noise of what is shown; of one value from 0. */
 export function ends(values: readonly ArrayLike<number>[]): Ends {
   let [low, high] = [Infinity, -Infinity];
   for (const some of values) {
@@ -75,6 +77,7 @@ export function ends(values: readonly ArrayLike<number>[]): Ends {
     }
   }
   if (!(low <= high)) return [0, 1];
+  if (high - low <= SAME * Math.max(-low, high)) [low, high] = [Math.min(low, 0), Math.max(high, 0)];
   const room = Math.max(0.06 * (high - low), NARROW * Math.max(-low, high)) || 1;
   return [low - room, high + room];
 }

@@ -7,7 +7,9 @@ import { ends, ticks } from "../src/plane";
 
 test("axes hold all values and are never empty", () => {
   assert.deepEqual(ends([[0, 10], [5]]), [-0.6, 10.6]);
-  assert.deepEqual(ends([[3]]), [2.997, 3.003]);
+  assert.deepEqual(ends([[3]]), [-0.18, 3.18]);
+  assert.deepEqual(ends([[-3, -3 - 1e-12]]).map((end) => Number(end.toFixed(6))), [-3.18, 0.18]);
+  assert.deepEqual(ends([[3, 3.001]]).map((end) => Number(end.toFixed(6))), [2.996999, 3.004001]);
   assert.deepEqual(ends([[0]]), [-1, 1]);
   assert.deepEqual(ends([]), [0, 1]);
 });
@@ -26,6 +28,7 @@ test("little energy is told in J", () => {
 });
 
 test("ticks are few and round", () => {
+  assert.deepEqual(ticks(ends([[152.7]])), [0, 50, 100, 150]);
   assert.deepEqual(ticks([-0.6, 10.6]), [0, 2.5, 5, 7.5, 10]);
   assert.deepEqual(ticks([0, 1]), [0, 0.2, 0.4, 0.6, 0.8, 1].map((one) => ticks([0, 1]).find((other) => Math.abs(other - one) < 1e-12)));
   for (let high = 1; high < 10; high += 0.01) assert.ok(ticks([-high, high]).length >= 3 && ticks([-high, high]).length <= 6, `${high}`);

@@ -17,7 +17,7 @@ from clutchwork.page.levers import levers
 from clutchwork.page.live import live
 from clutchwork.page.live import plain as plain_live
 from clutchwork.page.pairs import paired
-from clutchwork.page.signals import listed, loops, output_of, panels, plain_panels
+from clutchwork.page.signals import FELT, listed, loops, output_of, panels, plain_panels
 from clutchwork.page.slider import Bytes
 from clutchwork.page.sliders import sliders
 from clutchwork.results.channels import Channels, channels
@@ -52,7 +52,7 @@ def data_of(system: System, t_end: float, options: Options, wanted: Wanted) -> d
     turned, pairs = paired(made, sliders(made, wanted.sliders, names, bytes_of), bytes_of)
     wires, known = wiring(spacious), channels(spacious, options.angles, options.work)
     output = output_of(spacious, wires)
-    shown = panels(known, wires, wanted.show, output)
+    shown = panels(known, wires, wanted.show, output, felt=any(one.unit in FELT for one in dragged))
     over = loops(known, wanted.show)
     picture = _live(spacious, known, wires)
     names += [name for panel in shown for name in panel.names]

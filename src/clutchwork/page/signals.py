@@ -38,6 +38,8 @@ TITLES = {
 # what stands between two signals of which one is drawn over the other
 OVER = " over "
 JERK = {"rad/s2": "rad/s3", "m/s2": "m/s3"}
+# what is dragged and felt: a pressure, a force, a torque
+FELT = ("Pa", "N", "N m")
 
 
 @dataclass(frozen=True)
@@ -68,30 +70,65 @@ def _driven(system: System) -> set[str]:
     return {part.shaft.name for part in found if type(part).kind.startswith("prescribed_")}
 
 
-def panels(known: Channels, wiring: Wiring, wanted: Sequence[str] | None, output: str) -> list[Panel]:
-    """What is shown: what is asked for, or speeds, slips, torques, heats and temperatures; the output last."""
+def panels(
+    known: Channels, wiring: Wiring, wanted: Sequence[str] | None, output: str, felt: bool = True
+) -> list[Panel]:
+    """What is shown: what is asked for, or speeds, slips, torques, heats and temperatures; the output last.
+
+    Parameters: felt, whether acceleration and jerk of the output are shown without being asked for.
+    """
     if wanted is None:
         found = _usual(known, wiring)
     else:
-        single = [name for name in wanted if OVER not in name]
-        names = [name for name in chosen(single, known, known.fault, "page") if _is_number(known[name])]
+        single = [name for name in wanted if not _is_loop(name, known)]
+        jerks = [name for name in single if _is_jerk(name, known)]
+        named = [name for name in single if name not in jerks]
+        names = [name for name in chosen(named, known, known.fault, "page") if _is_number(known[name])]
         found = _by_unit(known, names[:MOST_SHOWN])
-    felt = f"{output}.acceleration"
-    if felt in known:
-        unit = known[felt].unit
-        found = [one for one in found if one.names != (felt,)]
-        found.append(Panel("Acceleration of the output", unit, (felt,)))
-        if unit in JERK:
-            found.append(Panel("Jerk of the output", JERK[unit], (f"{output}.jerk",)))
+        found += [Panel("Jerk", JERK[known[_slope(name)].unit], (name,)) for name in dict.fromkeys(jerks)]
+    return _with_output(found, known, output) if felt else found
+
+
+def _with_output(found: list[Panel], known: Channels, output: str) -> list[Panel]:
+    """Panels, and those of how the output feels as the last ones."""
+    acceleration, jerk = f"{output}.acceleration", f"{output}.jerk"
+    if acceleration not in known:
+        return found
+    unit = known[acceleration].unit
+    found = [one for one in found if one.names not in ((acceleration,), (jerk,))]
+    found.append(Panel("Acceleration of the output", unit, (acceleration,)))
+    if unit in JERK:
+        found.append(Panel("Jerk of the output", JERK[unit], (jerk,)))
     return found
+
+
+def _slope(jerk: str) -> str:
+    """The acceleration whose slope a jerk is."""
+    return jerk.removesuffix("jerk") + "acceleration"
+
+
+def _is_jerk(name: str, known: Channels) -> bool:
+    """Whether it is the jerk of a shaft or mass, which no run has as a signal."""
+    return name.endswith(".jerk") and name not in known and _slope(name) in known and known[_slope(name)].unit in JERK
+
+
+def _is_loop(name: str, known: Channels) -> bool:
+    """Whether it is one signal over another; names may have the word themselves."""
+    return OVER in name and name not in known
 
 
 def loops(known: Channels, wanted: Sequence[str] | None) -> list[tuple[str, str]]:
     """Pairs of signals of which the first is drawn over the second: "c1.torque over c1.slip"."""
-    pairs = [tuple(part.strip() for part in name.split(OVER, 1)) for name in wanted or () if OVER in name]
-    names = [name for pair in pairs for name in pair]
-    chosen(names, known, known.fault, "page")
-    return [(up, across) for up, across in pairs]
+    pairs = [_both(name, known) for name in wanted or () if _is_loop(name, known)]
+    chosen([name for pair in pairs for name in pair], known, known.fault, "page")
+    return pairs
+
+
+def _both(name: str, known: Channels) -> tuple[str, str]:
+    """The two signals; where names have the word themselves, those that there are."""
+    parts = name.split(OVER)
+    cuts = [(OVER.join(parts[:n]).strip(), OVER.join(parts[n:]).strip()) for n in range(1, len(parts))]
+    return next((cut for cut in cuts if cut[0] in known and cut[1] in known), cuts[0])
 
 
 def _usual(known: Channels, wiring: Wiring) -> list[Panel]:
@@ -140,7 +177,7 @@ def listed(known: Channels, names: Sequence[str]) -> dict[str, dict[str, Any]]:
         if name in known:
             found[name] = {"unit": known[name].unit, "form": plain(known[name].evaluate)}
         elif name.endswith(".jerk"):
-            channel = known[name.removesuffix("jerk") + "acceleration"]
+            channel = known[_slope(name)]
             found[name] = {"unit": JERK[channel.unit], "form": ["d", plain(channel.evaluate)]}
     return found
 

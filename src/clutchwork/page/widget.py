@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.extras import need
 from clutchwork.page.page import quiet_data, refuse, wanted_of
 from clutchwork.page.static import CORE, FOLDER, STYLE, WIDGET, built
+from clutchwork.page.traits import knots_of, values_of
 
 if TYPE_CHECKING:
     from clutchwork.results.trajectory import Trajectory
@@ -22,7 +23,9 @@ def widget_of(run: Trajectory, drag: Any, sliders: Any, show: Any) -> Any:
 def _made(run: Trajectory, data: dict[str, Any]) -> Any:
     anywidget, traitlets = need("anywidget", "notebook", "run.widget"), need("traitlets", "notebook", "run.widget")
     built(WIDGET)
-    turned = data["sliders"]
+    turned, tables = data["sliders"], data["tables"]
+    knots = {one["name"]: one["points"] for one in tables}
+    values = {one["name"]: one["start"] for one in turned}
     from clutchwork.signals.table import Table
 
     class DrivelineWidget(anywidget.AnyWidget):  # type: ignore[misc, name-defined]
@@ -36,23 +39,29 @@ def _made(run: Trajectory, data: dict[str, Any]) -> Any:
         knots = traitlets.Dict().tag(sync=True)  # signal -> [[time, value], ...], SI
         values = traitlets.Dict().tag(sync=True)  # number -> value, SI
 
+        # what is not given stays
+
+        @traitlets.validate("knots")  # type: ignore[untyped-decorator, unused-ignore]
+        def _knots(self, proposal: Any) -> Any:
+            return {**knots, **self.knots, **knots_of(proposal["value"], tables)}
+
+        @traitlets.validate("values")  # type: ignore[untyped-decorator, unused-ignore]
+        def _turned(self, proposal: Any) -> Any:
+            return {**values, **self.values, **values_of(proposal["value"], turned)}
+
         @property
         def system(self) -> Any:
             """The driveline as it is now."""
-            tables = {name: Table([tuple(knot) for knot in knots]) for name, knots in self.knots.items()}
-            values = {
-                name: value
-                for one in turned
-                for name, value in _values(one, self.values.get(one["name"], one["start"]))
-            }
-            return run.system.changed({**tables, **values})
+            drawn = {name: Table([tuple(knot) for knot in points]) for name, points in self.knots.items()}
+            numbers = dict(pair for one in turned for pair in _values(one, self.values[one["name"]]))
+            return run.system.changed({**drawn, **numbers})
 
     return DrivelineWidget(
         page=json.dumps(data, allow_nan=False, default=list),
         css=built(STYLE).decode(),
         core=built(CORE),
-        knots={one["name"]: one["points"] for one in data["tables"]},
-        values={one["name"]: one["start"] for one in data["sliders"]},
+        knots=knots,
+        values=values,
     )
 
 
