@@ -81,7 +81,7 @@ def _slider(system: System, asked: str, bytes_of: Bytes) -> Slider:
 
 
 def _asked(system: System, asked: str) -> tuple[str, str, tuple[str, ...]]:
-    """What a text stands for: its name, the ends after the last "=", empty where it has none, and the numbers."""
+    """What a string stands for: its name, the ends after the last "=", empty where it has none, and the numbers."""
     if system.source is None:
         raise ValueError("the driveline of this System is not known; make the page from a model")
     known, whole = dict.fromkeys(all_names(system.source)), asked.strip()
