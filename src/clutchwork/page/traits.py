@@ -25,7 +25,7 @@ def values_of(given: Mapping[str, Any], sliders: Data) -> dict[str, float]:
 
 
 def knots_of(given: Mapping[str, Any], tables: Data) -> dict[str, list[list[float]]]:
-    """Knots by name; UseError for unknown names, and for what are no knots."""
+    """Knots by name; UseError for unknown names, and for values that knots cannot have."""
     known = {one["name"]: one for one in tables}
     problems = list(_problems(given, known, "table", _knots_fault))
     if problems:
