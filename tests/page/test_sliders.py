@@ -200,6 +200,33 @@ def test_a_start_outside_of_the_ends_is_no_stop(engine: Any) -> None:
     assert "below the kinetic coefficient 0.5" in wrong["refusal"]
 
 
+def test_what_one_slider_is_refused_alone_binds_no_other() -> None:
+    """A static coefficient below the kinetic one is none of the business of a gain."""
+    data = page_data(braked(), "on_a.gain", "*.static=0.1:0.5", "*.kinetic=0.1:0.5")
+    (pair,) = data["pairs"]
+    assert pair["sliders"] == [1, 2]
+
+
+def test_ends_that_cannot_be_reached_are_said() -> None:
+    with pytest.raises(cw.UseError, match=r"on_a\.gain cannot reach -1 m3?: .*gain = -1\.0 .*must be > 0"):
+        page_data(braked(), "on_a.gain=-1:1")
+    for text in ("on_a.gain=1:", "on_a.gain=5 bar:6 bar"):
+        with pytest.raises(cw.UseError, match=r"on_a\.gain: '.*' is not an end of its slider; give two numbers in"):
+            page_data(braked(), text)
+
+
+def test_a_constant_pressure_is_dragged_or_turned() -> None:
+    d = cw.Driveline("constant")
+    shaft = d.shaft("shaft", inertia=1.0, speed=10.0)
+    d.add(cw.Brake("b", shaft=shaft, friction=LAW, gain=1e-4, pressure="2 bar"))
+    system = d.assemble()
+    data = page_data(system, "b.pressure=1 bar:5 bar")
+    assert [one["name"] for one in data["tables"]] == []
+    (slider,) = data["sliders"]
+    assert (slider["unit"], slider["values"][0], slider["values"][-1]) == ("Pa", 1e5, 5e5)
+    assert [one["name"] for one in page_data(system)["tables"]] == ["b.pressure"]
+
+
 def test_more_than_two_that_go_together_are_refused() -> None:
     system = cw.Driveline.load(ROOT / "examples/six_speed/model.toml").assemble()
     said = "w1.inertia, w3.inertia and divider.ratio depend on each other in this driveline, and a page has at most two"

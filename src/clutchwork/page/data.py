@@ -19,7 +19,7 @@ from clutchwork.page.live import plain as plain_live
 from clutchwork.page.pairs import paired
 from clutchwork.page.signals import FELT, listed, loops, output_of, panels, plain_panels
 from clutchwork.page.slider import Bytes
-from clutchwork.page.sliders import sliders
+from clutchwork.page.sliders import names_of, sliders
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Slip
 from clutchwork.sweeps.words import Layout
@@ -45,7 +45,12 @@ class Wanted:
 def data_of(system: System, t_end: float, options: Options, wanted: Wanted) -> dict[str, Any]:
     """The data of a page."""
     refuse_controllers(system)
-    made, dragged = with_tables(system, chosen(system, wanted.drag, t_end))
+    knots = chosen(system, wanted.drag, t_end)
+    if wanted.drag is None:
+        # a constant pressure can be either
+        for name in names_of(system, wanted.sliders or ()):
+            knots.pop(name, None)
+    made, dragged = with_tables(system, knots)
     spacious, room = roomy(made, dragged)
     names = [one.name for one in dragged]
     bytes_of = _bytes_of(dragged)

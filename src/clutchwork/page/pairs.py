@@ -54,7 +54,23 @@ def paired(system: System, turned: Sequence[Slider], bytes_of: Bytes) -> tuple[l
         found[first], found[second] = _coarse(turned[first]), _coarse(turned[second])
         pairs.append(_pair(system, found, (first, second), bytes_of))
     _refuse(turned, list(_meeting(found, pairs)))
+    beyond = [told for number in _alone(found, pairs) for told in _beyond(system, found[number])]
+    if beyond:
+        raise UseError("page", beyond)
     return found, pairs
+
+
+def _alone(found: Sequence[Slider], pairs: Sequence[Pair]) -> list[int]:
+    """Numbers of the sliders that are in no pair."""
+    return [number for number in range(len(found)) if not any(number in pair.sliders for pair in pairs)]
+
+
+def _beyond(system: System, slider: Slider) -> Iterator[str]:
+    """Ends that were asked for, at which there is no driveline."""
+    for end, reached in zip(slider.ends, slider.values[[0, -1]].tolist(), strict=True):
+        if end != reached:
+            _, why = made(system, slider, slider, end, end)
+            yield f"slider: {slider.name} cannot reach {end:g} {slider.unit}: {why or 'that is another driveline'}"
 
 
 def _refuse(turned: Sequence[Slider], groups: Sequence[Sequence[int]]) -> None:
@@ -69,8 +85,10 @@ def _too_many(names: Sequence[str]) -> str:
 
 def _meeting(found: Sequence[Slider], pairs: Sequence[Pair]) -> Iterator[list[int]]:
     """Sliders of which a pair changes words, both turned, that others change too."""
-    alone = [(number,) for number in range(len(found)) if not any(number in pair.sliders for pair in pairs)]
-    changed = {(number,): found[number].places for (number,) in alone} | {pair.sliders: pair.places for pair in pairs}
+    changed: dict[tuple[int, ...], NDArray[np.int64]] = {
+        (number,): found[number].places for number in _alone(found, pairs)
+    }
+    changed |= {pair.sliders: pair.places for pair in pairs}
     for one, other in combinations(changed, 2):
         if np.intersect1d(changed[one], changed[other]).size:
             yield sorted([*one, *other])

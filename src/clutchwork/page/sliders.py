@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations
 from math import inf, isfinite
@@ -42,6 +43,15 @@ def sliders(system: System, wanted: Sequence[str] | None, dragged: Sequence[str]
     problems += _twice(found)
     if problems:
         raise UseError("page", problems)
+    return found
+
+
+def names_of(system: System, wanted: Sequence[str]) -> set[str]:
+    """Numbers that sliders would turn."""
+    found = set[str]()
+    for one in wanted:
+        with suppress(ValueError):
+            found.update(_asked(system, one)[2])
     return found
 
 
@@ -162,7 +172,7 @@ def _aim(system: System, name: str) -> Target:
 def _span(aim: Target, name: str, text: str, starts: Sequence[float], declared: Sequence[Spec]) -> tuple[float, float]:
     """Ends of a slider: those that are given, or half and twice the values within what is allowed."""
     if text:
-        ends = [_number(aim, part) for part in text.split(":")]
+        ends = [_number(aim, name, part) for part in text.split(":")]
         if len(ends) != 2 or not ends[0] < ends[1] or not all(map(isfinite, ends)):
             raise ValueError(f"{name}: {text!r} are not two ends; write {name}=2e-4:8e-4, the lower end first")
         return ends[0], ends[1]
@@ -174,11 +184,14 @@ def _span(aim: Target, name: str, text: str, starts: Sequence[float], declared: 
     return max(min(reach), *least), min(max(reach), *most)
 
 
-def _number(aim: Target, text: str) -> float:
-    try:
+def _number(aim: Target, name: str, text: str) -> float:
+    """An end of a slider, plain or with a unit."""
+    with suppress(ValueError):
         return float(text)
-    except ValueError:
+    with suppress(ValueError):
         return float(in_si(aim, text.strip()))
+    unit = unit_of(aim) or "1"
+    raise ValueError(f"{name}: {text.strip()!r} is not an end of its slider; give two numbers in {unit}, or with units")
 
 
 def _with_words(system: System, made: Slider, bytes_of: Bytes) -> Slider:

@@ -28,9 +28,14 @@ def words_of(system: System, bytes_of: Bytes) -> Words:
 
 
 def refused(system: System, one: Slider, other: Slider) -> bool:
-    """Whether there is no driveline at some of their ends, as with a static coefficient below the kinetic one."""
+    """Whether one decides where the other has a driveline, as a static and a kinetic coefficient do."""
     places = [*product(one.ends, other.ends), *zip(_few(one), _few(other), strict=True)]
-    return any(made(system, one, other, *at)[1] for at in places)
+    return any(_refused(system, one, other, *at) for at in places)
+
+
+def _refused(system: System, one: Slider, other: Slider, first: float, second: float) -> bool:
+    alone = (made(system, one, other, first, other.start)[1], made(system, one, other, one.start, second)[1])
+    return bool(made(system, one, other, first, second)[1]) != any(alone)
 
 
 def dependent(system: System, one: Slider, other: Slider, bytes_of: Bytes) -> bool:
