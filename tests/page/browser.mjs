@@ -26,12 +26,14 @@ async function looked(file) {
   const typed = await state(page);
   const taken = await closest(page);
   const turned = await turn(page);
+  const made = dragged ? await knotted(page) : null;
+  const reset = await takenBack(page);
   await page.evaluate(() => window.scrollTo(0, document.body.scrollHeight));
   await page.evaluate(() => window.clutchworkPage.look(0.3 * window.clutchworkPage.data.tEnd));
   await settled(page);
   const words = await page.evaluate(() => document.body.innerText);
   await page.close();
-  return { errors, requests: requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:")), ready, dragged, before, after, typed, taken, turned, words };
+  return { errors, requests: requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:")), ready, dragged, before, after, typed, taken, turned, made, reset, words };
 }
 
 /** Numbers that follow from the present run, and the picture of the first curves. */
@@ -75,6 +77,28 @@ async function turn(page) {
   for (let i = 0; i < 3; i++) await page.keyboard.press("ArrowLeft");
   await settled(page);
   return state(page);
+}
+
+/** How many knots there are, then after Insert and after Delete, each on the first one. */
+async function knotted(page) {
+  const counts = [];
+  for (const key of ["", "Insert", "Delete"]) {
+    await page.focus(".knot:not([hidden])");
+    if (key) await page.keyboard.press(key);
+    await settled(page);
+    counts.push(await page.evaluate(() => window.clutchworkPage.session.knots.flat().length));
+  }
+  return counts;
+}
+
+/** Whether all is as at the start after Reset. */
+async function takenBack(page) {
+  await page.evaluate(() => [...document.querySelectorAll("button")].find((one) => one.textContent === "Reset").click());
+  await settled(page);
+  return page.evaluate(() => {
+    const { data, knots, values } = window.clutchworkPage.session;
+    return JSON.stringify([knots, values]) === JSON.stringify([data.tables.map(({ points }) => points), data.sliders.map(({ start }) => start)]);
+  });
 }
 
 async function keys(page) {

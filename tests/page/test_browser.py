@@ -88,6 +88,13 @@ def test_what_is_turned_moves_the_curves(looked: dict[str, Any]) -> None:
         assert one["typed"]["sum"] != one["turned"]["sum"], name
 
 
+def test_knots_are_made_and_taken_away_and_all_is_taken_back(looked: dict[str, Any]) -> None:
+    for name, one in looked.items():
+        there, more, fewer = one["made"]
+        assert (more, fewer) == (there + 1, there), name
+        assert one["reset"], name
+
+
 def test_names_are_shown_as_they_are(looked: dict[str, Any]) -> None:
     assert NASTY in looked["nasty"]["words"]
 

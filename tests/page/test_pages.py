@@ -12,6 +12,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import clutchwork as cw
@@ -100,6 +101,40 @@ def test_numbers_of_a_gearbox_have_their_place_in_the_model_file() -> None:
     assert paths["gearbox.FWD.gain"] == [["element", 0, "shift", "FWD", "gain"]]
 
 
+@pytest.mark.parametrize(
+    ("pressure", "points"),
+    [
+        (cw.Ramp(height=2e5, duration=0.4, start=0.1), [[0.0, 0.0], [0.1, 0.0], [0.5, 2e5]]),
+        (cw.Step(height=2e5, start=0.1), [[0.0, 0.0], [0.1, 0.0], [0.1, 2e5]]),
+        (2e5, [[0.0, 2e5], [1.0, 2e5]]),
+    ],
+)
+def test_what_is_straight_between_knots_is_dragged(pressure: Any, points: Any) -> None:
+    data = data_of(braked(pressure=pressure).assemble(), 1.0, cw.Options(), Wanted(["b.pressure"]))
+    found = np.array(data["tables"][0]["points"])
+    # the first knot may be before the run
+    assert found[:, 1] == pytest.approx([value for _, value in points])
+    assert found[1:, 0] == pytest.approx([time for time, _ in points[1:]])
+
+
+def test_a_column_of_a_file_is_dragged(tmp_path: Path) -> None:
+    (tmp_path / "record.csv").write_text("time,p\n0,0\n0.5,2e5\n1,1e5\n", encoding="utf-8")
+    column = cw.Column(str(tmp_path / "record.csv"), "p")
+    data = data_of(braked(pressure=column).assemble(), 1.0, cw.Options(), Wanted(["b.pressure"]))
+    assert data["tables"][0]["points"] == [[0.0, 0.0], [0.5, 2e5], [1.0, 1e5]]
+
+
+def test_ends_of_a_slider_have_units() -> None:
+    data = data_of(braked().assemble(), 1.0, cw.Options(), Wanted([], ["b.pressure=1 bar:5 bar", "b.gain"]))
+    assert [(one["values"][0], one["values"][-1]) for one in data["sliders"]] == [(1e5, 5e5), (0.5e-4, 2e-4)]
+
+
+def test_a_page_says_that_python_goes_on() -> None:
+    data = data_of(braked().assemble(), 1.0, cw.Options(max_steps=10**6), Wanted())
+    assert data["options"]["max_steps"] == 30_000
+    assert ["too_many_steps", "a page ends after 30000 steps", "Python goes on"] in data["statuses"]
+
+
 def test_a_constant_pressure_has_two_knots() -> None:
     data = data_of(braked().assemble(), 1.0, cw.Options(), Wanted())
     assert data["tables"][0]["points"] == [[0.0, 2e5], [1.0, 2e5]]
@@ -142,6 +177,8 @@ def test_how_the_output_feels_is_there_where_it_is_moved_or_asked_for(drag: Any,
     data = data_of(braked().assemble(), 1.0, cw.Options(), Wanted(drag, ["b.gain"], show))
     assert [panel["title"] for panel in data["panels"]] == titles
     assert ("disc.jerk" in data["signals"]) == any(title.startswith("Jerk") for title in titles)
+    # what is felt follows from the acceleration
+    assert "disc.jerk" not in data["signals"] or "disc.acceleration" in data["signals"]
 
 
 @pytest.mark.usefixtures("built")

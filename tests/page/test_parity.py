@@ -149,6 +149,8 @@ def test_a_slider_with_stops_has_the_words_of_python(engine: Any) -> None:
     data = page_data("six_speed", ("w1.inertia=10:40",))
     (slider,) = data["sliders"]
     assert not slider["direct"]
+    # and the start
+    assert len(slider["values"]) == 41 + 1
     times, names = np.linspace(0.0, 4.0, POINTS), ["w1.speed", "w8.acceleration"]
     asked = [{"values": {"0": value}, "times": times.tolist(), "signals": names} for value in slider["values"][::8]]
     for job, found in zip(asked, engine(data, asked), strict=True):

@@ -171,9 +171,10 @@ def _is_number(channel: Channel) -> bool:
 
 
 def listed(known: Channels, names: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Units and forms of signals by name; a jerk is the slope of an acceleration."""
+    """Units and forms of signals by name; a jerk is the slope of an acceleration, which then is among them."""
     found = dict[str, dict[str, Any]]()
-    for name in dict.fromkeys(names):
+    slopes = [_slope(name) for name in names if _is_jerk(name, known)]
+    for name in dict.fromkeys([*names, *slopes]):
         if name in known:
             found[name] = {"unit": known[name].unit, "form": plain(known[name].evaluate)}
         elif name.endswith(".jerk"):

@@ -234,7 +234,8 @@ class Trajectory(Exports):
         Parameters: path, of the file; drag, signals whose knots are dragged, by default pressures that vary; sliders,
         numbers as in `System.changed`, with ends where half and twice are not meant, "c1.gain=2e-4:8e-4", several of
         them by a wildcard or commas, "F*.gain"; show, curves by name or wildcard, by default speeds, slips, torques,
-        heats and temperatures. Returns the path.
+        heats and temperatures; acceleration and jerk of the output are there where a pressure, force or torque is
+        dragged, or where they are named. Returns the path.
 
         The page runs the model from its begin, with these options; UseError names what cannot be changed in it. It
         needs no network and no installation, and sends nothing anywhere. docs/guide/page.md
