@@ -12,6 +12,8 @@ import clutchwork as cw
 from clutchwork.command.main import main
 from clutchwork.page.data import Wanted
 from clutchwork.page.page import page
+from clutchwork.run.settings import merged
+from support import example_models
 from support.amount import amount
 from support.project import ROOT
 from support.transmissions import in_gear
@@ -35,6 +37,14 @@ def box_page(name: str, path: Path) -> Path:
     return path
 
 
+def example_page(name: str, path: Path) -> Path:
+    """The page of an example that is a program."""
+    system, t_end = example_models.model(name)
+    _, options = merged(system.settings, {"t_end": t_end})
+    path.write_text(page(system, t_end, options, Wanted()), encoding="utf-8")
+    return path
+
+
 @pytest.fixture(scope="module", params=["chromium", "firefox"])
 def looked(request: pytest.FixtureRequest, browse: Any, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """What a browser made of each page, by name."""
@@ -44,6 +54,8 @@ def looked(request: pytest.FixtureRequest, browse: Any, tmp_path_factory: pytest
     files = {model.parent.name: folder / f"{model.parent.name}.html" for model in models}
     for model, path in zip(models, files.values(), strict=True):
         assert main(["page", str(model), "--out", str(path)]) == 0
+    programs = [name for name in example_models.MODELS if name not in files] if first else []
+    files |= {name: example_page(name, folder / f"{name}.html") for name in programs}
     boxes = cw.catalogue() if first and amount() > 1000 else BOXES if first else ()
     files |= {name: box_page(name, folder / f"{name}.html") for name in boxes}
     files["nasty"] = nasty(folder / "nasty.html")
