@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from base64 import b64encode
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -148,12 +149,13 @@ def _contacts(wires: Wiring, known: Channels) -> Any:
 
 
 def _live(system: System, known: Channels, wires: Wiring) -> dict[str, Any] | None:
-    """The schematic; None where its packages are missing."""
+    """The schematic; None, with a warning, where its packages are missing."""
     if system.source is None:
         return None
     try:
         return plain_live(live(system.source, known, [branch.name for branch in wires.contacts]))
-    except ImportError:
+    except ImportError as error:
+        warnings.warn(f"the page has no schematic: {error}", stacklevel=2)
         return None
 
 
