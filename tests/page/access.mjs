@@ -2,20 +2,15 @@
 // What it prints, for each page: the controls with role and name, their words, their sizes on a phone, what Tab reaches and how
 // that is seen, and how often live regions speak while something is dragged.
 import { pathToFileURL } from "node:url";
-import { heard, launched, settled } from "./driver.mjs";
+import { eachPage, heard, settled } from "./driver.mjs";
 
 const ROLES = new Set(["button", "slider", "link", "textbox", "checkbox", "combobox", "spinbutton", "radio", "tab"]);
 // words are told when they rest
 const REST = 700;
 const MOST_TABS = 80;
-const [modules, browser, ...pages] = process.argv.slice(2);
-const opened = await launched(modules, browser);
-const made = [];
-for (const file of pages) made.push(await looked(file));
-await opened.close();
-process.stdout.write(JSON.stringify(made));
+await eachPage(looked);
 
-async function looked(file) {
+async function looked(opened, file) {
   const page = await opened.newPage();
   const { errors } = heard(page);
   await page.setViewport({ width: 390, height: 844 });

@@ -1,16 +1,11 @@
 // Opens pages in a headless browser and drags a knot of each: node browser.mjs NODE_MODULES BROWSER PAGE...
 // What it prints: for each page errors, requests, the time until it is ready, and what dragging did.
 import { pathToFileURL } from "node:url";
-import { drag, heard, launched, settled } from "./driver.mjs";
+import { drag, eachPage, heard, settled } from "./driver.mjs";
 
-const [modules, browser, ...pages] = process.argv.slice(2);
-const opened = await launched(modules, browser);
-const made = [];
-for (const file of pages) made.push(await looked(file));
-await opened.close();
-process.stdout.write(JSON.stringify(made));
+await eachPage(looked);
 
-async function looked(file) {
+async function looked(opened, file) {
   const page = await opened.newPage();
   const { errors, requests } = heard(page);
   await page.setViewport({ width: 1280, height: 900 });

@@ -7,6 +7,16 @@ export async function launched(modules, browser, options = {}) {
   return puppeteer.launch({ executablePath: browser, headless: true, browser: firefox ? "firefox" : "chrome", args: firefox ? [] : ["--no-sandbox"], ...options });
 }
 
+/** Open the pages that the command line names, one after another, and print what `looked` finds in each. */
+export async function eachPage(looked) {
+  const [modules, browser, ...pages] = process.argv.slice(2);
+  const opened = await launched(modules, browser);
+  const made = [];
+  for (const file of pages) made.push(await looked(opened, file));
+  await opened.close();
+  process.stdout.write(JSON.stringify(made));
+}
+
 /** What a page says and asks for, as it comes. */
 export function heard(page) {
   const errors = [];
