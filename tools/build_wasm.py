@@ -77,7 +77,7 @@ def compiled() -> list[Path]:
 
     def one(source: Path) -> Path:
         made = folder / f"{source.stem}.o"
-        inlined = () if source.stem in HOT else ("-DCLUTCHWORK_INLINE=inline",)
+        inlined = () if source.stem in HOT else ("-DCLUTCHWORK_HOT=inline",)
         zig(*TARGET, *FLAGS, *inlined, forms, *includes, "-c", source, "-o", made)
         return made
 

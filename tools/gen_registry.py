@@ -50,8 +50,14 @@ def main() -> int:
         return 1
     out.mkdir(parents=True, exist_ok=True)
     for module in (layout, declared, switches, schema):
-        (out / module.FILE).write_text("\n".join([HEADER, "#pragma once", *module.lines()]) + "\n")
+        keep(out / module.FILE, "\n".join([HEADER, "#pragma once", *module.lines()]) + "\n")
     return 0
+
+
+def keep(path: Path, text: str) -> None:
+    """Write a file, unless it has this text: what was compiled from it stays."""
+    if not path.is_file() or path.read_text() != text:
+        path.write_text(text)
 
 
 if __name__ == "__main__":

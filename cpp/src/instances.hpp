@@ -2,13 +2,20 @@
 #include <clutchwork/run/advance.hpp>
 
 /// What is compiled apart, to build on several cores. Scalar: double.
-#define CLUTCHWORK_SMALL(KEYWORD, NZ, NS)                           \
-  KEYWORD template class Phase<SmallForm<double, NZ, NS>, Rodas5P>; \
-  KEYWORD template Status run_phase<SmallForm<double, NZ, NS>>(Workspace<double>&, double, Sink&);
-#define CLUTCHWORK_SMALL_ROW(KEYWORD, NZ) \
-  CLUTCHWORK_SMALL(KEYWORD, NZ, 0)        \
-  CLUTCHWORK_SMALL(KEYWORD, NZ, 1)        \
-  CLUTCHWORK_SMALL(KEYWORD, NZ, 2)
+#define CLUTCHWORK_SIZED(KEYWORD, NZ)                         \
+  KEYWORD template struct SizedLook<double, NZ, 0>;           \
+  KEYWORD template struct SizedLook<double, NZ, 1>;           \
+  KEYWORD template struct SizedLook<double, NZ, 2>;           \
+  KEYWORD template struct SizedCalls<double, Rodas5P, NZ, 0>; \
+  KEYWORD template struct SizedCalls<double, Rodas5P, NZ, 1>; \
+  KEYWORD template struct SizedCalls<double, Rodas5P, NZ, 2>; \
+  KEYWORD template struct SizedCalls<double, Dopri5, NZ, 0>;
+#define CLUTCHWORK_PHASES(KEYWORD, FORM) \
+  KEYWORD template Status run_phase<FORM<double>>(Workspace<double>&, double, Sink&);
+/// Groups of runs take the steps of these phases themselves.
+#define CLUTCHWORK_SMALL_PHASES(KEYWORD)                        \
+  KEYWORD template class Phase<SmallForm<double>>;              \
+  CLUTCHWORK_PHASES(KEYWORD, SmallForm)
 
 /// What is the same in all forms.
 #define CLUTCHWORK_SHARED(KEYWORD)                                                                                     \
@@ -40,13 +47,15 @@ namespace clutchwork {
 #ifndef CLUTCHWORK_COMPONENTS
 CLUTCHWORK_SHARED(extern)
 #endif
+#ifndef CLUTCHWORK_STEPS
+CLUTCHWORK_SIZED(extern, 1)
+CLUTCHWORK_SIZED(extern, 2)
+CLUTCHWORK_SIZED(extern, 3)
+CLUTCHWORK_SIZED(extern, 4)
+#endif
 #ifndef CLUTCHWORK_INSTANCES
-CLUTCHWORK_SMALL_ROW(extern, 1)
-CLUTCHWORK_SMALL_ROW(extern, 2)
-CLUTCHWORK_SMALL_ROW(extern, 3)
-CLUTCHWORK_SMALL_ROW(extern, 4)
-extern template Status run_phase<SomeForm<double>>(Workspace<double>&, double, Sink&);
-extern template Status run_phase<SparseForm<double>>(Workspace<double>&, double, Sink&);
-extern template Status run_phase<FullForm<double>>(Workspace<double>&, double, Sink&);
+CLUTCHWORK_SMALL_PHASES(extern)
+CLUTCHWORK_PHASES(extern, SparseForm)
+CLUTCHWORK_PHASES(extern, FullForm)
 #endif
 }  // namespace clutchwork

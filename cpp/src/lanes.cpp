@@ -15,17 +15,23 @@ static_assert(most_together == n_lanes);
 /// Models with more seldom have phases that are small.
 constexpr std::int64_t most_contacts = 24;
 
-constexpr LaneKernel narrow{LaneStep<2>::advance, LaneStep<2>::look, LaneStep<2>::doubt};
 #ifdef CLUTCHWORK_WIDE
 constexpr LaneKernel wide{clutchwork_wide_advance, clutchwork_wide_look, clutchwork_wide_doubt};
 #endif
-
-/// The widest registers that this processor has.
-const LaneKernel& lane_kernel() {
-#ifdef CLUTCHWORK_WIDE
-  if (__builtin_cpu_supports("avx2")) return wide;
+#ifndef CLUTCHWORK_WIDE_ALONE
+constexpr LaneKernel narrow{LaneStep<2>::advance, LaneStep<2>::look, LaneStep<2>::doubt};
 #endif
-  return narrow;
+
+/// The widest registers that this processor has; null: none of those that are compiled.
+const LaneKernel* lane_kernel() {
+#ifdef CLUTCHWORK_WIDE
+  if (__builtin_cpu_supports("avx2")) return &wide;
+#endif
+#ifdef CLUTCHWORK_WIDE_ALONE
+  return nullptr;
+#else
+  return &narrow;
+#endif
 }
 
 bool has_small_phases(const System& s) {
@@ -88,7 +94,7 @@ void advance_lanes(Workspace<double>* const* runs, Sink* sinks, Status* statuses
   std::memset(arrays, 0, std::size_t(size));
   carve(ground->lanes, sys, arrays);
   for (int i = 0; i < n; ++i) ground->member[i].run = runs[i], ground->member[i].sink = sinks + i;
-  Group(ground->lanes, lane_kernel(), ground->member, n, t_end).advance();
+  Group(ground->lanes, *lane_kernel(), ground->member, n, t_end).advance();
   for (int i = 0; i < n; ++i) statuses[i] = ground->member[i].status;
   drop_fences(arrays, size);
 }
@@ -98,7 +104,7 @@ void advance_lanes(Workspace<double>* const* runs, Sink* sinks, Status* statuses
 std::int64_t group_size(const System& sys) { return has_small_phases(sys) ? ground_size(sys) : 0; }
 
 void advance_group(Workspace<double>* const* runs, Sink* sinks, Status* statuses, int n, double t_end, void* memory) {
-  bool together = n > 1 && has_small_phases(runs[0]->sys);
+  bool together = n > 1 && lane_kernel() != nullptr && has_small_phases(runs[0]->sys);
   for (int i = 1; together && i < n; ++i) together = same_structure(runs[0]->sys, runs[i]->sys);
   if (together) return advance_lanes(runs, sinks, statuses, n, t_end, memory);
   for (int i = 0; i < n; ++i) statuses[i] = advance(*runs[i], t_end, sinks[i]);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// The step of eight lanes for processors with wide registers, whatever the rest is compiled for: the bits are the
-/// same. CLUTCHWORK_WIDE: it is compiled. docs/theory/lanes.md
+/// same. CLUTCHWORK_WIDE: it is compiled; CLUTCHWORK_WIDE_ALONE: no other one is. docs/theory/lanes.md
 extern "C" {
 void clutchwork_wide_advance(void* form, void* step, void* error, void* finite);
 void clutchwork_wide_look(void* form, void* step, const void* times);

@@ -2,5 +2,5 @@
 #include "instances.hpp"
 
 namespace clutchwork {
-template Status run_phase<FullForm<double>>(Workspace<double>&, double, Sink&);
+CLUTCHWORK_PHASES(, FullForm)
 }  // namespace clutchwork

@@ -2,5 +2,5 @@
 #include "instances.hpp"
 
 namespace clutchwork {
-template Status run_phase<SparseForm<double>>(Workspace<double>&, double, Sink&);
+CLUTCHWORK_PHASES(, SparseForm)
 }  // namespace clutchwork

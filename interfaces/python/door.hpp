@@ -20,4 +20,3 @@ bool heard(nanobind::object& raised, Call&& call) {
 }  // namespace clutchwork::door
 
 void bind_sweep(nanobind::module_& m);
-void bind_gradient(nanobind::module_& m);

@@ -236,7 +236,6 @@ NB_MODULE(_core, m) {
         nb::arg("inputs") = std::vector<double>(),
         "Kinetic coefficient at a slip [rad/s] and static coefficient of a friction law at its inputs.");
   bind_sweep(m);
-  bind_gradient(m);
   m.def("advance_group", &advance_group, nb::arg("runs"), nb::arg("t_end"),
         "Advance runs to t_end [s] together, without output: a status for each.");
   nb::class_<Run>(m, "Run", "One run of a frozen system: its memory, options, signals and results.")

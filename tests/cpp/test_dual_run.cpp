@@ -4,7 +4,6 @@
 #include "typed_run.hpp"
 
 using D = clutchwork::Dual<double, 2>;
-ONLY_TWO_SPEEDS(clutchwork::Dual<double, 2>)
 
 using namespace fixture;
 

@@ -3,7 +3,6 @@
 #include "check.hpp"
 #include "typed_run.hpp"
 
-ONLY_TWO_SPEEDS(float)
 
 using namespace fixture;
 

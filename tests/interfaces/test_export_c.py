@@ -24,7 +24,7 @@ T_END, DT = 1.2, 0.01
 # numbers that a sum in another order may change in the last digits
 CLOSE: dict[str, Any] = {"rtol": 1e-12, "atol": 1e-12}
 # quick to compile; without optimisation the core inlines nothing by force
-FLAGS = ["CXXFLAGS=-O0 -DCLUTCHWORK_INLINE=inline", "CFLAGS=-O1 -Wall -Wextra -pedantic -Werror"]
+FLAGS = ["CXXFLAGS=-O0 -DCLUTCHWORK_HOT=inline", "CFLAGS=-O1 -Wall -Wextra -pedantic -Werror"]
 
 # sets the torque from outside at half time, in C, and gives the piston other pieces of its command
 INPUT_C = """

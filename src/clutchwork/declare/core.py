@@ -26,6 +26,22 @@ def core() -> Any:
     return found
 
 
+@cache
+def derivatives() -> Any:
+    """The module of runs with derivatives; ImportError with the remedy when it is missing, does not fit the core or was
+    built for another processor."""
+    try:
+        found = import_module("clutchwork._derivatives")
+    except ImportError as error:
+        message = "derivatives of runs are computed by a compiled module of their own, which cannot be loaded"
+        raise ImportError(f"{message} ({error}); {REMEDY}") from error
+    if (found.layout, found.schema) != (core().layout, core().schema):
+        raise ImportError(f"the compiled derivatives of clutchwork were built from other declarations; {REMEDY}")
+    if not found.runs_here():
+        raise ImportError(f"the compiled derivatives of clutchwork were built for another processor; {REMEDY}")
+    return found
+
+
 def number(cls: Any) -> int:
     """The number of a declaration in the core, among those of its role; ImportError when the core knows another one."""
     return _number(cls.role, cls.kind)

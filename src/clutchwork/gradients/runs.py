@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.core import core
+from clutchwork.declare.core import derivatives
 from clutchwork.declare.status import DONE, INTERRUPTED
 from clutchwork.gradients.chart import Slopes
 from clutchwork.gradients.functional import Functional
@@ -106,7 +106,7 @@ class Runs:
     def forward(self, point: Point) -> Run:
         """A run with derivatives by all numbers."""
         places, seeds = point.slopes.places.astype(np.int64), point.slopes.matrix
-        status, _, rows, row_tangents, events, event_tangents, grazes, fault = core().tangents(
+        status, _, rows, row_tangents, events, event_tangents, grazes, fault = derivatives().tangents(
             point.system, places, seeds, point.grid, self.wanted.t_end, list(self._options.items()), self._size
         )
         self._refuse_stopped(status, (fault[0], float("nan"), fault[1], -1))
@@ -121,7 +121,7 @@ class Runs:
         """A run that is followed back from each result; forward where there is no memory for it."""
         places = point.slopes.places.astype(np.int64)
         for size in TAPES:
-            tape = core().Adjoint(
+            tape = derivatives().Adjoint(
                 point.system, places, point.grid, self.wanted.t_end, list(self._options.items()), self._size, size
             )
             status, _, rows, events, grazes, fault = tape.found()

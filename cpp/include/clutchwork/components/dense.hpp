@@ -5,14 +5,14 @@
 namespace clutchwork {
 
 template <class T>
-CLUTCHWORK_INLINE T dot(int n, const T* a, const T* b) {
+CLUTCHWORK_HOT T dot(int n, const T* a, const T* b) {
   T s = T(0);
   for (int i = 0; i < n; ++i) s += a[i] * b[i];
   return s;
 }
 
 template <class T>
-CLUTCHWORK_INLINE void axpy(int n, T a, const T* x, T* y) {
+CLUTCHWORK_HOT void axpy(int n, T a, const T* x, T* y) {
   for (int i = 0; i < n; ++i) y[i] += a * x[i];
 }
 

@@ -3,6 +3,19 @@
 
 namespace clutchwork {
 
+/// What stands for a T without derivatives of its own.
+template <class S, class T>
+concept Plain = std::is_convertible_v<const S&, T>;
+
+/// It as a T where that costs nothing.
+template <class T, class S>
+CLUTCHWORK_INLINE decltype(auto) as_plain(const S& x) {
+  if constexpr (std::is_floating_point_v<T>)
+    return T(x);
+  else
+    return (x);
+}
+
 /// Dual number: a value and its derivatives in N directions.
 template <class T, int N>
 struct Dual {
@@ -22,19 +35,51 @@ struct Dual {
     return r;
   }
 
-  Dual& operator+=(const Dual& b) { return *this = *this + b; }
-  Dual& operator-=(const Dual& b) { return *this = *this - b; }
-  Dual& operator*=(const Dual& b) { return *this = *this * b; }
-  Dual& operator/=(const Dual& b) { return *this = *this / b; }
+  CLUTCHWORK_INLINE Dual& operator+=(const Dual& b) { return *this = *this + b; }
+  CLUTCHWORK_INLINE Dual& operator-=(const Dual& b) { return *this = *this - b; }
+  CLUTCHWORK_INLINE Dual& operator*=(const Dual& b) { return *this = *this * b; }
+  CLUTCHWORK_INLINE Dual& operator/=(const Dual& b) { return *this = *this / b; }
 
-  friend CLUTCHWORK_INLINE Dual operator-(const Dual& a) { return chain(a, -a.v, T(-1)); }
-  friend CLUTCHWORK_INLINE Dual operator+(const Dual& a, const Dual& b) { return chain(a, T(1), b, T(1), a.v + b.v); }
-  friend CLUTCHWORK_INLINE Dual operator-(const Dual& a, const Dual& b) { return chain(a, T(1), b, T(-1), a.v - b.v); }
-  friend CLUTCHWORK_INLINE Dual operator*(const Dual& a, const Dual& b) { return chain(a, b.v, b, a.v, a.v * b.v); }
-  // the value is a.v / b.v as the plain scalar computes it, so that the bits agree
-  friend CLUTCHWORK_INLINE Dual operator/(const Dual& a, const Dual& b) {
-    const T q = a.v / b.v;
-    return chain(a, T(1) / b.v, b, -q / b.v, q);
+  friend CLUTCHWORK_INLINE Dual operator-(const Dual& a) { return of<negative>(a); }
+  friend CLUTCHWORK_INLINE Dual operator+(const Dual& a, const Dual& b) { return of<sum>(a, b); }
+  friend CLUTCHWORK_INLINE Dual operator-(const Dual& a, const Dual& b) { return of<difference>(a, b); }
+  friend CLUTCHWORK_INLINE Dual operator*(const Dual& a, const Dual& b) { return of<product>(a, b); }
+  friend CLUTCHWORK_INLINE Dual operator/(const Dual& a, const Dual& b) { return of<quotient>(a, b); }
+
+  // a number without derivatives
+  template <Plain<T> S>
+  friend CLUTCHWORK_INLINE Dual operator+(Dual a, const S& b) {
+    a.v += as_plain<T>(b);
+    return a;
+  }
+  template <Plain<T> S>
+  friend CLUTCHWORK_INLINE Dual operator-(Dual a, const S& b) {
+    a.v -= as_plain<T>(b);
+    return a;
+  }
+  template <Plain<T> S>
+  friend CLUTCHWORK_INLINE Dual operator+(const S& a, const Dual& b) {
+    return b + a;
+  }
+  template <Plain<T> S>
+  friend CLUTCHWORK_INLINE Dual operator-(const S& a, const Dual& b) {
+    return -b + a;
+  }
+  template <Plain<T> S>
+  friend CLUTCHWORK_INLINE Dual operator*(const Dual& a, const S& b) {
+    return of<multiple<std::remove_cvref_t<decltype(as_plain<T>(b))>>>(a, as_plain<T>(b));
+  }
+  template <Plain<T> S>
+  friend CLUTCHWORK_INLINE Dual operator*(const S& a, const Dual& b) {
+    return b * a;
+  }
+  template <Plain<T> S>
+  friend CLUTCHWORK_INLINE Dual operator/(const Dual& a, const S& b) {
+    return of<fraction>(a, T(b));
+  }
+  template <Plain<T> S>
+  friend CLUTCHWORK_INLINE Dual operator/(const S& a, const Dual& b) {
+    return Dual(T(a)) / b;
   }
 
   friend auto operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
@@ -45,13 +90,60 @@ struct Dual {
   friend auto operator!=(const Dual& a, const Dual& b) { return a.v != b.v; }
 
   /// f(a) with derivative slope.
-  static CLUTCHWORK_INLINE Dual chain(const Dual& a, T f, T slope) {
+  static CLUTCHWORK_INLINE Dual chain(const Dual& a, const T& f, const T& slope) { return of<by_one>(a, f, slope); }
+  /// f(a, b) with partial derivatives fa and fb.
+  static CLUTCHWORK_INLINE Dual chain(const Dual& a, const T& fa, const Dual& b, const T& fb, const T& f) {
+    return of<by_two>(a, fa, b, fb, f);
+  }
+
+ private:
+  /// An operation: by a call where each of its numbers is a loop over derivatives, beside which a call costs nothing.
+  template <auto operation, class... A>
+  static CLUTCHWORK_INLINE Dual of(const A&... a) {
+    if constexpr (has_tangents<T>)
+      return by_call<operation>(a...);
+    else
+      return operation(a...);
+  }
+  template <auto operation, class... A>
+  [[gnu::noinline]] static Dual by_call(const A&... a) {
+    return operation(a...);
+  }
+
+  static CLUTCHWORK_INLINE Dual negative(const Dual& a) {
+    Dual r(-a.v);
+    for (int i = 0; i < N; ++i) r.d[i] = -a.d[i];
+    return r;
+  }
+  static CLUTCHWORK_INLINE Dual sum(const Dual& a, const Dual& b) {
+    Dual r(a.v + b.v);
+    for (int i = 0; i < N; ++i) r.d[i] = a.d[i] + b.d[i];
+    return r;
+  }
+  static CLUTCHWORK_INLINE Dual difference(const Dual& a, const Dual& b) {
+    Dual r(a.v - b.v);
+    for (int i = 0; i < N; ++i) r.d[i] = a.d[i] - b.d[i];
+    return r;
+  }
+  template <class S>
+  static CLUTCHWORK_INLINE Dual multiple(const Dual& a, const S& b) {
+    Dual r(a.v * b);
+    for (int i = 0; i < N; ++i) r.d[i] = a.d[i] * b;
+    return r;
+  }
+  static CLUTCHWORK_INLINE Dual product(const Dual& a, const Dual& b) { return by_two(a, b.v, b, a.v, a.v * b.v); }
+  // the value is a.v / b.v as the plain scalar computes it, so that the bits agree
+  static CLUTCHWORK_INLINE Dual quotient(const Dual& a, const Dual& b) {
+    const T q = a.v / b.v;
+    return by_two(a, T(1) / b.v, b, -q / b.v, q);
+  }
+  static CLUTCHWORK_INLINE Dual fraction(const Dual& a, const T& b) { return by_one(a, a.v / b, T(1) / b); }
+  static CLUTCHWORK_INLINE Dual by_one(const Dual& a, const T& f, const T& slope) {
     Dual r(f);
     for (int i = 0; i < N; ++i) r.d[i] = slope * a.d[i];
     return r;
   }
-  /// f(a, b) with partial derivatives fa and fb.
-  static CLUTCHWORK_INLINE Dual chain(const Dual& a, T fa, const Dual& b, T fb, T f) {
+  static CLUTCHWORK_INLINE Dual by_two(const Dual& a, const T& fa, const Dual& b, const T& fb, const T& f) {
     Dual r(f);
     for (int i = 0; i < N; ++i) r.d[i] = fa * a.d[i] + fb * b.d[i];
     return r;

@@ -5,8 +5,13 @@
 #include <cstdint>
 #include <limits>
 
+// what every step spends its time in is inlined in every build, the rest where a build asks for speed:
+// docs/theory/integrators.md
+#ifndef CLUTCHWORK_HOT
+#define CLUTCHWORK_HOT inline __attribute__((always_inline))
+#endif
 #ifndef CLUTCHWORK_INLINE
-#define CLUTCHWORK_INLINE inline __attribute__((always_inline))
+#define CLUTCHWORK_INLINE CLUTCHWORK_HOT
 #endif
 
 // what compilers may do with sums has to stop here

@@ -9,7 +9,7 @@ namespace clutchwork {
 /// The plain number behind a scalar: comparisons and decisions use it, in double whatever the scalar.
 template <class T>
   requires std::is_floating_point_v<T>
-CLUTCHWORK_INLINE double value(T x) {
+CLUTCHWORK_HOT double value(T x) {
   return x;
 }
 
@@ -38,22 +38,22 @@ using Point = typename NumberOf<T>::Point;
 
 /// A number that is the same in all lanes, such as a place or a choice.
 template <class T>
-CLUTCHWORK_INLINE double common(const T& x) {
+CLUTCHWORK_HOT double common(const T& x) {
   return value(x);
 }
 
 /// Answers to one question: for scalars with lanes there are as many as lanes, components/lanes.hpp.
-CLUTCHWORK_INLINE bool any(bool x) { return x; }
-CLUTCHWORK_INLINE bool all(bool x) { return x; }
-CLUTCHWORK_INLINE bool none(bool x) { return !x; }
+CLUTCHWORK_HOT bool any(bool x) { return x; }
+CLUTCHWORK_HOT bool all(bool x) { return x; }
+CLUTCHWORK_HOT bool none(bool x) { return !x; }
 
 /// Whether a number is zero, and its derivatives too.
-CLUTCHWORK_INLINE bool is_zero(double x) { return x == 0; }
-CLUTCHWORK_INLINE bool is_zero(float x) { return x == 0; }
+CLUTCHWORK_HOT bool is_zero(double x) { return x == 0; }
+CLUTCHWORK_HOT bool is_zero(float x) { return x == 0; }
 
 /// Whether a number counts: it is not zero, or what it is made of moves it.
 template <class T>
-CLUTCHWORK_INLINE bool counts(const T& x) {
+CLUTCHWORK_HOT bool counts(const T& x) {
   if constexpr (has_tangents<T>)
     return !is_zero(x);
   else
@@ -62,31 +62,31 @@ CLUTCHWORK_INLINE bool counts(const T& x) {
 
 /// A number without the derivatives of a dual one.
 template <class T>
-CLUTCHWORK_INLINE const T& plain_of(const T& x) {
+CLUTCHWORK_HOT const T& plain_of(const T& x) {
   return x;
 }
 
 /// n where it is true, else zero.
-CLUTCHWORK_INLINE int count_where(bool which, int n) { return which ? n : 0; }
+CLUTCHWORK_HOT int count_where(bool which, int n) { return which ? n : 0; }
 
 /// a where it is true, else b.
 template <class T>
-CLUTCHWORK_INLINE T select(bool which, T a, T b) {
+CLUTCHWORK_HOT T select(bool which, T a, T b) {
   return which ? a : b;
 }
 /// a() where it is true, else b(); what no lane asks for is not computed.
 template <class A, class B>
-CLUTCHWORK_INLINE auto choose(bool which, A&& a, B&& b) {
+CLUTCHWORK_HOT auto choose(bool which, A&& a, B&& b) {
   return which ? a() : b();
 }
 
 template <class T>
-CLUTCHWORK_INLINE T larger(T a, T b) {
+CLUTCHWORK_HOT T larger(T a, T b) {
   return select(b > a, b, a);
 }
 
 template <class T>
-CLUTCHWORK_INLINE T smaller(T a, T b) {
+CLUTCHWORK_HOT T smaller(T a, T b) {
   return select(b < a, b, a);
 }
 

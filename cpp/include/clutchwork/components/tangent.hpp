@@ -13,70 +13,70 @@ struct Tangent {
   double v = 0;
 
   Tangent() = default;
-  CLUTCHWORK_INLINE Tangent(double x) : v(x) {}
+  CLUTCHWORK_HOT Tangent(double x) : v(x) {}
 
   /// The number v whose derivatives are those that f makes of the parts.
   template <class F>
-  static CLUTCHWORK_INLINE Tangent each(double v, F&& f) {
+  static CLUTCHWORK_HOT Tangent each(double v, F&& f) {
     Tangent r;
     r.v = v;
     for (int i = 0; i < parts; ++i) r.part[i] = f(i);
     return r;
   }
   /// f(x) with derivative slope.
-  static CLUTCHWORK_INLINE Tangent chain(const Tangent& x, double f, double slope) {
+  static CLUTCHWORK_HOT Tangent chain(const Tangent& x, double f, double slope) {
     return each(f, [&](int i) { return x.part[i] * slope; });
   }
 
-  CLUTCHWORK_INLINE Tangent& operator+=(const Tangent& b) {
+  CLUTCHWORK_HOT Tangent& operator+=(const Tangent& b) {
     v += b.v;
     for (int i = 0; i < parts; ++i) part[i] += b.part[i];
     return *this;
   }
-  CLUTCHWORK_INLINE Tangent& operator-=(const Tangent& b) {
+  CLUTCHWORK_HOT Tangent& operator-=(const Tangent& b) {
     v -= b.v;
     for (int i = 0; i < parts; ++i) part[i] -= b.part[i];
     return *this;
   }
-  CLUTCHWORK_INLINE Tangent& operator*=(const Tangent& b) { return *this = *this * b; }
-  CLUTCHWORK_INLINE Tangent& operator/=(const Tangent& b) { return *this = *this / b; }
+  CLUTCHWORK_HOT Tangent& operator*=(const Tangent& b) { return *this = *this * b; }
+  CLUTCHWORK_HOT Tangent& operator/=(const Tangent& b) { return *this = *this / b; }
 
-  friend CLUTCHWORK_INLINE Tangent operator-(const Tangent& a) {
+  friend CLUTCHWORK_HOT Tangent operator-(const Tangent& a) {
     return each(-a.v, [&](int i) { return -a.part[i]; });
   }
-  friend CLUTCHWORK_INLINE Tangent operator+(const Tangent& a, const Tangent& b) {
+  friend CLUTCHWORK_HOT Tangent operator+(const Tangent& a, const Tangent& b) {
     return each(a.v + b.v, [&](int i) { return a.part[i] + b.part[i]; });
   }
-  friend CLUTCHWORK_INLINE Tangent operator-(const Tangent& a, const Tangent& b) {
+  friend CLUTCHWORK_HOT Tangent operator-(const Tangent& a, const Tangent& b) {
     return each(a.v - b.v, [&](int i) { return a.part[i] - b.part[i]; });
   }
-  friend CLUTCHWORK_INLINE Tangent operator*(const Tangent& a, const Tangent& b) {
+  friend CLUTCHWORK_HOT Tangent operator*(const Tangent& a, const Tangent& b) {
     return each(a.v * b.v, [&](int i) { return a.part[i] * b.v + b.part[i] * a.v; });
   }
-  friend CLUTCHWORK_INLINE Tangent operator/(const Tangent& a, const Tangent& b) {
+  friend CLUTCHWORK_HOT Tangent operator/(const Tangent& a, const Tangent& b) {
     const double q = a.v / b.v, inverse = 1 / b.v;
     return each(q, [&](int i) { return (a.part[i] - b.part[i] * q) * inverse; });
   }
   // a plain factor has no derivatives
-  friend CLUTCHWORK_INLINE Tangent operator*(double a, const Tangent& b) { return chain(b, a * b.v, a); }
-  friend CLUTCHWORK_INLINE Tangent operator*(const Tangent& a, double b) { return chain(a, a.v * b, b); }
-  friend CLUTCHWORK_INLINE Tangent operator/(const Tangent& a, double b) { return chain(a, a.v / b, 1 / b); }
+  friend CLUTCHWORK_HOT Tangent operator*(double a, const Tangent& b) { return chain(b, a * b.v, a); }
+  friend CLUTCHWORK_HOT Tangent operator*(const Tangent& a, double b) { return chain(a, a.v * b, b); }
+  friend CLUTCHWORK_HOT Tangent operator/(const Tangent& a, double b) { return chain(a, a.v / b, 1 / b); }
 
-  friend CLUTCHWORK_INLINE bool operator<(const Tangent& a, const Tangent& b) { return a.v < b.v; }
-  friend CLUTCHWORK_INLINE bool operator>(const Tangent& a, const Tangent& b) { return a.v > b.v; }
-  friend CLUTCHWORK_INLINE bool operator<=(const Tangent& a, const Tangent& b) { return a.v <= b.v; }
-  friend CLUTCHWORK_INLINE bool operator>=(const Tangent& a, const Tangent& b) { return a.v >= b.v; }
-  friend CLUTCHWORK_INLINE bool operator==(const Tangent& a, const Tangent& b) { return a.v == b.v; }
-  friend CLUTCHWORK_INLINE bool operator!=(const Tangent& a, const Tangent& b) { return a.v != b.v; }
+  friend CLUTCHWORK_HOT bool operator<(const Tangent& a, const Tangent& b) { return a.v < b.v; }
+  friend CLUTCHWORK_HOT bool operator>(const Tangent& a, const Tangent& b) { return a.v > b.v; }
+  friend CLUTCHWORK_HOT bool operator<=(const Tangent& a, const Tangent& b) { return a.v <= b.v; }
+  friend CLUTCHWORK_HOT bool operator>=(const Tangent& a, const Tangent& b) { return a.v >= b.v; }
+  friend CLUTCHWORK_HOT bool operator==(const Tangent& a, const Tangent& b) { return a.v == b.v; }
+  friend CLUTCHWORK_HOT bool operator!=(const Tangent& a, const Tangent& b) { return a.v != b.v; }
 
-  friend CLUTCHWORK_INLINE double value(const Tangent& x) { return x.v; }
+  friend CLUTCHWORK_HOT double value(const Tangent& x) { return x.v; }
   /// What is left of it where its value is zero.
-  friend CLUTCHWORK_INLINE Tangent without_value(const Tangent& x) { return chain(x, 0.0, 1.0); }
+  friend CLUTCHWORK_HOT Tangent without_value(const Tangent& x) { return chain(x, 0.0, 1.0); }
   /// One derivative.
   double& slope(int i) { return reinterpret_cast<double*>(part)[i]; }
   double slope(int i) const { return reinterpret_cast<const double*>(part)[i]; }
   /// What a row keeps of the derivatives.
-  friend CLUTCHWORK_INLINE void keep(const Tangent& x, double* to) {
+  friend CLUTCHWORK_HOT void keep(const Tangent& x, double* to) {
     for (int i = 0; i < N; ++i) to[i] = x.slope(i);
   }
   /// Largest size of what differs between two derivatives.
@@ -85,7 +85,7 @@ struct Tangent {
     for (int i = 0; i < N; ++i) most = larger(most, abs(a.slope(i) - b.slope(i)));
     return most;
   }
-  friend CLUTCHWORK_INLINE bool is_zero(const Tangent& x) {
+  friend CLUTCHWORK_HOT bool is_zero(const Tangent& x) {
     if (x.v != 0) return false;
     for (int i = 0; i < N; ++i) {
       if (x.slope(i) != 0) return false;
@@ -103,7 +103,7 @@ struct NumberOf<Tangent<N, R>> : NumberOf<double> {
 
 #define CLUTCHWORK_CHAIN(NAME, F, SLOPE)                         \
   template <int N, int R>                                        \
-  CLUTCHWORK_INLINE Tangent<N, R> NAME(const Tangent<N, R>& x) { \
+  CLUTCHWORK_HOT Tangent<N, R> NAME(const Tangent<N, R>& x) { \
     const double f = F;                                          \
     return Tangent<N, R>::chain(x, f, SLOPE);                    \
   }
@@ -117,18 +117,18 @@ CLUTCHWORK_CHAIN(tanh, tanh(x.v), 1 - f * f)
 #undef CLUTCHWORK_CHAIN
 
 template <int N, int R>
-CLUTCHWORK_INLINE Tangent<N, R> abs(const Tangent<N, R>& x) {
+CLUTCHWORK_HOT Tangent<N, R> abs(const Tangent<N, R>& x) {
   return x.v < 0 ? -x : x;
 }
 /// Power of a positive base.
 template <int N, int R>
-CLUTCHWORK_INLINE Tangent<N, R> pow(const Tangent<N, R>& a, const Tangent<N, R>& b) {
+CLUTCHWORK_HOT Tangent<N, R> pow(const Tangent<N, R>& a, const Tangent<N, R>& b) {
   const double p = pow(a.v, b.v);
   const double by_base = b.v * pow(a.v, b.v - 1), by_power = a.v > 0 ? p * log(a.v) : 0.0;
   return Tangent<N, R>::each(p, [&](int i) { return a.part[i] * by_base + b.part[i] * by_power; });
 }
 template <int N, int R>
-CLUTCHWORK_INLINE void add_times(Tangent<N, R> a, const Tangent<N, R>& x, Tangent<N, R>& y) {
+CLUTCHWORK_HOT void add_times(Tangent<N, R> a, const Tangent<N, R>& x, Tangent<N, R>& y) {
   y += a * x;
 }
 

@@ -49,7 +49,7 @@ class Tape {
   }
 
   /// The tape on which this thread writes, null: none.
-  static CLUTCHWORK_INLINE Tape*& current() { return at_work; }
+  static CLUTCHWORK_HOT Tape*& current() { return at_work; }
 
  private:
   static constexpr std::int64_t most = (1ll << 31) - 2;
@@ -66,58 +66,58 @@ struct Taped {
   static constexpr int kept = 1;
 
   Taped() = default;
-  CLUTCHWORK_INLINE Taped(double x) : v(x) {}
+  CLUTCHWORK_HOT Taped(double x) : v(x) {}
 
   /// f with derivatives by one number, and by two.
-  static CLUTCHWORK_INLINE Taped chain(const Taped& a, double f, double by_a) {
+  static CLUTCHWORK_HOT Taped chain(const Taped& a, double f, double by_a) {
     Taped r(f);
     if (a.id != 0 && by_a != 0) r.id = Tape::current()->note(a.id, by_a, 0, 0);
     return r;
   }
-  static CLUTCHWORK_INLINE Taped chain(const Taped& a, double by_a, const Taped& b, double by_b, double f) {
+  static CLUTCHWORK_HOT Taped chain(const Taped& a, double by_a, const Taped& b, double by_b, double f) {
     Taped r(f);
     const std::int32_t first = by_a != 0 ? a.id : 0, second = by_b != 0 ? b.id : 0;
     if ((first | second) != 0) r.id = Tape::current()->note(first, by_a, second, by_b);
     return r;
   }
 
-  CLUTCHWORK_INLINE Taped& operator+=(const Taped& b) { return *this = *this + b; }
-  CLUTCHWORK_INLINE Taped& operator-=(const Taped& b) { return *this = *this - b; }
-  CLUTCHWORK_INLINE Taped& operator*=(const Taped& b) { return *this = *this * b; }
-  CLUTCHWORK_INLINE Taped& operator/=(const Taped& b) { return *this = *this / b; }
+  CLUTCHWORK_HOT Taped& operator+=(const Taped& b) { return *this = *this + b; }
+  CLUTCHWORK_HOT Taped& operator-=(const Taped& b) { return *this = *this - b; }
+  CLUTCHWORK_HOT Taped& operator*=(const Taped& b) { return *this = *this * b; }
+  CLUTCHWORK_HOT Taped& operator/=(const Taped& b) { return *this = *this / b; }
 
-  friend CLUTCHWORK_INLINE Taped operator-(const Taped& a) { return chain(a, -a.v, -1); }
+  friend CLUTCHWORK_HOT Taped operator-(const Taped& a) { return chain(a, -a.v, -1); }
   // a sum with a constant zero is the other number
-  friend CLUTCHWORK_INLINE Taped operator+(const Taped& a, const Taped& b) {
+  friend CLUTCHWORK_HOT Taped operator+(const Taped& a, const Taped& b) {
     if (b.id == 0 && b.v == 0) return a;
     if (a.id == 0 && a.v == 0) return b;
     return chain(a, 1, b, 1, a.v + b.v);
   }
-  friend CLUTCHWORK_INLINE Taped operator-(const Taped& a, const Taped& b) {
+  friend CLUTCHWORK_HOT Taped operator-(const Taped& a, const Taped& b) {
     if (b.id == 0 && b.v == 0) return a;
     return chain(a, 1, b, -1, a.v - b.v);
   }
-  friend CLUTCHWORK_INLINE Taped operator*(const Taped& a, const Taped& b) { return chain(a, b.v, b, a.v, a.v * b.v); }
-  friend CLUTCHWORK_INLINE Taped operator/(const Taped& a, const Taped& b) {
+  friend CLUTCHWORK_HOT Taped operator*(const Taped& a, const Taped& b) { return chain(a, b.v, b, a.v, a.v * b.v); }
+  friend CLUTCHWORK_HOT Taped operator/(const Taped& a, const Taped& b) {
     const double q = a.v / b.v, inverse = 1 / b.v;
     return chain(a, inverse, b, -q * inverse, q);
   }
-  friend CLUTCHWORK_INLINE Taped operator*(double a, const Taped& b) { return chain(b, a * b.v, a); }
-  friend CLUTCHWORK_INLINE Taped operator*(const Taped& a, double b) { return chain(a, a.v * b, b); }
-  friend CLUTCHWORK_INLINE Taped operator/(const Taped& a, double b) { return chain(a, a.v / b, 1 / b); }
+  friend CLUTCHWORK_HOT Taped operator*(double a, const Taped& b) { return chain(b, a * b.v, a); }
+  friend CLUTCHWORK_HOT Taped operator*(const Taped& a, double b) { return chain(a, a.v * b, b); }
+  friend CLUTCHWORK_HOT Taped operator/(const Taped& a, double b) { return chain(a, a.v / b, 1 / b); }
 
-  friend CLUTCHWORK_INLINE bool operator<(const Taped& a, const Taped& b) { return a.v < b.v; }
-  friend CLUTCHWORK_INLINE bool operator>(const Taped& a, const Taped& b) { return a.v > b.v; }
-  friend CLUTCHWORK_INLINE bool operator<=(const Taped& a, const Taped& b) { return a.v <= b.v; }
-  friend CLUTCHWORK_INLINE bool operator>=(const Taped& a, const Taped& b) { return a.v >= b.v; }
-  friend CLUTCHWORK_INLINE bool operator==(const Taped& a, const Taped& b) { return a.v == b.v; }
-  friend CLUTCHWORK_INLINE bool operator!=(const Taped& a, const Taped& b) { return a.v != b.v; }
+  friend CLUTCHWORK_HOT bool operator<(const Taped& a, const Taped& b) { return a.v < b.v; }
+  friend CLUTCHWORK_HOT bool operator>(const Taped& a, const Taped& b) { return a.v > b.v; }
+  friend CLUTCHWORK_HOT bool operator<=(const Taped& a, const Taped& b) { return a.v <= b.v; }
+  friend CLUTCHWORK_HOT bool operator>=(const Taped& a, const Taped& b) { return a.v >= b.v; }
+  friend CLUTCHWORK_HOT bool operator==(const Taped& a, const Taped& b) { return a.v == b.v; }
+  friend CLUTCHWORK_HOT bool operator!=(const Taped& a, const Taped& b) { return a.v != b.v; }
 
-  friend CLUTCHWORK_INLINE double value(const Taped& x) { return x.v; }
-  friend CLUTCHWORK_INLINE Taped without_value(const Taped& x) { return chain(x, 0, 1); }
-  friend CLUTCHWORK_INLINE bool is_zero(const Taped& x) { return x.v == 0 && x.id == 0; }
+  friend CLUTCHWORK_HOT double value(const Taped& x) { return x.v; }
+  friend CLUTCHWORK_HOT Taped without_value(const Taped& x) { return chain(x, 0, 1); }
+  friend CLUTCHWORK_HOT bool is_zero(const Taped& x) { return x.v == 0 && x.id == 0; }
   /// A row keeps the number on the tape.
-  friend CLUTCHWORK_INLINE void keep(const Taped& x, double* to) { to[0] = x.id; }
+  friend CLUTCHWORK_HOT void keep(const Taped& x, double* to) { to[0] = x.id; }
   /// Not known before the tape is followed back.
   friend double largest_difference(const Taped&, const Taped&) { return 0; }
 };
@@ -130,7 +130,7 @@ struct NumberOf<Taped> : NumberOf<double> {
 };
 
 #define CLUTCHWORK_CHAIN(NAME, F, SLOPE)         \
-  CLUTCHWORK_INLINE Taped NAME(const Taped& x) { \
+  CLUTCHWORK_HOT Taped NAME(const Taped& x) { \
     const double f = F;                          \
     return Taped::chain(x, f, SLOPE);            \
   }
@@ -143,9 +143,9 @@ CLUTCHWORK_CHAIN(atan, atan(x.v), 1 / (1 + x.v * x.v))
 CLUTCHWORK_CHAIN(tanh, tanh(x.v), 1 - f * f)
 #undef CLUTCHWORK_CHAIN
 
-CLUTCHWORK_INLINE Taped abs(const Taped& x) { return x.v < 0 ? -x : x; }
+CLUTCHWORK_HOT Taped abs(const Taped& x) { return x.v < 0 ? -x : x; }
 /// Power of a positive base.
-CLUTCHWORK_INLINE Taped pow(const Taped& a, const Taped& b) {
+CLUTCHWORK_HOT Taped pow(const Taped& a, const Taped& b) {
   const double p = pow(a.v, b.v);
   return Taped::chain(a, b.v * pow(a.v, b.v - 1), b, a.v > 0 ? p * log(a.v) : 0.0, p);
 }

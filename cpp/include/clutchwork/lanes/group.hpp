@@ -8,27 +8,16 @@
 /// Up to eight runs advanced together, with the results of each one alone: docs/theory/lanes.md.
 namespace clutchwork {
 
-/// Numbers of states and speeds in one index of the forms that step together.
-inline constexpr int lane_forms = lane_speeds * (lane_states + 1);
-
-/// Call f with the numbers of speeds and states of a form.
-template <int I = 0, class F>
-void visit_lane_form(int nz, int ns, F&& f) {
-  constexpr int NZ = 1 + I / (lane_states + 1), NS = I % (lane_states + 1);
-  if (nz == NZ && ns == NS) return f(std::integral_constant<int, NZ>{}, std::integral_constant<int, NS>{});
-  if constexpr (I + 1 < lane_forms) visit_lane_form<I + 1>(nz, ns, f);
-}
-
-template <int NZ, int NS>
-using LanePhase = Phase<SmallForm<double, NZ, NS>, Rodas5P>;
-
 /// One run of a group.
 struct Member {
   Workspace<double>* run = nullptr;
   Sink* sink = nullptr;
   Status status = Status::running;
   bool begun = false;  ///< its phase has
-  alignas(64) unsigned char phase[sizeof(LanePhase<lane_speeds, lane_states>)];
+  alignas(64) unsigned char phase[sizeof(LanePhase)];
+
+  LanePhase& own_phase() { return *std::launder(reinterpret_cast<LanePhase*>(phase)); }
+  Pace<double>& pace() { return own_phase(); }
 };
 
 /// Up to eight runs of models with the same structure.
@@ -50,7 +39,7 @@ class Group {
     for (int first = earliest(); first >= 0; first = earliest()) {
       bool along[n_lanes] = {};
       const int count = company(first, along);
-      count < worthwhile ? step_alone(member_[first]) : step_together(*member_[first].run, along);
+      count < worthwhile ? step_alone(member_[first]) : step_together(along);
     }
   }
 
@@ -92,35 +81,29 @@ class Group {
   void step_alone(Member& m) {
     Workspace<double>& run = *m.run;
     if (!m.begun) return close(m, dispatch(run, t_end_, *m.sink));
-    visit_lane_form(run.reduced.nz, int(run.sys.states),
-                    [&](auto nz, auto ns) { close(m, reinterpret_cast<LanePhase<nz(), ns()>*>(m.phase)->resume()); });
+    close(m, m.own_phase().resume());
   }
 
-  void step_together(const Workspace<double>& run, const bool* along) {
-    visit_lane_form(run.reduced.nz, int(run.sys.states), [&](auto nz, auto ns) {
-      using One = LanePhase<nz(), ns()>;
-      Seat seats[n_lanes];
-      int count = 0, first = 0;
-      for (int i = 0; i < n_; ++i) {
-        if (!along[i]) continue;
-        Member& m = member_[i];
-        One* phase = m.begun ? reinterpret_cast<One*>(m.phase) : new (m.phase) One(*m.run, t_end_, *m.sink);
-        if (!m.begun) phase->begin();
-        m.begun = true;
-        seats[i] = Seat(phase);
-        if (seats[i].pace->over_) {
-          close(m, seats[i].pace->status_);
-          seats[i] = Seat();
-        } else {
-          first = i, ++count;
-        }
+  void step_together(const bool* along) {
+    LanePhase* phases[n_lanes] = {};
+    int count = 0, first = 0;
+    for (int i = 0; i < n_; ++i) {
+      if (!along[i]) continue;
+      Member& m = member_[i];
+      if (!m.begun) (new (m.phase) LanePhase(*m.run, t_end_, *m.sink, Tag<Rodas5P>{}))->begin();
+      m.begun = true;
+      if (m.pace().over_) {
+        close(m, m.pace().status_);
+      } else {
+        phases[i] = &m.own_phase();
+        first = i, ++count;
       }
-      if (count < 2) return;
-      Together(lanes_, kernel_, seats, first).run();
-      for (int i = 0; i < n_; ++i) {
-        if (seats[i].pace != nullptr && seats[i].pace->over_) close(member_[i], seats[i].pace->status_);
-      }
-    });
+    }
+    if (count < 2) return;
+    Together(lanes_, kernel_, phases, first).run();
+    for (int i = 0; i < n_; ++i) {
+      if (phases[i] != nullptr && member_[i].pace().over_) close(member_[i], member_[i].pace().status_);
+    }
   }
 };
 

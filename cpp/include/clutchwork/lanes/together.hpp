@@ -3,33 +3,20 @@
 #include <clutchwork/lanes/mode.hpp>
 #include <clutchwork/lanes/step.hpp>
 #include <clutchwork/run/pace.hpp>
+#include <clutchwork/run/phase.hpp>
 
 /// The phases of up to eight runs in one mode, stepped together: docs/theory/lanes.md.
 namespace clutchwork {
 
-/// A phase in a lane; what it does alone depends on its form.
-struct Seat {
-  Pace<double>* pace = nullptr;  ///< null: nobody
-  bool (*settle_due)(Pace<double>&) = nullptr;
-  void (*settle_given)(Pace<double>&) = nullptr, (*collapse)(Pace<double>&) = nullptr;
-  void (*leave)(Pace<double>&, Status) = nullptr;
-
-  Seat() = default;
-  template <class One>
-  explicit Seat(One* phase)
-      : pace(phase),
-        settle_due([](Pace<double>& p) { return static_cast<One&>(p).settle_due(); }),
-        settle_given([](Pace<double>& p) { static_cast<One&>(p).settle_given(); }),
-        collapse([](Pace<double>& p) { static_cast<One&>(p).collapse(); }),
-        leave([](Pace<double>& p, Status status) { static_cast<One&>(p).leave(status); }) {}
-};
+/// A phase whose steps are taken in a lane.
+using LanePhase = Phase<SmallForm<double>>;
 
 /// Takes the steps; everything that happens in one run alone is left to its own phase. A lane leaves when its phase is
 /// over or its mode is another one; the others go on.
 class Together {
   Workspace<Lanes<2>>& ws_;
   const LaneKernel& kernel_;
-  const Seat* seat_;
+  LanePhase* const* phase_;  ///< of each lane, null: nobody
   LaneForm<2> form_;
   Step<LaneForm<2>> step_;
   Lanes<2> end_{0};  ///< [s] of the present step
@@ -39,10 +26,10 @@ class Together {
 
  public:
   /// Phases that have begun, all in one mode; `first` is one of those that are there.
-  Together(Workspace<Lanes<2>>& ws, const LaneKernel& kernel, const Seat* seats, int first)
-      : ws_(ws), kernel_(kernel), seat_(seats), form_(ws, size_of(seats[first])), step_(form_), n_(form_.n()) {
+  Together(Workspace<Lanes<2>>& ws, const LaneKernel& kernel, LanePhase* const* phases, int first)
+      : ws_(ws), kernel_(kernel), phase_(phases), form_(form_of(ws, pace_of(phases[first]).ws_)), step_(form_), n_(form_.n()) {
     take_mode(ws_, run_of(first));
-    for (int i = 0; i < n_lanes; ++i) enter(i, seat_[i].pace != nullptr ? i : first);
+    for (int i = 0; i < n_lanes; ++i) enter(i, phase_[i] != nullptr ? i : first);
     list_varying(ws_);
   }
 
@@ -60,12 +47,12 @@ class Together {
   }
 
  private:
-  Pace<double>& pace(int i) { return *seat_[i].pace; }
+  static Pace<double>& pace_of(LanePhase* phase) { return *phase; }
+  Pace<double>& pace(int i) { return pace_of(phase_[i]); }
   Workspace<double>& run_of(int i) { return pace(i).ws_; }
 
-  static LaneSize<> size_of(const Seat& seat) {
-    const Workspace<double>& run = seat.pace->ws_;
-    return {run.reduced.nz, int(run.sys.states)};
+  static LaneForm<2> form_of(Workspace<Lanes<2>>& ws, const Workspace<double>& run) {
+    return LaneForm<2>(ws, run.reduced.nz, int(run.sys.states));
   }
 
   /// A lane without a phase computes what another one does.
@@ -131,14 +118,14 @@ class Together {
       Pace<double>& one = pace(i);
       if (one.is_due()) {
         rest(i);
-        seat_[i].settle_due(one);
+        phase_[i]->settle_due();
         go_on(i);
         changed = true;
       } else {
         const Status spent = one.what_is_spent();
         if (spent != Status::running) {
           rest(i);
-          seat_[i].leave(one, spent);
+          phase_[i]->leave(spent);
           leave(i);
         }
       }
@@ -179,7 +166,7 @@ class Together {
     }
     if (!one.shorten()) {
       rest(i);
-      seat_[i].collapse(one);
+      phase_[i]->collapse();
       leave(i);
     }
     return false;
@@ -194,7 +181,7 @@ class Together {
       Pace<double>& one = pace(i);
       if (doubtful[i] || one.ws_.options.work || one.ws_.options.angles || one.has_rows(1)) {
         unload(i);
-        seat_[i].settle_given(one);
+        phase_[i]->settle_given();
         visited_[i] = true;
       } else {
         one.move_on();

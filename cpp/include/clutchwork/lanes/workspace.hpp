@@ -124,15 +124,8 @@ CLUTCHWORK_INLINE Lanes<R> rate_size(const Workspace<Lanes<R>>& ws, int k, const
   return sum;
 }
 
-/// Any of the small sizes, in memory alike. NZ: number of speeds where the compiler knows it, else -1.
-template <int NZ = -1>
-struct LaneSize {
-  static constexpr int most_speeds = small_speeds, least_states = small_states, rows = small_speeds + small_states;
-  int speeds, states;
-  CLUTCHWORK_INLINE int nz() const { return NZ < 0 ? speeds : NZ; }
-  CLUTCHWORK_INLINE int ns() const { return states; }
-};
+/// The small form of the lanes. NZ: number of speeds where the compiler knows it, else -1.
 template <int R, int NZ = -1>
-using LaneForm = DenseForm<Lanes<R>, LaneSize<NZ>>;
+using LaneForm = SmallForm<Lanes<R>, NZ>;
 
 }  // namespace clutchwork

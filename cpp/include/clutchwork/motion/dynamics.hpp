@@ -16,7 +16,7 @@ namespace clutchwork {
 
 /// d := (sum of row' torque, state rates) at (t, y). The first part is M dz/dt.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void evaluate_inline(Form& form, Real<T> t, const T* y, T* d) {
+CLUTCHWORK_HOT void evaluate_inline(Form& form, Real<T> t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
   if constexpr (Form::full) return evaluate_whole(form, t, y, d, ws.full.plain.rate, ws.full.plain.torque);
   const int nz = form.nz(), n = form.n();
@@ -61,7 +61,7 @@ void observe(Form& form, double t, const T* y, T* d) {
 
 /// evaluate plus all partial derivatives; dt := derivative of d by time.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void linearize(Form& form, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
+CLUTCHWORK_HOT void linearize(Form& form, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
   if constexpr (Form::full) return linearize_whole(form, t, y, d, dt, edge);
   const int nz = form.nz(), n = form.n();
@@ -89,14 +89,14 @@ CLUTCHWORK_INLINE void linearize(Form& form, Real<T> t, const T* y, T* d, T* dt,
 
 /// Slopes of the rates along the motion: edge.slope, from dz/dt.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void slopes(Form& form, const T* velocity, Edge<T>& edge) {
+CLUTCHWORK_HOT void slopes(Form& form, const T* velocity, Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
   for (int k = 0; k < ws.n_rates; ++k) edge.slope[k] = form.rate(k, velocity) + offset_slope(ws, k);
 }
 
 /// All inputs at (t, y), the rates among them.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void inputs_of(Form& form, Real<T> t, const T* y) {
+CLUTCHWORK_HOT void inputs_of(Form& form, Real<T> t, const T* y) {
   if constexpr (Form::full) return full_inputs(form, t, y);
   inputs_with(form.ws, t, y + form.nz());
 }
@@ -125,7 +125,7 @@ void sparse_multipliers(const Workspace<T>& ws, const T* torque, int np, T* out)
 
 /// Torques of the locked contacts for given branch torques; `moving`: with the prescribed accelerations.
 template <class T>
-CLUTCHWORK_INLINE void multipliers(const Workspace<T>& ws, const T* torque, bool moving, T* out) {
+CLUTCHWORK_HOT void multipliers(const Workspace<T>& ws, const T* torque, bool moving, T* out) {
   const auto& sys = ws.sys;
   const int m = ws.held.n, nb = ws.n_branches, np = moving ? int(sys.prescribed) : 0;
   if (ws.held.mapped) {
@@ -151,7 +151,7 @@ T capacity_swing(const Workspace<T>& ws, int c, T capacity) {
 /// Torques of the branches and their drift at the point that was linearized last, at y, where the speeds change with
 /// `velocity`.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void drift_torques(Form& form, const T* y, const T* velocity, const T* d, const Edge<T>& edge) {
+CLUTCHWORK_HOT void drift_torques(Form& form, const T* y, const T* velocity, const T* d, const Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
   T *drift = ws.seen.drift, *torque = ws.seen.torque;
   const T* states = d + form.nz();
@@ -194,7 +194,7 @@ T load_swing(const Workspace<T>& ws, int c, T torque) {
 
 /// Multipliers of the locked contacts, their drift and their capacities there.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void sense(Form& form, const T* y, const T* velocity, const T* d, Edge<T>& edge) {
+CLUTCHWORK_HOT void sense(Form& form, const T* y, const T* velocity, const T* d, Edge<T>& edge) {
   Workspace<T>& ws = form.ws;
   const int m = ws.held.n;
   if constexpr (Form::full) {
@@ -258,7 +258,7 @@ void expand(Form& form, const T* z, T* v, bool offset = true) {
 
 /// Size of what makes the rate of branch k, from the sizes of the speeds.
 template <class T>
-CLUTCHWORK_INLINE Real<T> rate_size(const Workspace<T>& ws, int k, const Real<T>* size) {
+CLUTCHWORK_HOT Real<T> rate_size(const Workspace<T>& ws, int k, const Real<T>* size) {
   const auto row = rate_row(ws.sys, ws.branch[k].direction);
   Real<T> sum = 0;
   for (int e = 0; e < row.n; ++e) sum += abs(value(row.value[e])) * size[row.column[e]];
@@ -268,7 +268,7 @@ CLUTCHWORK_INLINE Real<T> rate_size(const Workspace<T>& ws, int k, const Real<T>
 /// Absolute tolerance of each own state: what counts as an error of the rate that bends it, over its span. The sizes of
 /// the speeds are known. docs/theory/integrators.md
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void floor_states(Form& form, const T* y) {
+CLUTCHWORK_HOT void floor_states(Form& form, const T* y) {
   Workspace<T>& ws = form.ws;
   if constexpr (Form::full) return floor_whole(form, y);
   const Real<T> rtol = ws.options.rtol, atol = ws.options.atol;
@@ -284,7 +284,7 @@ CLUTCHWORK_INLINE void floor_states(Form& form, const T* y) {
 
 /// f(share, j) for each reduced speed j that speed i is made of.
 template <class Form, class F, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void each_share(const Form& form, int i, F&& f) {
+CLUTCHWORK_HOT void each_share(const Form& form, int i, F&& f) {
   if constexpr (Form::small) {
     for (int j = 0; j < form.nz(); ++j) f(value(form.ws.reduced.z_basis[i * form.nz() + j]), j);
   } else {
@@ -296,7 +296,7 @@ CLUTCHWORK_INLINE void each_share(const Form& form, int i, F&& f) {
 /// Weighted RMS norm of an error in (v, states), relative to the larger of two points; a speed counts as no slower than
 /// a share of the fastest. The same in every form. docs/theory/integrators.md
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE Real<T> error_norm(Form& form, const T* error, const T* a, const T* b) {
+CLUTCHWORK_HOT Real<T> error_norm(Form& form, const T* error, const T* a, const T* b) {
   // of the fastest speed
   constexpr double slow = 1e-3;
   const Workspace<T>& ws = form.ws;

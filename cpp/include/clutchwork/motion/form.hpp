@@ -4,57 +4,40 @@
 /// Two forms of the same reduced motion M dz/dt = sum of row' torque, behind one set of functions.
 namespace clutchwork {
 
-/// Numbers of speeds and states that the compiler knows.
-template <int NZ, int NS>
-struct KnownSize {
-  static constexpr int most_speeds = NZ, least_states = NS, rows = NZ + NS;
-  template <class T>
-  explicit KnownSize(const Workspace<T>&) {}
-  static constexpr int nz() { return NZ; }
-  static constexpr int ns() { return NS; }
-};
-
-/// Any of the small sizes, in place of exact ones.
-struct SomeSize {
-  static constexpr int most_speeds = small_speeds, least_states = 0, rows = 0;
-  int speeds, states;
-  template <class T>
-  explicit SomeSize(const Workspace<T>& ws) : speeds(ws.reduced.nz), states(int(ws.sys.states)) {}
-  int nz() const { return speeds; }
-  int ns() const { return states; }
-};
-
-/// Up to a handful of speeds: M = 1, dense rows.
-template <class T, class Size>
-struct DenseForm : Size {
+/// Up to a handful of speeds: M = 1, dense rows. NZ, NS: numbers of speeds and of states where the compiler knows them,
+/// else -1; in memory all of them are alike.
+template <class T, int NZ = -1, int NS = -1>
+struct SmallForm {
   using Scalar = T;
   static constexpr bool small = true, full = false;
-  static constexpr int fixed_size = Size::rows, least_states = Size::least_states;
-  using Size::ns, Size::nz;
+  static constexpr int fixed_size = NZ >= 0 && NS >= 0 ? NZ + NS : 0;
   Workspace<T>& ws;
-  T w[Size::most_speeds > 0 ? Size::most_speeds * Size::most_speeds : 1];
+  const int speeds, states;
+  T w[small_speeds * small_speeds];
 
-  explicit DenseForm(Workspace<T>& workspace) : Size(workspace), ws(workspace) {}
-  DenseForm(Workspace<T>& workspace, const Size& size) : Size(size), ws(workspace) {}
-  constexpr int n() const { return nz() + ns(); }
+  explicit SmallForm(Workspace<T>& workspace) : SmallForm(workspace, workspace.reduced.nz, int(workspace.sys.states)) {}
+  SmallForm(Workspace<T>& workspace, int n_speeds, int n_states) : ws(workspace), speeds(n_speeds), states(n_states) {}
+  CLUTCHWORK_HOT int nz() const { return NZ < 0 ? speeds : NZ; }
+  CLUTCHWORK_HOT int ns() const { return NS < 0 ? states : NS; }
+  CLUTCHWORK_HOT int n() const { return nz() + ns(); }
 
-  CLUTCHWORK_INLINE T rate(int k, const T* z) const {
+  CLUTCHWORK_HOT T rate(int k, const T* z) const {
     const T* r = ws.reduced.row_z + k * nz();
     T s = T(0);
     for (int i = 0; i < nz(); ++i) s += r[i] * z[i];
     return s;
   }
-  CLUTCHWORK_INLINE void push(int k, T torque, T* q) const {
+  CLUTCHWORK_HOT void push(int k, T torque, T* q) const {
     const T* r = ws.reduced.row_z + k * nz();
     for (int i = 0; i < nz(); ++i) q[i] += r[i] * torque;
   }
-  CLUTCHWORK_INLINE void add_mass_times(T factor, const T* x, T* y) const {
+  CLUTCHWORK_HOT void add_mass_times(T factor, const T* x, T* y) const {
     for (int i = 0; i < nz(); ++i) y[i] += factor * x[i];
   }
-  CLUTCHWORK_INLINE void solve_mass(T*) const {}
+  CLUTCHWORK_HOT void solve_mass(T*) const {}
 
   /// w := inverse of scale M - sum row' stiff row (symmetric).
-  CLUTCHWORK_INLINE Truth<T> factor(T scale, const T* stiff) {
+  CLUTCHWORK_HOT Truth<T> factor(T scale, const T* stiff) {
     for (int i = 0; i < nz() * nz(); ++i) w[i] = T(0);
     for (int k = 0; k < ws.n_branches; ++k) {
       if (all(value(stiff[k]) == 0)) continue;
@@ -67,8 +50,8 @@ struct DenseForm : Size {
     for (int i = 0; i < nz(); ++i) w[i * nz() + i] += scale;
     return invert_symmetric();
   }
-  CLUTCHWORK_INLINE void solve(T* b) const {
-    T x[Size::most_speeds > 0 ? Size::most_speeds : 1];
+  CLUTCHWORK_HOT void solve(T* b) const {
+    T x[small_speeds];
     for (int i = 0; i < nz(); ++i) {
       T s = T(0);
       for (int j = 0; j < nz(); ++j) s += w[i * nz() + j] * b[j];
@@ -79,7 +62,7 @@ struct DenseForm : Size {
 
  private:
   // Gauss-Jordan without pivoting on the symmetric matrix, whose lower half is given
-  CLUTCHWORK_INLINE Truth<T> invert_symmetric() {
+  CLUTCHWORK_HOT Truth<T> invert_symmetric() {
     Truth<T> regular(true);
     for (int i = 0; i < nz(); ++i) {
       for (int j = 0; j < i; ++j) w[j * nz() + i] = w[i * nz() + j];
@@ -100,19 +83,12 @@ struct DenseForm : Size {
   }
 };
 
-/// The exact sizes that are compiled for one run.
-template <class T, int NZ, int NS>
-using SmallForm = DenseForm<T, KnownSize<NZ, NS>>;
-/// One for all of them where a build has not all.
-template <class T>
-using SomeForm = DenseForm<T, SomeSize>;
-
 /// Any size: compressed rows, reduced mass, LDL' in an envelope.
 template <class T>
 struct SparseForm {
   using Scalar = T;
   static constexpr bool small = false, full = false;
-  static constexpr int fixed_size = 0, least_states = -1;
+  static constexpr int fixed_size = 0;
   Workspace<T>& ws;
   T* w;
   bool mass_factored = false;
@@ -122,9 +98,9 @@ struct SparseForm {
   int ns() const { return int(ws.sys.states); }
   int n() const { return ws.reduced.nz + int(ws.sys.states); }
 
-  CLUTCHWORK_INLINE T rate(int k, const T* z) const { return ws.rows.rate.times(k, z); }
+  CLUTCHWORK_HOT T rate(int k, const T* z) const { return ws.rows.rate.times(k, z); }
   double rate_size(int k, const T* z) const { return ws.rows.rate.size(k, z); }
-  CLUTCHWORK_INLINE void push(int k, T torque, T* q) const { ws.rows.rate.add(k, torque, q); }
+  CLUTCHWORK_HOT void push(int k, T torque, T* q) const { ws.rows.rate.add(k, torque, q); }
   void add_mass_times(T factor, const T* x, T* y) const {
     const Compressed<T>& mass = ws.rows.mass;
     for (int i = 0; i < ws.reduced.nz; ++i) {

@@ -29,32 +29,21 @@ Status run_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink)
   visit_method(ws.reduced.method, [&](auto tag) {
     using Integrator = typename decltype(tag)::type;
     // derivatives are carried by one method, which is made for any motion
-    constexpr bool compiled = Form::least_states <= Integrator::most_small_states;
-    if constexpr (has_tangents<typename Form::Scalar> ? Integrator::stiff : compiled)
-      status = Phase<Form, Integrator>(ws, t_end, sink).run();
+    if constexpr (Integrator::stiff || !has_tangents<typename Form::Scalar>)
+      status = Phase<Form>(ws, t_end, sink, tag).run();
   });
   return status;
 }
 
-/// The full form for systems that need it; exact sizes for small systems, one sparse form for the rest.
-template <class T, int NZ = 1, int NS = 0>
+/// The full form for systems that need it, the small one for few speeds, a sparse one for the rest.
+template <class T>
 Status dispatch(Workspace<T>& ws, double t_end, Sink& sink) {
   if (ws.sys.full[0] != 0) return run_phase<FullForm<T>>(ws, t_end, sink);
   if (ws.reduced.is_sparse) return run_phase<SparseForm<T>>(ws, t_end, sink);
-  if constexpr (has_tangents<T>) {
+  if constexpr (has_tangents<T>)
     return Status::no_mode;
-  } else if constexpr (NZ > small_speeds) {
-    if constexpr (has_all_exact_forms())
-      return Status::no_mode;
-    else
-      return run_phase<SomeForm<T>>(ws, t_end, sink);
-  } else if constexpr (NS > small_states) {
-    return dispatch<T, NZ + 1, 0>(ws, t_end, sink);
-  } else {
-    if constexpr (has_exact_form(NZ, NS))
-      if (ws.reduced.nz == NZ && ws.sys.states == NS) return run_phase<SmallForm<T, NZ, NS>>(ws, t_end, sink);
-    return dispatch<T, NZ, NS + 1>(ws, t_end, sink);
-  }
+  else
+    return run_phase<SmallForm<T>>(ws, t_end, sink);
 }
 
 /// Speeds, states, angles and work as they start.

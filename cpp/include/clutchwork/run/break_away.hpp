@@ -90,7 +90,7 @@ double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
 }
 
 /// Torques of locked contacts: skipped while the margin exceeds what can change in the step.
-template <class Form, class Integrator>
+template <class Form>
 CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
   int* watched = ws.guard.limit;
@@ -100,7 +100,7 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
     if (is_rigid(ws, ws.held.contact[a])) {
       const double s = rigid_departure(form, step, a, hit.s);
       if (!is_first(hit, s)) continue;
-      if (!step.dense) Integrator::prepare_dense(form, step);
+      step.fit(form);
       hit = {Hit::multiplier, a, s, -1};
       continue;
     }
@@ -111,7 +111,7 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
     m0 = smaller(m0, before), m1 = smaller(m1, after);
   }
   if (n == 0) return;
-  if (!step.dense) Integrator::prepare_dense(form, step);
+  step.fit(form);
   int who = watched[0];
   auto f = [&](double s) { return least_margin(form, step, s, watched, n, who); };
   const double s = first_crossing(f, m0, m1, hit.s);
@@ -124,10 +124,10 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
 
 /// The same for a set with contacts that follow loads: its limit load has kinks where a load changes its sign. Far from
 /// it at both ends, ahead of both and in the middle, it is taken to be far from it in between.
-template <class Form, class Integrator>
+template <class Form>
 [[gnu::noinline]] void find_loaded_limit(Form& form, Step<Form>& step, int k, double least, Hit& hit) {
   auto& ws = form.ws;
-  if (!step.dense) Integrator::prepare_dense(form, step);
+  step.fit(form);
   auto f = [&](double s) {
     torques_at(form, step, s);
     return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
@@ -138,7 +138,7 @@ template <class Form, class Integrator>
 }
 
 /// Where a dependent set of locked contacts reaches its limit load.
-template <class Form, class Integrator>
+template <class Form>
 [[gnu::noinline]] void find_set_limit(Form& form, Step<Form>& step, Hit& hit) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
@@ -148,13 +148,13 @@ template <class Form, class Integrator>
     const double change = larger(abs(after - before), larger(before - coming, after - gone));
     bool bends = false;
     if (ws.sys.loads > 0 && holds_loads(ws)) {
-      find_loaded_limit<Form, Integrator>(form, step, k, smaller(smaller(before, after), smaller(coming, gone)), hit);
+      find_loaded_limit(form, step, k, smaller(smaller(before, after), smaller(coming, gone)), hit);
       continue;
     }
     for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
       bends = bends || load_bends(ws, ws.held.set_member[i]);
     if (!bends && smaller(before, after) > change) continue;
-    if (!step.dense) Integrator::prepare_dense(form, step);
+    step.fit(form);
     auto f = [&](double s) {
       torques_at(form, step, s);
       return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
@@ -179,10 +179,10 @@ double slip_beside(Form& form, Step<Form>& step, int c, double s) {
 
 /// Where a transmission parts what it held together itself. Inside a step the interpolant keeps its row less exactly
 /// than at the ends, so that the slip must leave zero there.
-template <class Form, class Integrator>
+template <class Form>
 void find_parting_beside(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
-  if (!step.dense) Integrator::prepare_dense(form, step);
+  step.fit(form);
   for (int i = 0; i < ws.held.n_driven; ++i) {
     const int spare = ws.held.driven[i], c = ws.held.spare[spare];
     const double end = abs(slip_beside(form, step, c, 1.0)), zero = slip_tolerance(ws);
@@ -195,10 +195,10 @@ void find_parting_beside(Form& form, Step<Form>& step, Hit& hit) {
 }
 
 /// Where prescribed speeds part what locked contacts hold together. docs/theory/events.md, rule 11
-template <class Form, class Integrator>
+template <class Form>
 void find_parting(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
-  if (ws.ratios.n > 0) return find_parting_beside<Form, Integrator>(form, step, hit);
+  if (ws.ratios.n > 0) return find_parting_beside(form, step, hit);
   const double zero = slip_tolerance(ws);
   for (int i = 0; i < ws.held.n_driven; ++i) {
     auto f = [&](double s) {
@@ -211,7 +211,7 @@ void find_parting(Form& form, Step<Form>& step, Hit& hit) {
     };
     const double s = first_crossing(f, f(0), f(1), hit.s);
     if (!is_first(hit, s)) continue;
-    if (!step.dense) Integrator::prepare_dense(form, step);
+    step.fit(form);
     hit = {Hit::parting, ws.held.driven[i], s, -1};
   }
 }

@@ -55,7 +55,7 @@ struct GapGuard {
 };
 
 /// Where the position of stop c meets its end on a side, before `limit`; -1: it does not. docs/theory/play.md
-template <class Form, class Integrator>
+template <class Form>
 double gap_crossing(Form& form, Step<Form>& step, int c, int side, double limit) {
   auto& ws = form.ws;
   const int i = form.nz() + place_of(ws, c), k = ws.branch_of[ws.sys.contact_place[c]];
@@ -66,7 +66,7 @@ double gap_crossing(Form& form, Step<Form>& step, int c, int side, double limit)
   // a start behind the end, within round-off, is on it
   if (g0 < 0) g1 -= g0, g0 = 0;
   if (g1 >= 0 && g0 + leaves / 3 >= 0 && g1 - arrives / 3 >= 0) return -1;
-  if (!step.dense) Integrator::prepare_dense(form, step);
+  step.fit(form);
   const double q0 = -side * value(step.p(0)[i]), q1 = -side * value(step.p(1)[i]), q2 = -side * value(step.p(2)[i]);
   const double a1 = g1 - g0 + q0, a2 = q1 - q0, a3 = q2 - q1;
   GapGuard guard{{g0, g0 + a1 / 4, g0 + a1 / 2 + a2 / 6, g0 + 0.75 * a1 + a2 / 2 + a3 / 4, g1}};
@@ -77,13 +77,13 @@ double gap_crossing(Form& form, Step<Form>& step, int c, int side, double limit)
 }
 
 /// Where a stop that is open meets an end.
-template <class Form, class Integrator>
+template <class Form>
 [[gnu::noinline]] void find_gap(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
   for (int g = 0; g < ws.guard.n_gaps; ++g) {
     const int c = ws.guard.gap[g];
     for (int side = -1; side <= 1; side += 2) {
-      const double s = gap_crossing<Form, Integrator>(form, step, c, side, hit.s);
+      const double s = gap_crossing(form, step, c, side, hit.s);
       if (is_first(hit, s)) hit = {Hit::gap, c, s, side};
     }
   }

@@ -25,12 +25,12 @@ bool rates_bend(const Workspace<T>& ws) {
 }
 
 /// First crossing of a guard that is linear in the state, before `limit`; -1: none.
-template <class Form, class Integrator>
+template <class Form>
 double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, double g0, double g1, double noise,
                      double limit) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
-  if (!step.dense) Integrator::prepare_dense(form, step);
+  step.fit(form);
   const int k = guard.branch;
   auto at = [&](double s) {
     interpolate(form, step, s, step.point());
@@ -89,10 +89,10 @@ void slopes_in(Form& form, Step<Form>& step, double s) {
 }
 
 /// Where a contact fails.
-template <class Form, class Integrator>
+template <class Form>
 void find_fault(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
-  if (inputs_follow(ws) && !step.dense) Integrator::prepare_dense(form, step);
+  if (inputs_follow(ws)) step.fit(form);
   for (int i = 0; i < ws.guard.n_faulty; ++i) {
     const int c = ws.guard.faulty[i];
     if (ws.contact.fault[c] != sound) continue;
@@ -102,13 +102,13 @@ void find_fault(Form& form, Step<Form>& step, Hit& hit) {
     };
     const double s = first_crossing(f, f(0), f(1), hit.s);
     if (!is_first(hit, s)) continue;
-    if (!step.dense) Integrator::prepare_dense(form, step);
+    step.fit(form);
     hit = {Hit::fault, c, s, -1};
   }
 }
 
 /// Where the law of a contact, locked or not, leaves a table that may not be left.
-template <class Form, class Integrator>
+template <class Form>
 void find_exit(Form& form, Step<Form>& step, Hit& hit) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
@@ -122,7 +122,7 @@ void find_exit(Form& form, Step<Form>& step, Hit& hit) {
     };
     const double start = room(0, step.y0()), end = room(1, step.y1());
     if (start >= 0 && end >= 0) continue;
-    if (!step.dense) Integrator::prepare_dense(form, step);
+    step.fit(form);
     auto f = [&](double s) {
       interpolate(form, step, s, step.point());
       return room(s, step.point());
@@ -136,7 +136,7 @@ void find_exit(Form& form, Step<Form>& step, Hit& hit) {
 }
 
 /// Where the laws of compliant contacts and the pieces of elements change.
-template <class Form, class Integrator>
+template <class Form>
 void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
@@ -156,7 +156,7 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
     const double change = abs(value(end.v - start.v));
     const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
     if (smaller(value(start.v), value(end.v)) > larger(change, drift)) continue;
-    if (!step.dense) Integrator::prepare_dense(form, step);
+    step.fit(form);
     auto f = [&](double s) {
       interpolate(form, step, s, step.point());
       inputs_of(form, step.t + s * step.h, step.point());
@@ -174,7 +174,7 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
 }
 
 /// Where processes leave their pieces. docs/theory/events.md, rule 12
-template <class Form, class Integrator>
+template <class Form>
 [[gnu::noinline]] void find_process_hit(Form& form, Step<Form>& step, Hit& hit) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
@@ -196,7 +196,7 @@ template <class Form, class Integrator>
     const double change = abs(value(end.v - start.v));
     const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
     if (smaller(value(start.v), value(end.v)) > larger(change, drift)) continue;
-    if (!step.dense) Integrator::prepare_dense(form, step);
+    step.fit(form);
     auto f = [&](double s) {
       const double t = step.t + s * step.h;
       interpolate(form, step, s, step.point());
@@ -229,7 +229,7 @@ CLUTCHWORK_INLINE Truth<T> stays_clear(const Workspace<T>& ws, int k, Real<T> si
 }
 
 /// Slips and kinks.
-template <class Form, class Integrator>
+template <class Form>
 CLUTCHWORK_INLINE void find_line(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
   // round-off of a rate: far below the slip that counts as zero
@@ -238,7 +238,7 @@ CLUTCHWORK_INLINE void find_line(Form& form, Step<Form>& step, Hit& hit) {
     const LineGuard& g = ws.guard.line[i];
     double g0, g1;
     if (stays_clear(ws, g.branch, g.sign, g.level, step.h, noise, g0, g1)) continue;
-    const double s = line_crossing<Form, Integrator>(form, step, g, g0, g1, noise, hit.s);
+    const double s = line_crossing(form, step, g, g0, g1, noise, hit.s);
     if (is_first(hit, s)) hit = {Hit::line, i, s, -1};
   }
 }
@@ -253,7 +253,7 @@ void list_near_loads(Workspace<T>& ws, double h) {
 }
 
 /// Where the load of a contact passes zero.
-template <class Form, class Integrator>
+template <class Form>
 void find_load(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
   for (int i = 0; i < ws.guard.n_near; ++i) {
@@ -268,18 +268,18 @@ void find_load(Form& form, Step<Form>& step, Hit& hit) {
       inputs_in(form, step, s);
       return sign * value(load_of(ws, c)) + noise;
     };
-    if (inputs_follow(ws) && !step.dense) Integrator::prepare_dense(form, step);
+    if (inputs_follow(ws)) step.fit(form);
     const double l0 = f(0), l1 = f(1);
     const double s = first_crossing(f, l0, abs(l1) <= 1e-12 * abs(l0) ? 0.0 : l1, hit.s);
     if (!is_first(hit, s)) continue;
-    if (!step.dense) Integrator::prepare_dense(form, step);
+    step.fit(form);
     hit = {Hit::load, c, s, -1};
   }
 }
 
 /// Where a load passes to the other line of the bound with which its contact slips. docs/theory/load-dependent.md, rule
 /// 1
-template <class Form, class Integrator>
+template <class Form>
 [[gnu::noinline]] void find_flip(Form& form, Step<Form>& step, Hit& hit) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
@@ -288,7 +288,7 @@ template <class Form, class Integrator>
     const double start = value(ws.here.clearance[l]), end = value(ws.there.clearance[l]);
     const double drift = step.h * larger(abs(value(ws.here.closing[l])), abs(value(ws.there.closing[l])));
     if (smaller(start, end) > larger(abs(end - start), drift)) continue;
-    if (!step.dense) Integrator::prepare_dense(form, step);
+    step.fit(form);
     const double noise = 1e-12 * torque_size(ws);
     auto f = [&](double s) {
       torques_at(form, step, s);
@@ -301,23 +301,23 @@ template <class Form, class Integrator>
 }
 
 /// First guard that turns negative inside the step.
-template <class Form, class Integrator>
+template <class Form>
 CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   auto& ws = form.ws;
   Hit hit;
   // before other guards move the inputs from the end of the step
   list_near_loads(ws, step.h);
-  find_line<Form, Integrator>(form, step, hit);
-  if (ws.guard.n_switching > 0) find_law_hit<Form, Integrator>(form, step, hit);
-  if (ws.guard.n_processes > 0) find_process_hit<Form, Integrator>(form, step, hit);
-  if (ws.held.n > 0) find_break_away<Form, Integrator>(form, step, hit);
-  if (ws.held.n_sets > 0) find_set_limit<Form, Integrator>(form, step, hit);
-  if (ws.held.n_driven > 0) find_parting<Form, Integrator>(form, step, hit);
-  if (ws.guard.n_faulty > 0) find_fault<Form, Integrator>(form, step, hit);
-  if (ws.guard.n_bounded > 0) find_exit<Form, Integrator>(form, step, hit);
-  if (ws.loads.n_sliding > 0) find_flip<Form, Integrator>(form, step, hit);
-  if (ws.guard.n_near > 0) find_load<Form, Integrator>(form, step, hit);
-  if (ws.guard.n_gaps > 0) find_gap<Form, Integrator>(form, step, hit);
+  find_line(form, step, hit);
+  if (ws.guard.n_switching > 0) find_law_hit(form, step, hit);
+  if (ws.guard.n_processes > 0) find_process_hit(form, step, hit);
+  if (ws.held.n > 0) find_break_away(form, step, hit);
+  if (ws.held.n_sets > 0) find_set_limit(form, step, hit);
+  if (ws.held.n_driven > 0) find_parting(form, step, hit);
+  if (ws.guard.n_faulty > 0) find_fault(form, step, hit);
+  if (ws.guard.n_bounded > 0) find_exit(form, step, hit);
+  if (ws.loads.n_sliding > 0) find_flip(form, step, hit);
+  if (ws.guard.n_near > 0) find_load(form, step, hit);
+  if (ws.guard.n_gaps > 0) find_gap(form, step, hit);
   return hit;
 }
 

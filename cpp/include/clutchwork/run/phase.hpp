@@ -17,6 +17,7 @@
 #include <clutchwork/run/power.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/run/step.hpp>
+#include <clutchwork/run/step_calls.hpp>
 #include <clutchwork/run/stiffness.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -24,7 +25,7 @@
 namespace clutchwork {
 
 /// Integration until an event, the end time, or a full buffer.
-template <class Form, class Integrator>
+template <class Form>
 class Phase : public Pace<typename Form::Scalar> {
   using T = typename Form::Scalar;
   using Base = Pace<T>;
@@ -44,10 +45,14 @@ class Phase : public Pace<typename Form::Scalar> {
 
   Form form_;
   Step<Form> step_;
+  const StepCalls<Form> calls_;
 
  public:
-  Phase(Workspace<T>& ws, double t_end, Sink& sink) : Base(ws, t_end, sink), form_(ws), step_(form_) {
+  template <class Integrator>
+  Phase(Workspace<T>& ws, double t_end, Sink& sink, Tag<Integrator>)
+      : Base(ws, t_end, sink), form_(ws), step_(form_), calls_(step_calls<Integrator>(form_)) {
     Base::rows_ = step_.k(0), Base::width_ = form_.n();
+    step_.make_dense = calls_.fit;
   }
 
   /// `running`: an event is waiting to be settled.
@@ -106,12 +111,17 @@ class Phase : public Pace<typename Form::Scalar> {
     if (shown != Status::running) return leave(shown);
     look_here();
     // kept, so that a run takes the same steps whether or not it is asked for a row here
-    if (event) ws_.last_step *= Integrator::restart;
+    if (event) ws_.last_step *= calls_.restart;
     h_ = ws_.last_step > 0 ? ws_.last_step : first_step(form_, step_, t_end_ - ws_.time);
   }
 
  private:
-  CLUTCHWORK_INLINE void look_here() { look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here); }
+  CLUTCHWORK_INLINE void look_here() {
+    calls_.look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here);
+  }
+  CLUTCHWORK_INLINE void look_there() {
+    calls_.look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
+  }
 
   /// The same where the phase goes on behind an event.
   CLUTCHWORK_INLINE void look_on() {
@@ -168,10 +178,10 @@ class Phase : public Pace<typename Form::Scalar> {
   CLUTCHWORK_INLINE bool take_step() {
     plan_step();
     step_.t = ws_.time;
-    const double error = Integrator::advance(form_, step_, reach_);
+    const double error = calls_.advance(form_, step_, reach_);
     if (!judge(error, all_finite(form_.n(), step_.y1()))) return false;
     if constexpr (Form::full) keep_ties(form_, step_, end_of_step(), step_.y1());
-    look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
+    look_there();
     return true;
   }
 
@@ -179,7 +189,7 @@ class Phase : public Pace<typename Form::Scalar> {
   CLUTCHWORK_INLINE bool judge(double error, bool finite) {
     error_ = finite ? error : infinity;
     if (error_ <= 1 && ws_.options.work && rates_bend(ws_))
-      error_ = larger(error_, work_error<Form, Integrator>(form_, step_));
+      error_ = larger(error_, work_error(form_, step_));
     if (!(error_ <= 1)) {
       reject();
       return false;
@@ -190,7 +200,7 @@ class Phase : public Pace<typename Form::Scalar> {
 
   /// What happens inside a step, and where the run goes on from.
   [[gnu::noinline]] void settle_step() {
-    const Hit hit = find_hit<Form, Integrator>(form_, step_);
+    const Hit hit = find_hit(form_, step_);
     if (must_land(hit)) {
       land(hit.s);
     } else if (misses_rest(hit)) {
@@ -228,12 +238,11 @@ class Phase : public Pace<typename Form::Scalar> {
   /// Whether a step towards rest has run over a change of the coefficient: the two solutions whose difference is its
   /// error may agree by chance. docs/theory/events.md, rule 7
   bool misses_rest(const Hit& hit) {
-    if constexpr (!Integrator::stiff) return false;
-    if (hit.what != Hit::nothing || !nears_rest(ws_)) return false;
-    if (!step_.dense) Integrator::prepare_dense(form_, step_);
+    if (!calls_.stiff || hit.what != Hit::nothing || !nears_rest(ws_)) return false;
+    step_.fit(form_);
     const double missed = error_until(form_, step_, inner);
     if (missed > most_inner_error) return error_ = missed, true;
-    look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
+    look_there();
     return false;
   }
 
@@ -247,7 +256,7 @@ class Phase : public Pace<typename Form::Scalar> {
   CLUTCHWORK_INLINE bool write(double s) {
     const bool rows = has_rows(s);
     if (!(rows || ws_.options.work || ws_.options.angles) || s <= 0) return true;
-    if (!step_.dense) Integrator::prepare_dense(form_, step_);
+    step_.fit(form_);
     if (ws_.options.work) fit_power(form_, step_, s);
     const Status shown = rows ? emit(form_, step_, s, time_at(s), sink_) : Status::running;
     if (shown != Status::running) {
@@ -271,9 +280,7 @@ class Phase : public Pace<typename Form::Scalar> {
     move_on();
     if (ws_.guard.n_undirected > 0) direct_open(form_, ws_.here);
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) leave(Status::chatter);
-    if constexpr (!Integrator::stiff) {
-      if (!over_ && ws_.options.method == Method::auto_) watch_strain();
-    }
+    if (!calls_.stiff && !over_ && ws_.options.method == Method::auto_) watch_strain();
   }
 
   /// A motion that has become stiff is left to an implicit method.

@@ -138,11 +138,11 @@ double signal_step(const Workspace<T>& ws) {
 
 /// Error of the work over a step in units of the tolerance, by halving. Where speeds are prescribed no state may feel
 /// the torque, so nothing else keeps the steps short enough for the quadrature.
-template <class Form, class Integrator>
+template <class Form>
 double work_error(Form& form, Step<Form>& step) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
-  Integrator::prepare_dense(form, step);
+  step.fit(form);
   T *whole = ws.out.whole, *halves = ws.out.halves;
   for (int k = 0; k < ws.n_branches; ++k) whole[k] = halves[k] = T(0);
   auto add = [&](double start, double width, T* sum) {

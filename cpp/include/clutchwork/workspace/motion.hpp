@@ -64,28 +64,6 @@ struct Geometry {
 /// Sizes of the small forms: one speed to small_speeds, no state to small_states.
 inline constexpr int small_speeds = 4, small_states = 2;
 
-/// Those that are compiled each for itself, as speeds and states: a build that must be small takes fewer, and one form
-/// runs all the others, to the same bits. docs/guide/wasm.md
-#ifndef CLUTCHWORK_SMALL_FORMS
-#define CLUTCHWORK_SMALL_FORMS(FORM) \
-  FORM(1, 0)                         \
-  FORM(1, 1)                         \
-  FORM(1, 2) FORM(2, 0) FORM(2, 1) FORM(2, 2) FORM(3, 0) FORM(3, 1) FORM(3, 2) FORM(4, 0) FORM(4, 1) FORM(4, 2)
-#endif
-constexpr bool has_exact_form(int speeds, int states) {
-#define CLUTCHWORK_IS_FORM(SPEEDS, STATES) || (speeds == SPEEDS && states == STATES)
-  return false CLUTCHWORK_SMALL_FORMS(CLUTCHWORK_IS_FORM);
-#undef CLUTCHWORK_IS_FORM
-}
-constexpr bool has_all_exact_forms() {
-  for (int speeds = 1; speeds <= small_speeds; ++speeds) {
-    for (int states = 0; states <= small_states; ++states) {
-      if (!has_exact_form(speeds, states)) return false;
-    }
-  }
-  return true;
-}
-
 /// v = Z z + Y u, and the rates of the branches in it.
 template <class T>
 struct Reduced {
@@ -178,7 +156,7 @@ struct Shared {
 /// Scratch of the integrators.
 template <class T>
 struct Stages {
-  T* rows = nullptr;     ///< of a step whose size the compiler does not know
+  T* rows = nullptr;     ///< of a step
   T* stiff = nullptr;    ///< effective damping of each branch
   T* inverse = nullptr;  ///< of the blocks of the own states
   T* own = nullptr;      ///< own states of one branch

@@ -4,19 +4,13 @@
 /// Memory of one step and its dense output, shared by both methods.
 namespace clutchwork {
 
-/// Rows of length n: on the stack when n is known to the compiler, else in the workspace.
+/// Rows of a step in the workspace, of the length of the motion. N: where the compiler knows it, else 0.
 template <class T, int N>
 struct StepRows {
-  T data[20][N];
-  explicit StepRows(Workspace<T>&, int) {}
-  CLUTCHWORK_INLINE T* row(int i) { return data[i]; }
-};
-template <class T>
-struct StepRows<T, 0> {
   T* data;
-  int n;
+  const int n;
   StepRows(Workspace<T>& ws, int size) : data(ws.stages.rows), n(size) {}
-  CLUTCHWORK_INLINE T* row(int i) { return data + i * n; }
+  CLUTCHWORK_HOT T* row(int i) { return data + i * (N > 0 ? N : n); }
 };
 
 /// Rows of a step: the stages come first, then these. The stages are numbered from 0.
@@ -31,25 +25,29 @@ struct Step {
   using T = typename Form::Scalar;
   StepRows<T, Form::fixed_size> rows;
   Real<T> t = 0, h = 0;
-  bool dense = false;
+  bool dense = false;                        ///< it has an interpolant
+  void (*make_dense)(Form&, Step&) = nullptr;  ///< what its method makes that of
 
   explicit Step(Form& form) : rows(form.ws, form.n()) {}
-  CLUTCHWORK_INLINE T* k(int i) { return rows.row(i); }
-  CLUTCHWORK_INLINE T* y0() { return rows.row(StepRow::y0); }
-  CLUTCHWORK_INLINE T* y1() { return rows.row(StepRow::y1); }
-  CLUTCHWORK_INLINE T* p(int i) { return rows.row(StepRow::p + i); }
-  CLUTCHWORK_INLINE T* f0() { return rows.row(StepRow::f0); }  // d at y0
-  CLUTCHWORK_INLINE T* f1() { return rows.row(StepRow::f1); }  // d at y1
-  CLUTCHWORK_INLINE T* dt0() { return rows.row(StepRow::dt0); }
-  CLUTCHWORK_INLINE T* dt1() { return rows.row(StepRow::dt1); }
-  CLUTCHWORK_INLINE T* u() { return rows.row(StepRow::u); }
-  CLUTCHWORK_INLINE T* point() { return rows.row(StepRow::point); }
-  CLUTCHWORK_INLINE T* slope() { return rows.row(StepRow::slope); }
+  CLUTCHWORK_HOT void fit(Form& form) {
+    if (!dense) make_dense(form, *this);
+  }
+  CLUTCHWORK_HOT T* k(int i) { return rows.row(i); }
+  CLUTCHWORK_HOT T* y0() { return rows.row(StepRow::y0); }
+  CLUTCHWORK_HOT T* y1() { return rows.row(StepRow::y1); }
+  CLUTCHWORK_HOT T* p(int i) { return rows.row(StepRow::p + i); }
+  CLUTCHWORK_HOT T* f0() { return rows.row(StepRow::f0); }  // d at y0
+  CLUTCHWORK_HOT T* f1() { return rows.row(StepRow::f1); }  // d at y1
+  CLUTCHWORK_HOT T* dt0() { return rows.row(StepRow::dt0); }
+  CLUTCHWORK_HOT T* dt1() { return rows.row(StepRow::dt1); }
+  CLUTCHWORK_HOT T* u() { return rows.row(StepRow::u); }
+  CLUTCHWORK_HOT T* point() { return rows.row(StepRow::point); }
+  CLUTCHWORK_HOT T* slope() { return rows.row(StepRow::slope); }
 };
 
 /// The state at t + s h into `out`.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void interpolate(Form& form, Step<Form>& step, double s, T* out) {
+CLUTCHWORK_HOT void interpolate(Form& form, Step<Form>& step, double s, T* out) {
   const Real<T> x = Real<T>(s), r = Real<T>(1 - s);
   const int n = form.n();
   const T *a = step.y0(), *b = step.y1(), *p0 = step.p(0), *p1 = step.p(1), *p2 = step.p(2);

@@ -48,7 +48,7 @@ struct Rodas5P {
 
   /// Fold the states of the branches into effective dampings and factor. docs/theory/integrators.md
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE Truth<T> factor(Form& form, T scale) {
+  static CLUTCHWORK_HOT Truth<T> factor(Form& form, T scale) {
     if constexpr (Form::full) return form.factor_whole(scale, form.n());
     const Truth<T> regular = factor_motion(form, scale);
     if constexpr (!Form::small) {
@@ -59,7 +59,7 @@ struct Rodas5P {
 
   /// b := (scale M - J)^-1 b.
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE void solve(Form& form, T* b) {
+  static CLUTCHWORK_HOT void solve(Form& form, T* b) {
     if constexpr (Form::full) return form.solve_whole(b, form.n());
     solve_motion(form, b);
     if constexpr (!Form::small) {
@@ -69,7 +69,7 @@ struct Rodas5P {
 
   /// As factor, with the shared states held.
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE Truth<T> factor_motion(Form& form, T scale) {
+  static CLUTCHWORK_HOT Truth<T> factor_motion(Form& form, T scale) {
     Workspace<T>& ws = form.ws;
     T* stiff = ws.stages.stiff;
     for (int k = 0; k < ws.n_branches; ++k) {
@@ -98,7 +98,7 @@ struct Rodas5P {
 
   /// As solve, with the shared states held: own states condensed out and put back.
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE void solve_motion(Form& form, T* b) {
+  static CLUTCHWORK_HOT void solve_motion(Form& form, T* b) {
     Workspace<T>& ws = form.ws;
     const int nz = form.nz();
     if (form.ns() == 0) {
@@ -135,7 +135,7 @@ struct Rodas5P {
 
   /// The point of stage s from those before, in u.
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE void stage_point(Form& form, Step<Form>& step, int s, T* u) {
+  static CLUTCHWORK_HOT void stage_point(Form& form, Step<Form>& step, int s, T* u) {
     const int n = form.n();
     if (s >= 6) {
       for (int i = 0; i < n; ++i) u[i] += step.k(s - 1)[i];
@@ -150,7 +150,7 @@ struct Rodas5P {
 
   /// Right-hand side of stage s: slopes there, and the stages before.
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE void stage_slope(Form& form, Step<Form>& step, int s, const T* u, T* mix, T* k) {
+  static CLUTCHWORK_HOT void stage_slope(Form& form, Step<Form>& step, int s, const T* u, T* mix, T* k) {
     const int n = form.n(), nz = form.nz(), ns = form.ns();
     const Real<T> ih = Real<T>(1) / step.h;
     evaluate(form, step.t + Real<T>(node[s]) * step.h, u, k);
@@ -165,7 +165,7 @@ struct Rodas5P {
 
   /// One step of length h from step.y0 with f0 and dt0 known; returns the error in units of the tolerance.
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE Real<T> advance(Form& form, Step<Form>& step, Real<T> h) {
+  static CLUTCHWORK_HOT Real<T> advance(Form& form, Step<Form>& step, Real<T> h) {
     const int n = form.n();
     const Truth<T> regular = factor(form, T(Real<T>(1) / (Real<T>(gamma) * h)));
     if (none(regular)) return infinity;
@@ -196,7 +196,7 @@ struct Rodas5P {
 
   /// Coefficients of the quartic.
   template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_INLINE void prepare_dense(Form& form, Step<Form>& step) {
+  static CLUTCHWORK_HOT void prepare_dense(Form& form, Step<Form>& step) {
     const int n = form.n();
     for (int q = 0; q < 3; ++q) {
       for (int i = 0; i < n; ++i) {

@@ -17,5 +17,5 @@ struct cw_tangent_calls {
 };
 
 extern const cw_tangent_calls clutchwork_tangents_plain;
-/// CLUTCHWORK_WIDE: it is compiled.
+/// CLUTCHWORK_WIDE: it is compiled; CLUTCHWORK_WIDE_ALONE: the other one is not.
 extern const cw_tangent_calls clutchwork_tangents_wide;

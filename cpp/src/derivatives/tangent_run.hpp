@@ -4,7 +4,7 @@
 #include <cstring>
 #include <new>
 #include "lifted.hpp"
-#include "system_checks.hpp"
+#include "../system_checks.hpp"
 #include "tangents.hpp"
 
 /// A run with derivatives in some directions, for registers of R numbers.

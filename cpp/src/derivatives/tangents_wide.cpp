@@ -2,7 +2,7 @@
 
 #ifdef CLUTCHWORK_WIDE
 // what all share stays as it is
-#include <clutchwork/c_api.h>
+#include <clutchwork/derivatives.h>
 
 #include <cmath>
 #include <concepts>

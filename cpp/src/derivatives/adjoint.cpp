@@ -1,11 +1,11 @@
-#include <clutchwork/c_api.h>
+#include <clutchwork/derivatives.h>
 
 #include <clutchwork/components/taped.hpp>
 
 #include <cstring>
 #include <new>
 #include "lifted.hpp"
-#include "system_checks.hpp"
+#include "../system_checks.hpp"
 
 using namespace clutchwork;
 

@@ -2,5 +2,5 @@
 #include "instances.hpp"
 
 namespace clutchwork {
-CLUTCHWORK_SMALL_ROW(, 1)
+CLUTCHWORK_SMALL_PHASES()
 }  // namespace clutchwork

@@ -1,4 +1,4 @@
-#include <clutchwork/c_api.h>
+#include <clutchwork/derivatives.h>
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
@@ -6,14 +6,13 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 #include <clutchwork/layout.gen.hpp>
+#include <clutchwork/schema.gen.hpp>
 
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <new>
 #include <vector>
-
-#include "door.hpp"
 
 /// Runs with derivatives. docs/theory/gradients.md
 namespace nb = nanobind;
@@ -238,7 +237,11 @@ class Adjoint {
 
 }  // namespace
 
-void bind_gradient(nb::module_& m) {
+NB_MODULE(_derivatives, m) {
+  m.doc() = "Runs of the core of clutchwork with derivatives.";
+  m.attr("schema") = clutchwork::schema_text;
+  m.attr("layout") = clutchwork::layout_text;
+  m.def("runs_here", &cw_tangents_run_here, "Whether it was compiled for the processor of this machine.");
   nb::class_<Adjoint>(m, "Adjoint")
       .def(nb::init<const nb::bytes&, const Words&, const Times&, double, const Options&, std::int64_t, std::int64_t>(),
            nb::arg("system"), nb::arg("words"), nb::arg("times"), nb::arg("t_end"), nb::arg("options"),

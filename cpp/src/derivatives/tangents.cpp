@@ -1,15 +1,23 @@
 #include "tangents.hpp"
 
-#include <clutchwork/c_api.h>
+#include <clutchwork/derivatives.h>
 
 namespace {
 
+#ifdef CLUTCHWORK_WIDE
+bool has_wide() { return __builtin_cpu_supports("avx2"); }
+#endif
+
 /// Those for the widest registers that this processor has.
 const cw_tangent_calls& calls() {
+#ifdef CLUTCHWORK_WIDE_ALONE
+  return clutchwork_tangents_wide;
+#else
 #ifdef CLUTCHWORK_WIDE
-  if (__builtin_cpu_supports("avx2")) return clutchwork_tangents_wide;
+  if (has_wide()) return clutchwork_tangents_wide;
 #endif
   return clutchwork_tangents_plain;
+#endif
 }
 
 void* plain(cw_tangents* run) { return run; }
@@ -17,6 +25,14 @@ void* plain(cw_tangents* run) { return run; }
 }  // namespace
 
 extern "C" {
+
+int cw_tangents_run_here(void) {
+#ifdef CLUTCHWORK_WIDE_ALONE
+  return has_wide();
+#else
+  return 1;
+#endif
+}
 
 std::int64_t cw_tangents_size(const void* system, std::int64_t bytes) { return calls().size(system, bytes); }
 

@@ -1,0 +1,91 @@
+#pragma once
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/step.hpp>
+
+#include <type_traits>
+
+/// What a phase calls in every step. For few speeds it is compiled for each size, and the phase once for all of them.
+/// docs/theory/integrators.md
+namespace clutchwork {
+
+/// An integrator for a form, and a look at one end of a step.
+template <class Form>
+struct StepCalls {
+  using T = typename Form::Scalar;
+  Real<T> (*advance)(Form& form, Step<Form>& step, Real<T> h);
+  void (*fit)(Form& form, Step<Form>& step);
+  void (*look)(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge);
+  bool stiff;      ///< made for stiff motion
+  double restart;  ///< share of the step before an event with which it starts after it
+};
+
+/// The calls of any form.
+template <class Form, class Integrator>
+struct PlainCalls {
+  using T = typename Form::Scalar;
+  [[gnu::noinline]] static Real<T> advance(Form& form, Step<Form>& step, Real<T> h) {
+    return Integrator::advance(form, step, h);
+  }
+  [[gnu::noinline]] static void fit(Form& form, Step<Form>& step) { Integrator::prepare_dense(form, step); }
+  static constexpr StepCalls<Form> all() { return {advance, fit, look<Form>, Integrator::stiff, Integrator::restart}; }
+};
+
+/// Those of few speeds for one size, over the rows that any size has.
+template <class T, int NZ, int NS>
+struct SizedLook {
+  using Any = SmallForm<T>;
+  using Form = SmallForm<T, NZ, NS>;
+  [[gnu::noinline]] static void look(Any& any, Step<Any>&, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
+    Form form(any.ws);
+    Step<Form> step(form);
+    look_inline(form, step, t, y, d, dt, edge);
+  }
+};
+template <class T, class Integrator, int NZ, int NS>
+struct SizedCalls {
+  using Any = SmallForm<T>;
+  using Form = SmallForm<T, NZ, NS>;
+  [[gnu::noinline]] static Real<T> advance(Any& any, Step<Any>& step, Real<T> h) {
+    Form form(any.ws);
+    Step<Form> sized(form);
+    sized.t = step.t;
+    const Real<T> error = Integrator::advance(form, sized, h);
+    step.h = sized.h, step.dense = sized.dense;
+    return error;
+  }
+  [[gnu::noinline]] static void fit(Any& any, Step<Any>& step) {
+    Form form(any.ws);
+    Step<Form> sized(form);
+    sized.h = step.h;
+    Integrator::prepare_dense(form, sized);
+    step.dense = true;
+  }
+  static constexpr StepCalls<Any> all() {
+    return {advance, fit, SizedLook<T, NZ, NS>::look, Integrator::stiff, Integrator::restart};
+  }
+};
+
+/// Whether the steps of few speeds are compiled for each size; a build that must be small has one for all, to the same
+/// bits. docs/guide/wasm.md
+template <class Form>
+inline constexpr bool has_sizes = false;
+#ifndef CLUTCHWORK_ONE_SIZE
+template <>
+inline constexpr bool has_sizes<SmallForm<double>> = true;
+#endif
+
+/// The calls of an integrator for a motion in a form.
+template <class Integrator, class Form, int NZ = 1, int NS = 0>
+StepCalls<Form> step_calls(const Form& form) {
+  if constexpr (!has_sizes<Form> || NZ > small_speeds) {
+    return PlainCalls<Form, Integrator>::all();
+  } else if constexpr (NS > small_states || NS > Integrator::most_small_states) {
+    return step_calls<Integrator, Form, NZ + 1, 0>(form);
+  } else {
+    if (form.nz() == NZ && form.ns() == NS) return SizedCalls<typename Form::Scalar, Integrator, NZ, NS>::all();
+    return step_calls<Integrator, Form, NZ, NS + 1>(form);
+  }
+}
+
+}  // namespace clutchwork

@@ -1,6 +1,0 @@
-#define CLUTCHWORK_INSTANCES
-#include "instances.hpp"
-
-namespace clutchwork {
-CLUTCHWORK_SMALL_ROW(, 2)
-}  // namespace clutchwork

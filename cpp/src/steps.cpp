@@ -1,0 +1,10 @@
+#define CLUTCHWORK_STEPS
+#include "instances.hpp"
+
+/// The steps of few speeds, each size for itself.
+namespace clutchwork {
+CLUTCHWORK_SIZED(, 1)
+CLUTCHWORK_SIZED(, 2)
+CLUTCHWORK_SIZED(, 3)
+CLUTCHWORK_SIZED(, 4)
+}  // namespace clutchwork
