@@ -27,7 +27,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 JOBS ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 
 # what the compiled core and the type stub are made from; other Python files take effect without a build
-CORE_SOURCES := $(shell find CMakeLists.txt cpp interfaces/python interfaces/wasm $(addprefix src/clutchwork/,base declare elements laws signals face/names.py) \
+CORE_SOURCES := $(shell find CMakeLists.txt cpp interfaces/python $(addprefix src/clutchwork/,base declare elements laws signals face/names.py) \
 	-name '*.py' -o -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.txt' 2>/dev/null) \
 	$(wildcard tools/gen_registry.py tools/registry/*.py tools/gen_stubs.py)
 WASM := src/clutchwork/page/static/core.wasm
@@ -61,15 +61,25 @@ $(EXTRAS:%=$(STAMPS)/%): $(STAMPS)/%: $(STAMPS)/venv pyproject.toml tools/extras
 	@$(BIN)/python tools/extras.py $* | $(PIP) install --no-compile --requirement /dev/stdin
 	@touch $@
 
+# compiled for this machine: a wheel for others is made by `make wheel`
+INSTALL = CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH" \
+	$(PIP) install --no-build-isolation --no-deps --config-settings=cmake.define.CLUTCHWORK_NATIVE=ON
+
 $(STAMPS)/package: $(STAMPS)/build $(CORE_SOURCES)
-	@echo "building and installing clutchwork (some nine minutes of one core)"
-	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH" \
-		$(PIP) install --no-build-isolation --no-deps --editable .
+	@echo "building and installing clutchwork"
+	@$(INSTALL) --config-settings=cmake.define.CLUTCHWORK_DERIVATIVES=ON --editable .
+	@touch $(STAMPS)/core $@
+
+# the same without derivatives, which take as long to compile as all the rest; what it is drawn with comes meanwhile
+$(STAMPS)/core: $(STAMPS)/build $(CORE_SOURCES)
+	@echo "building and installing the core of clutchwork, and what pictures are drawn with"
+	@$(MAKE) --no-print-directory $(STAMPS)/plot >build/plot.log 2>&1 & \
+	$(INSTALL) --config-settings=cmake.define.CLUTCHWORK_DERIVATIVES=OFF --editable . && wait
 	@touch $@
 
 # ---------------------------------------------------------------- what people want
 
-demo: $(STAMPS)/package $(STAMPS)/plot
+demo: $(STAMPS)/core $(STAMPS)/plot
 	@$(BIN)/clutchwork demo
 
 # both parts run, a failure of either fails the target, and pytest has the last word

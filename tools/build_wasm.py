@@ -20,14 +20,12 @@ MADE = ROOT / "build" / "wasm"
 WASM = ROOT / "src" / "clutchwork" / "page" / "static" / "core.wasm"
 HEADER = ROOT / "cpp" / "include" / "clutchwork" / "c_api.h"
 
-# no exact forms: one dense form runs all small sizes, to their bits
-FORMS = ""
-CORE = [ROOT / "cpp" / "src" / f"{name}.cpp" for name in ("c_api", "components", "phases_sparse", "phases_full")]
-SOURCES = [*CORE, ROOT / "interfaces" / "wasm" / "small_forms.cpp"]
+NAMES = ("c_api", "components", "phases_small", "phases_sparse", "phases_full")
+SOURCES = [ROOT / "cpp" / "src" / f"{name}.cpp" for name in NAMES]
 # what a step spends its time in is inlined by force, as in the native build
-HOT = {"phases_sparse", "small_forms"}
-# what a page has no use for: groups of runs, linearisation, derivatives
-LEFT_OUT = re.compile(r"cw_(advance_group|group_size|local|local_size|tangents_\w+|adjoint_\w+)")
+HOT = {"phases_small", "phases_sparse"}
+# what a page has no use for: groups of runs, linearisation
+LEFT_OUT = re.compile(r"cw_(advance_group|group_size|local|local_size)")
 FLAGS = [
     "-std=c++20",
     "-g0",
@@ -36,6 +34,8 @@ FLAGS = [
     "-fno-exceptions",
     "-fno-rtti",
     "-fvisibility=hidden",
+    # one step for all small sizes, to the bits of those that are compiled for each
+    "-DCLUTCHWORK_ONE_SIZE",
 ]
 SECTION = "clutchwork"
 
@@ -71,14 +71,13 @@ def compiled() -> list[Path]:
     """Objects of all sources, made side by side."""
     places = [ROOT / "cpp" / "include", ROOT / "cpp" / "src", generated()]
     includes = [f"-I{place}" for place in places]
-    forms = f"-DCLUTCHWORK_SMALL_FORMS(FORM)={FORMS}"
     folder = MADE / "objects"
     folder.mkdir(parents=True, exist_ok=True)
 
     def one(source: Path) -> Path:
         made = folder / f"{source.stem}.o"
         inlined = () if source.stem in HOT else ("-DCLUTCHWORK_HOT=inline",)
-        zig(*TARGET, *FLAGS, *inlined, forms, *includes, "-c", source, "-o", made)
+        zig(*TARGET, *FLAGS, *inlined, *includes, "-c", source, "-o", made)
         return made
 
     # the longest first

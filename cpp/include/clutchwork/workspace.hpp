@@ -62,7 +62,7 @@ struct Workspace {
 
 /// The points of the curves that components read.
 template <class T>
-CLUTCHWORK_INLINE const Point<T>* points_of(const Workspace<T>& ws) {
+CLUTCHWORK_HOT const Point<T>* points_of(const Workspace<T>& ws) {
   if constexpr (has_tangents<T>)
     return ws.moved.points;
   else

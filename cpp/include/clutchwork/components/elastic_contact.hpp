@@ -18,7 +18,7 @@ struct ElasticContact {
   bool limited;     ///< the damping is never above the spring
 
   /// Force that pushes the bodies apart.
-  CLUTCHWORK_INLINE S push(Touch touch) const {
+  CLUTCHWORK_HOT S push(Touch touch) const {
     if (touch == Touch::hard) return spring + spring;
     return touch == Touch::slack ? S(0) : spring + damping;
   }

@@ -56,14 +56,14 @@ constexpr Pair operator*(Pair a, Pair b) {
 
 /// c[0] + z (c[1] + z (c[2] + ...)).
 template <int N>
-CLUTCHWORK_INLINE constexpr double polynomial(const double (&c)[N], double z) {
+CLUTCHWORK_HOT constexpr double polynomial(const double (&c)[N], double z) {
   double s = c[N - 1];
   for (int i = N - 2; i >= 0; --i) s = c[i] + z * s;
   return s;
 }
 
 /// The nearest whole number, for sizes below 2^51.
-CLUTCHWORK_INLINE double nearest(double x) {
+CLUTCHWORK_HOT double nearest(double x) {
   constexpr double shift = 6755399441055744.0;
   return (x + shift) - shift;
 }
@@ -96,7 +96,7 @@ inline constexpr Table table;
 }  // namespace powers
 
 /// exp for sizes below 708, where results are normal numbers.
-CLUTCHWORK_INLINE double exp_inside(double x) {
+CLUTCHWORK_HOT double exp_inside(double x) {
   // whole numbers end at the last bit of a number of this size
   constexpr double shift = 6755399441055744.0, per_step = 0x1.71547652b82fep+6;
   constexpr double step[] = {0x1.62e42fee00000p-7, 0x1.a39ef35793c76p-39};
@@ -187,7 +187,7 @@ inline Quarter quarter_of(double x) {
   return {r, int(std::int64_t(k) & 3)};
 }
 
-CLUTCHWORK_INLINE double sine_near(Pair r) {
+CLUTCHWORK_HOT double sine_near(Pair r) {
   constexpr double series[] = {-1.0 / 6,
                                1.0 / 120,
                                -1.0 / 5040,
@@ -200,7 +200,7 @@ CLUTCHWORK_INLINE double sine_near(Pair r) {
   return r.high + (r.high * z * polynomial(series, z) + r.low * (1 - 0.5 * z));
 }
 
-CLUTCHWORK_INLINE double cosine_near(Pair r) {
+CLUTCHWORK_HOT double cosine_near(Pair r) {
   constexpr double series[] = {1.0 / 24,
                                -1.0 / 720,
                                1.0 / 40320,

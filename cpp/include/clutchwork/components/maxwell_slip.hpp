@@ -9,25 +9,25 @@ namespace clutchwork {
 inline constexpr int most_elements = 10;
 
 template <class T>
-CLUTCHWORK_INLINE int element_count(const Curve<T>& c) {
+CLUTCHWORK_HOT int element_count(const Curve<T>& c) {
   const int n = int(value(c.count));
   return n < most_elements ? n : most_elements;
 }
 
 template <class T, class G>
-CLUTCHWORK_INLINE G element_deflection(const Curve<T>& c, const G* points, int i) {
+CLUTCHWORK_HOT G element_deflection(const Curve<T>& c, const G* points, int i) {
   return points[3 * (int(value(c.first)) + i)];
 }
 
 template <class T, class G>
-CLUTCHWORK_INLINE G element_share(const Curve<T>& c, const G* points, int i) {
+CLUTCHWORK_HOT G element_share(const Curve<T>& c, const G* points, int i) {
   return points[3 * (int(value(c.first)) + i) + 1];
 }
 
-CLUTCHWORK_INLINE bool element_slides(int piece, int i) { return (piece >> i & 1) != 0; }
+CLUTCHWORK_HOT bool element_slides(int piece, int i) { return (piece >> i & 1) != 0; }
 
 template <class S>
-CLUTCHWORK_INLINE S element_sum(const S* state, int n) {
+CLUTCHWORK_HOT S element_sum(const S* state, int n) {
   S sum = state[0];
   for (int i = 1; i < n; ++i) sum += state[i];
   return sum;

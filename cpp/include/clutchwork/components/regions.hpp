@@ -68,21 +68,21 @@ struct Mirrored {
 
 /// Share of the way through a cell of a grid; zero beyond the last point.
 template <class S>
-CLUTCHWORK_INLINE S share_of_cell(const auto& grid, int cell, const S& x) {
+CLUTCHWORK_HOT S share_of_cell(const auto& grid, int cell, const S& x) {
   if (cell + 1 >= grid.count) return S(0);
   return (x - S(grid[cell])) / S(grid[cell + 1] - grid[cell]);
 }
 
 /// Linear value of a cell whose point i has the value at(i).
 template <class S, class At_>
-CLUTCHWORK_INLINE S value_in_cell(int count, int cell, const S& share, At_&& at) {
+CLUTCHWORK_HOT S value_in_cell(int count, int cell, const S& share, At_&& at) {
   if (cell + 1 >= count) return S(at(count - 1));
   return S(at(cell)) + (S(at(cell + 1)) - S(at(cell))) * share;
 }
 
 /// Value of a curve that is held outside, on one of its intervals: 0 before the first point, then between points.
 template <class T, class S>
-CLUTCHWORK_INLINE S held_value(const Curve<T>& c, const auto* points, const S& x, int interval) {
+CLUTCHWORK_HOT S held_value(const Curve<T>& c, const auto* points, const S& x, int interval) {
   const int n = int(common(c.count)), first = int(common(c.first));
   if (interval == 0) return S(points[3 * first + 1]);
   if (interval >= n) return S(points[3 * (first + n - 1) + 1]);

@@ -372,7 +372,7 @@ void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
 
 /// Torques of the locked contacts, carriers given, by contact: `give` takes contact and torque.
 template <class T, class Give>
-CLUTCHWORK_INLINE void locked_torques(Workspace<T>& ws, const T* carried, Give&& give) {
+CLUTCHWORK_HOT void locked_torques(Workspace<T>& ws, const T* carried, Give&& give) {
   for (int a = 0; a < ws.held.n; ++a) {
     if (ws.held.in_set[a] == 0) give(ws.held.contact[a], carried[a]);
   }

@@ -19,7 +19,7 @@ struct Neighbours {
   int place_of(int i) const { return place[list[i]]; }
   /// Calls f(j, G_ij) for the neighbours j of i, i among them, in their order.
   template <class F>
-  CLUTCHWORK_INLINE void each(int i, F&& f) const {
+  CLUTCHWORK_HOT void each(int i, F&& f) const {
     const int p = place_of(i);
     const T* own = mobility + near.sky[p];
     for (int q = near.low[p]; q < p; ++q) {

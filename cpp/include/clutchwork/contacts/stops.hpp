@@ -12,7 +12,7 @@ namespace clutchwork {
 
 /// Whether a contact is a stop.
 template <class T>
-CLUTCHWORK_INLINE bool is_stop(const Workspace<T>& ws, int c) {
+CLUTCHWORK_HOT bool is_stop(const Workspace<T>& ws, int c) {
   return ws.sys.contact_place[c] >= 0;
 }
 template <class T>
@@ -47,7 +47,7 @@ double rest_speed(const Workspace<T>& ws, int c) {
 
 /// Where the position of a stop is among the states.
 template <class T>
-CLUTCHWORK_INLINE int place_of(const Workspace<T>& ws, int c) {
+CLUTCHWORK_HOT int place_of(const Workspace<T>& ws, int c) {
   return ws.sys.element_state[ws.sys.contact_place[c]];
 }
 

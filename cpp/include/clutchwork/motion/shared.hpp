@@ -11,19 +11,19 @@ namespace clutchwork {
 
 /// Part of the rate of a branch that the prescribed speeds give, and its time derivative.
 template <class T>
-CLUTCHWORK_INLINE T offset_rate(const Workspace<T>& ws, int k) {
+CLUTCHWORK_HOT T offset_rate(const Workspace<T>& ws, int k) {
   const int np = int(ws.sys.prescribed);
   return np == 0 ? T(0) : dot(np, ws.reduced.offset + k * np, ws.in.prescribed);
 }
 template <class T>
-CLUTCHWORK_INLINE T offset_slope(const Workspace<T>& ws, int k) {
+CLUTCHWORK_HOT T offset_slope(const Workspace<T>& ws, int k) {
   const int np = int(ws.sys.prescribed);
   return np == 0 ? T(0) : dot(np, ws.reduced.offset + k * np, ws.in.prescribed_slope);
 }
 
 /// Values of the references to shared states; `state` are all states.
 template <class T>
-CLUTCHWORK_INLINE void shared_inputs(Workspace<T>& ws, const T* state) {
+CLUTCHWORK_HOT void shared_inputs(Workspace<T>& ws, const T* state) {
   const auto& sys = ws.sys;
   for (int k = 0; k < ws.in.n_shared_refs; ++k) {
     const int ref = ws.in.shared_ref[k], j = sys.input_refs[ref] - int(sys.inputs);
@@ -33,7 +33,7 @@ CLUTCHWORK_INLINE void shared_inputs(Workspace<T>& ws, const T* state) {
 
 /// All inputs of torques and contacts at time t for the given states.
 template <class T>
-CLUTCHWORK_INLINE void inputs_with(Workspace<T>& ws, Real<T> t, const T* state) {
+CLUTCHWORK_HOT void inputs_with(Workspace<T>& ws, Real<T> t, const T* state) {
   inputs_at(ws, t);
   if constexpr (!has_lanes<T>) {
     if (ws.in.n_shared_refs > 0) shared_inputs(ws, state);
@@ -64,7 +64,7 @@ void direction_inputs(Workspace<T>& ws, const T* rate) {
 
 /// The element behind a reference to a rate.
 template <class T>
-CLUTCHWORK_INLINE int element_behind(const Workspace<T>& ws, int ref) {
+CLUTCHWORK_HOT int element_behind(const Workspace<T>& ws, int ref) {
   return ws.sys.input_refs[ref] - int(ws.sys.inputs + ws.sys.shared);
 }
 
@@ -79,7 +79,7 @@ void present_rates(Workspace<T>& ws) {
 
 /// Process i at its states and inputs, on the piece that it is on.
 template <class T, class S>
-CLUTCHWORK_INLINE At<S> process_at(const Workspace<T>& ws, int i, const S* own, const S* input) {
+CLUTCHWORK_HOT At<S> process_at(const Workspace<T>& ws, int i, const S* own, const S* input) {
   return At<S>{S(0), own, input, ws.shared.piece[i], points_of(ws)};
 }
 

@@ -100,7 +100,7 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
     if (is_rigid(ws, ws.held.contact[a])) {
       const double s = rigid_departure(form, step, a, hit.s);
       if (!is_first(hit, s)) continue;
-      step.fit(form);
+      fit(form, step);
       hit = {Hit::multiplier, a, s, -1};
       continue;
     }
@@ -111,7 +111,7 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
     m0 = smaller(m0, before), m1 = smaller(m1, after);
   }
   if (n == 0) return;
-  step.fit(form);
+  fit(form, step);
   int who = watched[0];
   auto f = [&](double s) { return least_margin(form, step, s, watched, n, who); };
   const double s = first_crossing(f, m0, m1, hit.s);
@@ -127,7 +127,7 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
 template <class Form>
 [[gnu::noinline]] void find_loaded_limit(Form& form, Step<Form>& step, int k, double least, Hit& hit) {
   auto& ws = form.ws;
-  step.fit(form);
+  fit(form, step);
   auto f = [&](double s) {
     torques_at(form, step, s);
     return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
@@ -154,7 +154,7 @@ template <class Form>
     for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
       bends = bends || load_bends(ws, ws.held.set_member[i]);
     if (!bends && smaller(before, after) > change) continue;
-    step.fit(form);
+    fit(form, step);
     auto f = [&](double s) {
       torques_at(form, step, s);
       return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
@@ -182,7 +182,7 @@ double slip_beside(Form& form, Step<Form>& step, int c, double s) {
 template <class Form>
 void find_parting_beside(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
-  step.fit(form);
+  fit(form, step);
   for (int i = 0; i < ws.held.n_driven; ++i) {
     const int spare = ws.held.driven[i], c = ws.held.spare[spare];
     const double end = abs(slip_beside(form, step, c, 1.0)), zero = slip_tolerance(ws);
@@ -211,7 +211,7 @@ void find_parting(Form& form, Step<Form>& step, Hit& hit) {
     };
     const double s = first_crossing(f, f(0), f(1), hit.s);
     if (!is_first(hit, s)) continue;
-    step.fit(form);
+    fit(form, step);
     hit = {Hit::parting, ws.held.driven[i], s, -1};
   }
 }

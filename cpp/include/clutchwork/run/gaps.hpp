@@ -66,7 +66,7 @@ double gap_crossing(Form& form, Step<Form>& step, int c, int side, double limit)
   // a start behind the end, within round-off, is on it
   if (g0 < 0) g1 -= g0, g0 = 0;
   if (g1 >= 0 && g0 + leaves / 3 >= 0 && g1 - arrives / 3 >= 0) return -1;
-  step.fit(form);
+  fit(form, step);
   const double q0 = -side * value(step.p(0)[i]), q1 = -side * value(step.p(1)[i]), q2 = -side * value(step.p(2)[i]);
   const double a1 = g1 - g0 + q0, a2 = q1 - q0, a3 = q2 - q1;
   GapGuard guard{{g0, g0 + a1 / 4, g0 + a1 / 2 + a2 / 6, g0 + 0.75 * a1 + a2 / 2 + a3 / 4, g1}};

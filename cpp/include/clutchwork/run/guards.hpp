@@ -30,7 +30,7 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
                      double limit) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
-  step.fit(form);
+  fit(form, step);
   const int k = guard.branch;
   auto at = [&](double s) {
     interpolate(form, step, s, step.point());
@@ -92,7 +92,7 @@ void slopes_in(Form& form, Step<Form>& step, double s) {
 template <class Form>
 void find_fault(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
-  if (inputs_follow(ws)) step.fit(form);
+  if (inputs_follow(ws)) fit(form, step);
   for (int i = 0; i < ws.guard.n_faulty; ++i) {
     const int c = ws.guard.faulty[i];
     if (ws.contact.fault[c] != sound) continue;
@@ -102,7 +102,7 @@ void find_fault(Form& form, Step<Form>& step, Hit& hit) {
     };
     const double s = first_crossing(f, f(0), f(1), hit.s);
     if (!is_first(hit, s)) continue;
-    step.fit(form);
+    fit(form, step);
     hit = {Hit::fault, c, s, -1};
   }
 }
@@ -122,7 +122,7 @@ void find_exit(Form& form, Step<Form>& step, Hit& hit) {
     };
     const double start = room(0, step.y0()), end = room(1, step.y1());
     if (start >= 0 && end >= 0) continue;
-    step.fit(form);
+    fit(form, step);
     auto f = [&](double s) {
       interpolate(form, step, s, step.point());
       return room(s, step.point());
@@ -156,7 +156,7 @@ void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
     const double change = abs(value(end.v - start.v));
     const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
     if (smaller(value(start.v), value(end.v)) > larger(change, drift)) continue;
-    step.fit(form);
+    fit(form, step);
     auto f = [&](double s) {
       interpolate(form, step, s, step.point());
       inputs_of(form, step.t + s * step.h, step.point());
@@ -196,7 +196,7 @@ template <class Form>
     const double change = abs(value(end.v - start.v));
     const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
     if (smaller(value(start.v), value(end.v)) > larger(change, drift)) continue;
-    step.fit(form);
+    fit(form, step);
     auto f = [&](double s) {
       const double t = step.t + s * step.h;
       interpolate(form, step, s, step.point());
@@ -268,11 +268,11 @@ void find_load(Form& form, Step<Form>& step, Hit& hit) {
       inputs_in(form, step, s);
       return sign * value(load_of(ws, c)) + noise;
     };
-    if (inputs_follow(ws)) step.fit(form);
+    if (inputs_follow(ws)) fit(form, step);
     const double l0 = f(0), l1 = f(1);
     const double s = first_crossing(f, l0, abs(l1) <= 1e-12 * abs(l0) ? 0.0 : l1, hit.s);
     if (!is_first(hit, s)) continue;
-    step.fit(form);
+    fit(form, step);
     hit = {Hit::load, c, s, -1};
   }
 }
@@ -288,7 +288,7 @@ template <class Form>
     const double start = value(ws.here.clearance[l]), end = value(ws.there.clearance[l]);
     const double drift = step.h * larger(abs(value(ws.here.closing[l])), abs(value(ws.there.closing[l])));
     if (smaller(start, end) > larger(abs(end - start), drift)) continue;
-    step.fit(form);
+    fit(form, step);
     const double noise = 1e-12 * torque_size(ws);
     auto f = [&](double s) {
       torques_at(form, step, s);

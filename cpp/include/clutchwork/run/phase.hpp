@@ -52,7 +52,7 @@ class Phase : public Pace<typename Form::Scalar> {
   Phase(Workspace<T>& ws, double t_end, Sink& sink, Tag<Integrator>)
       : Base(ws, t_end, sink), form_(ws), step_(form_), calls_(step_calls<Integrator>(form_)) {
     Base::rows_ = step_.k(0), Base::width_ = form_.n();
-    step_.make_dense = calls_.fit;
+    step_.calls = &calls_;
   }
 
   /// `running`: an event is waiting to be settled.
@@ -239,7 +239,7 @@ class Phase : public Pace<typename Form::Scalar> {
   /// error may agree by chance. docs/theory/events.md, rule 7
   bool misses_rest(const Hit& hit) {
     if (!calls_.stiff || hit.what != Hit::nothing || !nears_rest(ws_)) return false;
-    step_.fit(form_);
+    fit(form_, step_);
     const double missed = error_until(form_, step_, inner);
     if (missed > most_inner_error) return error_ = missed, true;
     look_there();
@@ -256,7 +256,7 @@ class Phase : public Pace<typename Form::Scalar> {
   CLUTCHWORK_INLINE bool write(double s) {
     const bool rows = has_rows(s);
     if (!(rows || ws_.options.work || ws_.options.angles) || s <= 0) return true;
-    step_.fit(form_);
+    fit(form_, step_);
     if (ws_.options.work) fit_power(form_, step_, s);
     const Status shown = rows ? emit(form_, step_, s, time_at(s), sink_) : Status::running;
     if (shown != Status::running) {

@@ -58,14 +58,12 @@ void fit_power(Form& form, Step<Form>& step, double s_end) {
   const int nd = ws.n_directions, np = int(ws.sys.prescribed), n = fitted_powers(ws);
   for (int i = 0; i < 4 * n; ++i) ws.out.power[i] = T(0);
   for (int g = 0; g < 4; ++g) {
-    const double s = gauss.node[g] * s_end, t = step.t + s * step.h;
+    const double s = gauss.node[g] * s_end;
     Snapshot<T> shot{};
-    if (np > 0 || ws.sys.meters > 0) {
+    if (np > 0 || ws.sys.meters > 0)
       shot = take_snapshot(form, step, s);
-    } else {
-      interpolate(form, step, s, step.point());
-      observe(form, t, step.point(), step.slope());
-    }
+    else
+      step.calls->observe(form, step, s);
     auto add = [&](int i, const T& power) {
       for (int j = 0; j < 4; ++j) ws.out.power[j * n + i] += power * Real<T>(gauss.coef[g][j]);
     };

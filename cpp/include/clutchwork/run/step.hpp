@@ -142,14 +142,13 @@ template <class Form>
 double work_error(Form& form, Step<Form>& step) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
-  step.fit(form);
+  fit(form, step);
   T *whole = ws.out.whole, *halves = ws.out.halves;
   for (int k = 0; k < ws.n_branches; ++k) whole[k] = halves[k] = T(0);
   auto add = [&](double start, double width, T* sum) {
     for (int g = 0; g < 4; ++g) {
       const double s = start + width * gauss.node[g];
-      interpolate(form, step, s, step.point());
-      observe(form, step.t + s * step.h, step.point(), step.slope());
+      step.calls->observe(form, step, s);
       for (int k = 0; k < ws.n_branches; ++k)
         sum[k] += T(width * step.h * gauss.weight[g]) * ws.seen.torque[k] * ws.seen.rate[k];
     }
@@ -162,6 +161,13 @@ double work_error(Form& form, Step<Form>& step) {
     error = larger(error, abs(value(whole[k] - halves[k])) / tolerance);
   }
   return error;
+}
+
+/// Rates and torques of the branches at the share s of a step, in ws.seen; the state there is step.point().
+template <class Form>
+[[gnu::noinline]] void observe_inside(Form& form, Step<Form>& step, double s) {
+  interpolate(form, step, s, step.point());
+  observe(form, step.t + s * step.h, step.point(), step.slope());
 }
 
 /// Whether all of a state is finite.

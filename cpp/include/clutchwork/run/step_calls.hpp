@@ -5,20 +5,9 @@
 
 #include <type_traits>
 
-/// What a phase calls in every step. For few speeds it is compiled for each size, and the phase once for all of them.
+/// What a phase calls in every step. For few speeds that is compiled for each size, all else once for all sizes.
 /// docs/theory/integrators.md
 namespace clutchwork {
-
-/// An integrator for a form, and a look at one end of a step.
-template <class Form>
-struct StepCalls {
-  using T = typename Form::Scalar;
-  Real<T> (*advance)(Form& form, Step<Form>& step, Real<T> h);
-  void (*fit)(Form& form, Step<Form>& step);
-  void (*look)(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge);
-  bool stiff;      ///< made for stiff motion
-  double restart;  ///< share of the step before an event with which it starts after it
-};
 
 /// The calls of any form.
 template <class Form, class Integrator>
@@ -28,7 +17,9 @@ struct PlainCalls {
     return Integrator::advance(form, step, h);
   }
   [[gnu::noinline]] static void fit(Form& form, Step<Form>& step) { Integrator::prepare_dense(form, step); }
-  static constexpr StepCalls<Form> all() { return {advance, fit, look<Form>, Integrator::stiff, Integrator::restart}; }
+  static constexpr StepCalls<Form> all() {
+    return {advance, fit, look<Form>, observe_inside<Form>, Integrator::stiff, Integrator::restart};
+  }
 };
 
 /// Those of few speeds for one size, over the rows that any size has.
@@ -40,6 +31,12 @@ struct SizedLook {
     Form form(any.ws);
     Step<Form> step(form);
     look_inline(form, step, t, y, d, dt, edge);
+  }
+  [[gnu::noinline]] static void observe(Any& any, Step<Any>& step, double s) {
+    Form form(any.ws);
+    Step<Form> sized(form);
+    sized.t = step.t, sized.h = step.h;
+    observe_inside(form, sized, s);
   }
 };
 template <class T, class Integrator, int NZ, int NS>
@@ -62,7 +59,8 @@ struct SizedCalls {
     step.dense = true;
   }
   static constexpr StepCalls<Any> all() {
-    return {advance, fit, SizedLook<T, NZ, NS>::look, Integrator::stiff, Integrator::restart};
+    using Sized = SizedLook<T, NZ, NS>;
+    return {advance, fit, Sized::look, Sized::observe, Integrator::stiff, Integrator::restart};
   }
 };
 

@@ -13,7 +13,7 @@ struct Compressed {
   T* val = nullptr;
 
   /// Product of row i and x.
-  CLUTCHWORK_INLINE T times(int i, const T* x) const {
+  CLUTCHWORK_HOT T times(int i, const T* x) const {
     T s = T(0);
     for (int e = first[i]; e < first[i + 1]; ++e) s += val[e] * x[col[e]];
     return s;
@@ -25,7 +25,7 @@ struct Compressed {
     return s;
   }
   /// x += factor times row i.
-  CLUTCHWORK_INLINE void add(int i, T factor, T* x) const {
+  CLUTCHWORK_HOT void add(int i, T factor, T* x) const {
     for (int e = first[i]; e < first[i + 1]; ++e) x[col[e]] += val[e] * factor;
   }
 

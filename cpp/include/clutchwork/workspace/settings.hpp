@@ -19,7 +19,7 @@ struct Poll {
   int (*ask)(void*) = nullptr;
   void* context = nullptr;
 
-  CLUTCHWORK_INLINE bool stops() const { return ask != nullptr && ask(context) != 0; }
+  CLUTCHWORK_HOT bool stops() const { return ask != nullptr && ask(context) != 0; }
 };
 
 }  // namespace clutchwork

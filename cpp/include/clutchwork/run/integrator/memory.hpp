@@ -18,6 +18,21 @@ struct StepRow {
   enum Number : int { y0 = 8, y1, p, f0 = 13, f1, dt0, dt1, u, point, slope };
 };
 
+template <class Form>
+struct Step;
+
+/// What is called in every step: an integrator for a form, and looks at the motion. docs/theory/integrators.md
+template <class Form>
+struct StepCalls {
+  using T = typename Form::Scalar;
+  Real<T> (*advance)(Form& form, Step<Form>& step, Real<T> h);
+  void (*fit)(Form& form, Step<Form>& step);
+  void (*look)(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge);
+  void (*observe)(Form& form, Step<Form>& step, double s);
+  bool stiff;      ///< made for stiff motion
+  double restart;  ///< share of the step before an event with which it starts after it
+};
+
 /// A finished step from y0 to y1 with a quartic between:
 /// (1-s) y0 + s y1 + s (1-s) (p0 + s p1 + s^2 p2), s in [0, 1].
 template <class Form>
@@ -25,13 +40,10 @@ struct Step {
   using T = typename Form::Scalar;
   StepRows<T, Form::fixed_size> rows;
   Real<T> t = 0, h = 0;
-  bool dense = false;                        ///< it has an interpolant
-  void (*make_dense)(Form&, Step&) = nullptr;  ///< what its method makes that of
+  bool dense = false;  ///< it has an interpolant
+  const StepCalls<Form>* calls = nullptr;  ///< of its phase
 
   explicit Step(Form& form) : rows(form.ws, form.n()) {}
-  CLUTCHWORK_HOT void fit(Form& form) {
-    if (!dense) make_dense(form, *this);
-  }
   CLUTCHWORK_HOT T* k(int i) { return rows.row(i); }
   CLUTCHWORK_HOT T* y0() { return rows.row(StepRow::y0); }
   CLUTCHWORK_HOT T* y1() { return rows.row(StepRow::y1); }
@@ -44,6 +56,12 @@ struct Step {
   CLUTCHWORK_HOT T* point() { return rows.row(StepRow::point); }
   CLUTCHWORK_HOT T* slope() { return rows.row(StepRow::slope); }
 };
+
+/// Its interpolant, if it has none yet.
+template <class Form>
+CLUTCHWORK_HOT void fit(Form& form, Step<Form>& step) {
+  if (!step.dense) step.calls->fit(form, step);
+}
 
 /// The state at t + s h into `out`.
 template <class Form, class T = typename Form::Scalar>
