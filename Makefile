@@ -156,7 +156,8 @@ wheel: $(STAMPS)/wheel $(WASM) build/page/stamp
 	@cp build/wheel/good/*.whl dist && cd build/wheel/good && for made in *.whl; do echo "dist/$$made"; done
 
 # the picture at the top of the README
-picture: $(STAMPS)/package $(STAMPS)/plot
+picture: $(STAMPS)/package $(STAMPS)/plot $(WASM) build/page/stamp
+	@$(BIN)/python tools/front_picture.py docs/_static/drag.gif
 	@$(BIN)/python docs/figures/engagement.py docs/_static/engagement.png
 	@$(BIN)/clutchwork draw examples/six_speed/model.toml --at 2.5 --out docs/_static/six_speed.svg
 

@@ -29,7 +29,7 @@ print(cw.Gearbox.load("zf-8hp70").page("gearbox.html"))
 WRITTEN = (
     "shift.html",
     "gearbox.html",
-    "engagement.png",
+    "shift.png",
     "out/demo/shift.png",
     "out/demo/trajectory.csv",
     "out/demo/events.csv",

@@ -50,7 +50,7 @@ def test_the_core_is_not_given_to_a_compiler_that_it_refuses() -> None:
 def test_every_wheel_and_the_sdist_are_tried(jobs: dict[str, Any]) -> None:
     command = WHEELS["test-command"].split()
     assert command == ["python", "{project}/tools/try_installed.py"]
-    assert WHEELS["test-extras"] == ["plot"]
+    assert WHEELS["test-extras"] == ["draw"]
     assert "tools/try_installed.py" in str(jobs["sdist"])
     assert "tools/try_installed.py" in (ROOT / "Makefile").read_text(encoding="utf-8")
 
@@ -67,8 +67,8 @@ def test_only_a_tag_whose_files_are_all_built_is_published(jobs: dict[str, Any])
 def test_what_is_tried_is_the_program_of_the_readme() -> None:
     program = try_installed.first_program(README)
     assert program.startswith("import clutchwork as cw")
-    assert 'run.plot("engagement.png")' in program
-    assert "engagement.png" in try_installed.WRITTEN
+    assert 'path="shift.png"' in program
+    assert "shift.png" in try_installed.WRITTEN
     with pytest.raises(SystemExit, match="no first program"):
         try_installed.first_program("# clutchwork")
 
