@@ -1,4 +1,4 @@
-"""What a sweep may be asked for: outputs as a command line writes them, and the options that it has not."""
+"""What a sweep may be asked for: outputs as a command line writes them, and options of single runs alone."""
 
 from __future__ import annotations
 
