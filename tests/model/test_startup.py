@@ -11,7 +11,7 @@ from support.project import ROOT
 IMPORT = {
     *("base", "base.classes", "base.errors", "base.frozen", "base.shown", "base.text"),
     *("declare", "declare.calls", "declare.core", "declare.docs", "declare.given", "declare.hooks", "declare.layout"),
-    *("declare.node", "declare.pints", "declare.quantity", "declare.rational", "declare.registry", "declare.schema"),
+    *("declare.node", "declare.pints", "declare.quantity", "declare.registry", "declare.schema"),
     *("declare.speech", "declare.unit_table", "declare.unit_words", "declare.units", "declare.wanted"),
     *("face", "face.names", "_core"),
 }
