@@ -19,7 +19,7 @@ SIMULATE = {
     *("assembly.wiring", "base.above", "base.extras", "base.kept", "base.progress", "declare.status"),
     *("results", "results.events", "results.exchange", "results.exchange.exports", "results.held", "results.raster"),
     *("results.state", "results.trajectory"),
-    *("run", "run.begin", "run.control", "run.course", "run.effort", "run.failure", "run.grid", "run.jumps"),
+    *("run", "run.begin", "run.control", "run.effort", "run.failure", "run.grid", "run.jumps"),
     *("run.record", "run.settings", "run.simulation"),
 }
 # rooms with a command of their own

@@ -27,7 +27,6 @@ from clutchwork.results.state import State
 from clutchwork.results.trajectory import SimulationError, Trajectory
 from clutchwork.run.begin import advance, begun, reach, row_of, state_of
 from clutchwork.run.control import Control, controllers
-from clutchwork.run.course import Course
 from clutchwork.run.effort import refuse_endless
 from clutchwork.run.failure import Interrupted, StoppedEarly, explain, report_faults
 from clutchwork.run.grid import output_grid
@@ -39,6 +38,7 @@ if TYPE_CHECKING:
     from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.results.channels import Channels
+    from clutchwork.run.course import Course
 
 Array = NDArray[np.float64]
 
