@@ -162,7 +162,6 @@ wheel: $(STAMPS)/wheel $(WASM) build/page/stamp
 picture: $(STAMPS)/package $(STAMPS)/plot $(WASM) build/page/stamp
 	@$(BIN)/python tools/front_picture.py docs/_static/drag.gif
 	@$(BIN)/python docs/figures/engagement.py docs/_static/engagement.png
-	@$(BIN)/clutchwork draw examples/six_speed/model.toml --at 2.5 --out docs/_static/six_speed.svg
 
 clean:
 	rm -rf $(VENV) build out docs/reference interfaces/page/node_modules src/clutchwork/page/static

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import importlib
 import re
+import sys
 import tomllib
 
 import pytest
 import yaml
+from PIL import Image
 
 from support import cases
 from support.pages import page, plain, table
 from support.project import ROOT
+
+sys.path.append(str(ROOT / "tools"))
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 VALIDATION = page("validation.md")
@@ -55,6 +60,17 @@ def test_pictures_are_small_and_have_words() -> None:
     assert pictures
     assert all(len(words) > 40 for words, _ in pictures)
     assert sum((ROOT / path).stat().st_size for _, path in pictures) < 600_000
+
+
+def test_the_first_picture_is_the_way_of_a_hand_there_and_back() -> None:
+    front_picture = importlib.import_module("front_picture")
+    way = front_picture.way()
+    assert way[0] == (0.0, 0.0)
+    assert way[-1] == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert (min(y for _, y in way), max(y for _, y in way)) == (-front_picture.UP, front_picture.DOWN)
+    with Image.open(ROOT / "docs" / "_static" / "drag.gif") as drawn:
+        assert (drawn.n_frames, drawn.info["loop"]) == (len(way), 0)
+    assert "front_picture.py docs/_static/drag.gif" in (ROOT / "Makefile").read_text(encoding="utf-8")
 
 
 def test_guides_are_reached_from_it() -> None:
