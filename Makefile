@@ -161,14 +161,17 @@ wheel: $(STAMPS)/wheel $(WASM) build/page/stamp
 	else mv build/wheel/raw build/wheel/good; fi
 	@echo "trying it in an environment of its own"
 	@$(PYTHON) -m venv build/wheel/venv
-	@build/wheel/venv/bin/python -m pip --disable-pip-version-check --quiet install "$$(echo build/wheel/good/*.whl)[plot]"
+	@build/wheel/venv/bin/python -m pip --disable-pip-version-check --quiet download --only-binary :all: \
+		--dest build/wheel/index "$$(echo build/wheel/good/*.whl)[draw]"
+	@build/wheel/venv/bin/python -m pip --disable-pip-version-check --quiet \
+		install --no-index --find-links build/wheel/index 'clutchwork[draw]'
 	@build/wheel/venv/bin/python tools/try_installed.py
 	@cp build/wheel/good/*.whl dist && cd build/wheel/good && for made in *.whl; do echo "dist/$$made"; done
 
 # the picture at the top of the README
-picture: $(STAMPS)/package $(STAMPS)/plot
+picture: $(STAMPS)/package $(STAMPS)/plot $(WASM) build/page/stamp
+	@$(BIN)/python tools/front_picture.py docs/_static/drag.gif
 	@$(BIN)/python docs/figures/engagement.py docs/_static/engagement.png
-	@$(BIN)/clutchwork draw examples/six_speed/model.toml --at 2.5 --out docs/_static/six_speed.svg
 
 clean:
 	rm -rf $(VENV) build out docs/reference interfaces/page/node_modules src/clutchwork/page/static

@@ -1,6 +1,6 @@
-"""Run the first program of the README, `clutchwork demo`, a new model and its page with the installed package.
+"""Run the first program of the README, the demo, a gradient, a new model and its page with the installed package.
 
-Usage: PYTHON try_installed.py, where PYTHON has the package, not editable, and matplotlib. All run in an empty folder,
+Usage: PYTHON try_installed.py, where PYTHON has `clutchwork[draw]`, not editable. All run in an empty folder,
 with a PATH that holds no compiler, and see no checkout.
 """
 
@@ -26,10 +26,21 @@ for name in (static.CORE, static.SCRIPT, static.GEARBOX, static.WIDGET, static.S
     print(name, len(static.built(name)))
 print(cw.Gearbox.load("zf-8hp70").page("gearbox.html"))
 """
+# derivatives are a module of their own, and a schematic takes what [draw] brings
+DERIVATIVES = """
+import clutchwork as cw
+d = cw.Driveline("two discs")
+engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8, speed=0.0)
+lining = cw.Coulomb(static=0.1, kinetic=0.1)
+d.add(cw.Clutch("c1", base=engine, follower=load, friction=lining, gain=5e-4, pressure=2e5))
+d.draw("schematic.svg")
+print(d.simulate(2.0).gradient(of=cw.lock("c1"), by=["c1.gain"]))
+"""
 WRITTEN = (
+    "schematic.svg",
     "shift.html",
     "gearbox.html",
-    "engagement.png",
+    "shift.png",
     "out/demo/shift.png",
     "out/demo/trajectory.csv",
     "out/demo/events.csv",
@@ -75,6 +86,7 @@ def main() -> None:
         (folder / "first.py").write_text(first_program((ROOT / "README.md").read_text("utf-8")), encoding="utf-8")
         run(folder, sys.executable, "first.py")
         run(folder, sys.executable, "-c", CATALOGUE)
+        run(folder, sys.executable, "-c", DERIVATIVES)
         command = str(Path(sysconfig.get_path("scripts"), "clutchwork"))
         run(folder, command, "demo")
         run(folder, command, "new")

@@ -1,4 +1,4 @@
-"""Draw the picture at the top of the README from the program in the README: make picture."""
+"""Draw the picture at the top of the documentation from the program below it: make picture."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ import matplotlib as mpl
 mpl.use("agg")
 import matplotlib.pyplot as plt
 
-README = Path(__file__).resolve().parents[2] / "README.md"
+PAGE = Path(__file__).resolve().parents[1] / "index.md"
 
 
 def simulated() -> Any:
-    """The run of the README's program, which is executed without its last line, the plot."""
+    """The run of that program, which is executed without its last line, the plot."""
     source = re.search(
-        r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL
+        r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL
     )
     assert source is not None
     names: dict[str, Any] = {}

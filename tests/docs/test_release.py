@@ -11,9 +11,11 @@ from typing import Any
 import pytest
 import yaml
 
-ROOT = Path(__file__).resolve().parents[2]
+from support.pages import plain
+from support.project import ROOT
+
 sys.path.append(str(ROOT / "tools"))
-import try_installed  # noqa: E402
+import try_installed
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 WHEELS = PROJECT["tool"]["cibuildwheel"]
@@ -30,7 +32,7 @@ def test_wheels_are_built_for_every_python_that_is_promised() -> None:
     built = [int(minor) for minor in re.findall(r"cp3(\d+)-\*", WHEELS["build"])]
     assert built == list(range(built[0], built[-1] + 1))
     assert PROJECT["project"]["requires-python"] == f">=3.{built[0]}"
-    assert f"wheels for Linux, macOS and Windows and Python 3.{built[0]} to 3.{built[-1]}" in README
+    assert f"wheels for Linux, macOS and Windows and Python 3.{built[0]} to 3.{built[-1]}" in plain(README)
 
 
 def test_wheels_are_built_for_every_system_that_is_promised(jobs: dict[str, Any]) -> None:
@@ -50,9 +52,14 @@ def test_the_core_is_not_given_to_a_compiler_that_it_refuses() -> None:
 def test_every_wheel_and_the_sdist_are_tried(jobs: dict[str, Any]) -> None:
     command = WHEELS["test-command"].split()
     assert command == ["python", "{project}/tools/try_installed.py"]
-    assert WHEELS["test-extras"] == ["plot"]
+    assert WHEELS["test-extras"] == ["draw"]
     assert "tools/try_installed.py" in str(jobs["sdist"])
-    assert "tools/try_installed.py" in (ROOT / "Makefile").read_text(encoding="utf-8")
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert "tools/try_installed.py" in makefile
+    # by name, as the README says
+    assert "pip install --find-links dist 'clutchwork[draw]'" in README
+    assert "[draw]" in str(jobs["sdist"])
+    assert re.search(r"install --no-index --find-links \S+ 'clutchwork\[draw\]'", makefile)
 
 
 def test_only_a_tag_whose_files_are_all_built_is_published(jobs: dict[str, Any]) -> None:
@@ -67,8 +74,8 @@ def test_only_a_tag_whose_files_are_all_built_is_published(jobs: dict[str, Any])
 def test_what_is_tried_is_the_program_of_the_readme() -> None:
     program = try_installed.first_program(README)
     assert program.startswith("import clutchwork as cw")
-    assert 'run.plot("engagement.png")' in program
-    assert "engagement.png" in try_installed.WRITTEN
+    assert 'path="shift.png"' in program
+    assert "shift.png" in try_installed.WRITTEN
     with pytest.raises(SystemExit, match="no first program"):
         try_installed.first_program("# clutchwork")
 

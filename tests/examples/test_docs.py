@@ -12,6 +12,8 @@ from typing import Any
 
 import pytest
 
+import clutchwork as cw
+
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = sorted((ROOT / "docs" / "guide").glob("*.md"))
 THEORY = sorted((ROOT / "docs" / "theory").glob("*.md"))
@@ -61,9 +63,21 @@ def run_blocks(path: Path) -> dict[str, Any]:
 
 
 def test_the_program_in_the_readme(elsewhere: Path) -> None:
-    source = blocks(ROOT / "README.md", "python")[0]
+    page = ROOT / "README.md"
+    (source,) = blocks(page, "python")
     assert len(source.splitlines()) <= 12
-    run = run_blocks(ROOT / "README.md")["run"]
+    run = run_blocks(page)["run"]
+    assert [(event.element, event.after) for event in run.events] == [("box.C", "backward"), ("box.D", "locked")]
+    first, last = (event.time for event in run.events)
+    assert f"C lets go at {first:.3f} s and D locks at {last:.3f} s" in page.read_text(encoding="utf-8")
+    # fourth gear
+    ratio = run["turbine.speed"][-1] / run["wheels.speed"][-1]
+    assert ratio == pytest.approx(cw.Gearbox.load("zf-8hp70").ratios["4"], rel=1e-9)
+    assert (elsewhere / "shift.png").stat().st_size > 1000
+
+
+def test_the_program_of_the_first_page(elsewhere: Path) -> None:
+    run = run_blocks(ROOT / "docs" / "index.md")["run"]
     # 1 N m s of impulse while the pressure rises, 16 N m s are needed at 0.16 kg m2 and 100 rad/s
     assert run.events[-1].time == pytest.approx(0.2 + 15.0 / 10.0, abs=1e-6)
     assert run["load.speed"][-1] == pytest.approx(20.0, rel=1e-6)
@@ -77,8 +91,6 @@ def test_the_programs_of_the_guide(path: Path, elsewhere: Path) -> None:
 
 
 def test_the_model_files_of_the_guide(elsewhere: Path) -> None:
-    import clutchwork as cw
-
     page = ROOT / "docs" / "guide" / "model-files.md"
     (elsewhere / "pressures.csv").write_text("time,c1\n0.0,0.0\n1.0,2e5\n")
     models = [text for text in blocks(page, "toml") if "[[shaft]]" in text]

@@ -131,7 +131,7 @@ def test_the_demonstration_without_matplotlib(
     monkeypatch.setattr("clutchwork.command.run.find_spec", lambda name: None)
     assert main(["demo", "--out", str(tmp_path)]) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["events.csv", "trajectory.csv"]
-    assert "clutchwork[plot]" in capsys.readouterr().err
+    assert "clutchwork[draw]" in capsys.readouterr().err
 
 
 def test_the_demonstration_of_a_damaged_installation(

@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from typing import Any
 
 from clutchwork.base.errors import ModelError, ModelFileError
 from clutchwork.base.shell import (
@@ -80,7 +81,7 @@ def parser() -> Parser:
         epilog=f"{example_text(EXAMPLES)}\n\n{code_text()}",
         formatter_class=Help,
     )
-    top.add_argument("--version", action="version", version=_version())
+    top.add_argument("--version", action=_Version, nargs=0, help="show program's version number and exit")
     top.set_defaults(command=None, parser=top, top=top)
     commands = top.add_subparsers(title="commands", metavar="command")
     for own in (new, check, run, plot):
@@ -104,6 +105,15 @@ def _of_file(error: OSError | ImportError) -> str:
     if isinstance(error, OSError) and error.strerror and error.filename:
         return f"{error.filename}: {error.strerror[0].lower()}{error.strerror[1:]}; check the path"
     return str(error)
+
+
+class _Version(argparse.Action):
+    """The version, looked up where it is asked for."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        """Print it and end."""
+        sys.stdout.write(f"{_version()}\n")
+        parser.exit()
 
 
 def _version() -> str:

@@ -6,9 +6,12 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
 from clutchwork.base.progress import MEASURED, followed
-from clutchwork.run.record import Progress
+
+if TYPE_CHECKING:
+    from clutchwork.run.record import Progress
 
 PATIENCE = 0.5  # s of real time before anything is shown
 

@@ -10,7 +10,6 @@ from clutchwork.base.errors import nearest
 from clutchwork.base.shell import DONE, Example, add_command, add_json, paragraphs, tell, tell_json, width
 from clutchwork.base.shown import listed
 from clutchwork.base.text import columns, counted
-from clutchwork.command.toml_example import toml_example
 from clutchwork.declare.docs import Described, described, summary, words
 from clutchwork.declare.purposes import ELEMENT_ROLES, groups
 from clutchwork.declare.schema import Role, specs
@@ -162,10 +161,17 @@ def _page(cls: Any, more: list[str]) -> Iterator[str]:
     states = [(f"  {state.name}", f"[{state.unit}]", state.doc) for state in cls.states] if cls.states else []
     if states:
         yield "\n".join(["states", columns(states[:4]), *(["  ..."] if len(states) > 4 else [])])
-    example = toml_example(cls)
+    example = _example(cls)
     yield f"example\n{example}" if example else "It holds a Python function, so a model file cannot have one."
     if more:
         yield _hanging("see also: ", listed(more))
+
+
+def _example(cls: Any) -> str:
+    """Lines of a model file; what writes these needs numpy, and help does without."""
+    from clutchwork.command.toml_example import toml_example
+
+    return toml_example(cls)
 
 
 def _about(told: Described) -> str:
@@ -184,7 +190,7 @@ def _data(cls: Any, *, whole: bool = False) -> dict[str, Any]:
         "description": words(cls),
         "fields": [described(item, spec)._asdict() for item, spec in specs(cls)],
         "states": [{"name": state.name, "unit": state.unit, "meaning": state.doc} for state in cls.states or ()],
-        "example": toml_example(cls),
+        "example": _example(cls),
     }
 
 

@@ -3,6 +3,8 @@
 A declaration imports what it needs from here; the modules inside import each other.
 """
 
+from typing import TYPE_CHECKING, Any
+
 from clutchwork.declare.node import GAIN_OF_FORCE as GAIN_OF_FORCE
 from clutchwork.declare.node import GAIN_OF_PRESSURE as GAIN_OF_PRESSURE
 from clutchwork.declare.node import HOUSING as HOUSING
@@ -24,7 +26,6 @@ from clutchwork.declare.node import Signal as Signal
 from clutchwork.declare.node import SignalLike as SignalLike
 from clutchwork.declare.node import ThermalNode as ThermalNode
 from clutchwork.declare.node import Work as Work
-from clutchwork.declare.rational import exact as exact
 from clutchwork.declare.schema import Role as Role
 from clutchwork.declare.schema import State as State
 from clutchwork.declare.schema import Way as Way
@@ -45,3 +46,15 @@ from clutchwork.declare.schema import port as port
 from clutchwork.declare.schema import signal as signal
 from clutchwork.declare.schema import text as text
 from clutchwork.declare.speech import say as say
+
+if TYPE_CHECKING:
+    from clutchwork.declare.rational import exact as exact
+else:
+
+    def __getattr__(name: str) -> Any:
+        # fractions are loaded where a model is made
+        if name == "exact":
+            from clutchwork.declare.rational import exact
+
+            return exact
+        raise AttributeError(f"clutchwork.declare has no {name!r}")

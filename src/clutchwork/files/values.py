@@ -56,13 +56,14 @@ class Values:
         return BROKEN
 
     def _unknown(self, data: Iterable[str], known: Any, at: At) -> None:
-        rest = f"known keys: {listed(known)}"
+        told = False
         for key in data:
             if key not in known:
                 # the list of all is only said once, and not where a near one says enough
                 meant = near(key, known)
-                self._report(at.inner(str(key)), "is an unknown key" + meant, remedy="" if meant else rest)
-                rest = rest if meant else ""
+                rest = "" if meant or told else f"known keys: {listed(known)}"
+                self._report(at.inner(str(key)), "is an unknown key" + meant, remedy=rest)
+                told = told or not meant
 
     def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
         """Values of the fields of a declaration, in SI; mistakes are reported."""

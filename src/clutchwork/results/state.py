@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import field
 from numbers import Real
@@ -124,6 +123,9 @@ class State:
 @kept
 def fingerprint(system: System) -> str:
     """What a System is recognised by, found once."""
+    # loads the library of OpenSSL
+    import hashlib
+
     return hashlib.sha256(system.to_bytes()).hexdigest()
 
 

@@ -18,7 +18,6 @@ from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.options import Options
 from clutchwork.declare.status import DONE, NAMES
-from clutchwork.results.channels import Channels, Units, channels
 from clutchwork.results.events import Events
 from clutchwork.results.exchange.exports import Exports
 
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
 
     from clutchwork.assembly.system import System
     from clutchwork.declare.node import Number
+    from clutchwork.results.channels import Channels
     from clutchwork.results.dependence import DependentPhase
     from clutchwork.results.energy import EnergyBalance
     from clutchwork.results.events import Event
@@ -97,6 +97,9 @@ class Trajectory(Exports):
     @property
     def channels(self) -> Channels:
         """Unit and evaluation of every signal."""
+        # loaded where a signal is read: sweeps and scripts that look at events alone need none
+        from clutchwork.results.channels import channels
+
         return channels(self.system, self.options.angles, self.options.work)
 
     @property
@@ -107,6 +110,8 @@ class Trajectory(Exports):
     @cached_property
     def units(self) -> dict[str, str]:
         """Unit of every signal; KeyError with near names, as for a signal."""
+        from clutchwork.results.channels import Units
+
         return Units((name, channel.unit) for name, channel in self.channels.items())
 
     def __getitem__(self, name: str) -> NDArray[Any]:

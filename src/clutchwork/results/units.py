@@ -18,11 +18,9 @@ if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
 
-# a torque is not work, though both are N m
-WORK_OR_TORQUE = {*fitting("N m"), *fitting("J")}
-
-
 UNFIT = "the unit does not fit"
+# a torque is not work, though both are N m
+MISTAKEN = {"N m": "J", "J": "N m"}
 
 
 @dataclass(frozen=True)
@@ -123,6 +121,6 @@ def _fits(unit: object, si: str) -> str:
         message = UNFIT if bad.message.startswith("has a unit") else f"the unit {bad.message}"
         raise QuantityError(message.replace("has the unknown unit", "is unknown:"), shown(unit), remedy) from None
     word = str(unit).strip()
-    if si in ("N m", "J") and word in WORK_OR_TORQUE - {*fitting(si)}:
+    if si in MISTAKEN and word in {*fitting(MISTAKEN[si])} - {*fitting(si)}:
         raise QuantityError(UNFIT, shown(unit), remedy)
     return word

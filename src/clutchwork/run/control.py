@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.results.channels import Channels
 from clutchwork.results.held import Held
 from clutchwork.results.trajectory import SimulationError
 
 if TYPE_CHECKING:
     from clutchwork.assembly.records import Input
+    from clutchwork.results.channels import Channels
 
 
 class Readings(Mapping[str, Any]):

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.declare.layout import EVENT
 from clutchwork.declare.status import DONE, EVENTS_FULL, INTERRUPTED, ROWS_FULL
-from clutchwork.run.course import Course
+
+if TYPE_CHECKING:
+    from clutchwork.run.course import Course
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, float], None]

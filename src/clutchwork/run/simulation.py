@@ -22,13 +22,11 @@ from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options, instants
 from clutchwork.declare.status import DONE, INTERRUPTED, NAMES, NOT_FINITE
-from clutchwork.results.channels import channels
 from clutchwork.results.events import from_rows
 from clutchwork.results.state import State
 from clutchwork.results.trajectory import SimulationError, Trajectory
 from clutchwork.run.begin import advance, begun, reach, row_of, state_of
 from clutchwork.run.control import Control, controllers
-from clutchwork.run.course import Course
 from clutchwork.run.effort import refuse_endless
 from clutchwork.run.failure import Interrupted, StoppedEarly, explain, report_faults
 from clutchwork.run.grid import output_grid
@@ -39,6 +37,8 @@ from clutchwork.run.settings import merged
 if TYPE_CHECKING:
     from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
+    from clutchwork.results.channels import Channels
+    from clutchwork.run.course import Course
 
 Array = NDArray[np.float64]
 
@@ -128,12 +128,19 @@ def simulate(
     refuse_endless(system.inputs, chosen.t_start, end, chosen.max_steps)
     held, changed = (start.held, start.changed) if start else ({}, {})
     asked, first = controllers(system.inputs, held), start.before if start else None
-    control = Control(asked, partial(channels, system), held=held, changed=changed, first=first)
+    control = Control(asked, partial(_channels, system), held=held, changed=changed, first=first)
     asks = "(time, t_end)"
     with followed(progress, end, "simulate", asks, chosen.t_start, bar_format=MEASURED, unit="s") as told:
         run = trajectory(Job(system, end, chosen, control, start), told)
     report_faults(run)
     return run
+
+
+def _channels(system: System) -> Channels:
+    # loaded where a controller reads a signal
+    from clutchwork.results.channels import channels
+
+    return channels(system, True, True)
 
 
 def model_of(call: str, model: Assembles | System, options: object = None) -> System:

@@ -83,7 +83,7 @@ def overview(found: Sequence[ShiftQuality], path: str | Path, *, names: Sequence
     if not found:
         raise UseError("cw.shifts.overview", ["there is no shift to draw; give what cw.shifts.qualities returned"])
     where = target("cw.shifts.overview", path, "shifts.png", (".png", ".svg", ".pdf"))
-    figures = need("matplotlib.figure", "plot", "cw.shifts.overview")
+    figures = need("matplotlib.figure", "draw", "cw.shifts.overview")
     figure = figures.Figure(figsize=(max(5.0, 0.55 * len(found) + 2.0), 7.0), layout="constrained")
     axes = figure.subplots(3, 1, sharex=True)
     places = np.arange(len(found))

@@ -12,6 +12,7 @@ from clutchwork.base.shown import shown
 from clutchwork.declare.options import Options
 from clutchwork.run.effort import refuse_endless
 from clutchwork.run.settings import merged
+from clutchwork.sweeps.asking import ROWS
 from clutchwork.sweeps.axes import Plan
 from clutchwork.sweeps.mistakes import few
 from clutchwork.sweeps.outputs import asked
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from clutchwork.sweeps.outputs import Output
     from clutchwork.sweeps.variants import Source
 
-# options that say which rows a single run has
-ROWS = ("dt", "times", "output", "points")
 # so many values of a name are all looked at before the first run
 MOST_LOOKED_AT = 64
 

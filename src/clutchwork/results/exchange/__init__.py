@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.errors import ClutchworkError, near
 from clutchwork.base.paths import fitting, made
 from clutchwork.base.shown import shown
-from clutchwork.results.exchange.content import Content, content
 
 if TYPE_CHECKING:
+    from clutchwork.results.exchange.content import Content
     from clutchwork.results.recorded import Recorded
 
 # name of the format by ending of the file
@@ -47,6 +47,9 @@ def write(
     computed, not interpolated, all of the run by default; units, other ones than those of SI by signal; form,
     a format in place of that of the ending.
     """
+    # every run imports this package, few are written
+    from clutchwork.results.exchange.content import content
+
     example = next(ending for ending, one in ENDINGS.items() if not form or one == form)
     path = fitting(f"run.to_{form}" if form else "run.write", path, f"run{example}")
     found = _format(path, form)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -101,6 +100,9 @@ class Content:
 
 def program() -> str:
     """Name and version of what wrote a file."""
+    # brings some fifty modules
+    from importlib.metadata import PackageNotFoundError, version
+
     try:
         return f"clutchwork {version('clutchwork')}"
     except PackageNotFoundError:

@@ -9,7 +9,7 @@ import numpy as np
 
 from clutchwork.base.errors import FileError, near
 from clutchwork.base.shown import listed, shown
-from clutchwork.signals.bases import column_file
+from clutchwork.signals.bases import column_file, sheets
 from clutchwork.signals.bases.column_file import MOST_FAULTS, MOST_LINES, Values, Wanted
 from clutchwork.signals.bases.column_heads import Head
 from clutchwork.signals.bases.measured.formats import format_of, opened
@@ -21,7 +21,8 @@ Faults = list[tuple[str, str, str]]
 def read(path: Path, wanted: Wanted) -> Values:
     """The column of a file; FileError names what is wrong with the file, up to a few mistakes."""
     try:
-        form = format_of(path)
+        # what was read as a sheet is a CSV file
+        form = "" if sheets.known(path) else format_of(path)
     except OSError:
         form = ""
     if not form:
