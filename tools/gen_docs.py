@@ -51,7 +51,6 @@ def write(folder: Path) -> list[Path]:
     texts |= {"laws": "\n".join(_overview(laws)), "options": option_page.page(), "parts": parts_page.page()}
     texts |= {"gearboxes": gearbox_page.page()}
     texts |= {f"laws/{kind}": "\n".join(_law(kind, cls)) for kind, cls in laws}
-    (folder / "chooser.html").write_text(gearbox_page.chooser(), encoding="utf-8")
     for picture in element_figures.KEPT.glob("*.svg"):
         shutil.copy2(picture, folder / "elements" / f"{picture.stem.rpartition('-')[0]}.svg")
     return [_write(folder / f"{name}.md", text) for name, text in texts.items()]
@@ -148,7 +147,7 @@ def _symbols(cls: type) -> str:
 
 def _equations(kind: str) -> str:
     """The section of a law in the theory, without labels, which stay unique; the numbers are named instead."""
-    sections = re.split(r"^\(law-(\w+)\)=\n## .*\n", THEORY.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    sections = re.split(r'^<a id="law-(\w+)"></a>\n## .*\n', THEORY.read_text(encoding="utf-8"), flags=re.MULTILINE)
     found = dict(zip(sections[1::2], sections[2::2], strict=True))
     if kind not in found:
         return "They stand in the header that is named above."
