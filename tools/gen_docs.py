@@ -154,6 +154,7 @@ def _equations(kind: str) -> str:
     text = found[kind].partition("\n## ")[0].strip()
     labels = re.findall(r"^\$\$ \((friction-laws-\d+)\)$", text, re.MULTILINE)
     text = re.sub(r"^\$\$ \(friction-laws-\d+\)$", "$$", text, flags=re.MULTILINE)
+    text = re.sub(r"\]\(([\w-]+\.md)", r"](../../theory/\1", text)
     numbers = ", ".join(f"{{eq}}`{label}`" for label in labels)
     return f"{text}\n\nNumbers of these equations in the {{ref}}`theory <law-{kind}>`: {numbers}."
 
