@@ -17,7 +17,8 @@ def wanted(page: Path, path: str, name: str | None) -> str:
     if name is None:
         return text
     (node,) = (one for one in ast.parse(text).body if getattr(one, "name", "") == name)
-    return "".join(text.splitlines(keepends=True)[node.lineno - 1 : node.end_lineno])
+    first = min(one.lineno for one in (node, *getattr(node, "decorator_list", ())))
+    return "".join(text.splitlines(keepends=True)[first - 1 : node.end_lineno])
 
 
 def updated(page: Path) -> str:

@@ -90,8 +90,11 @@ def test_texts_that_a_page_includes_are_as_they_are_there(path: Path) -> None:
 
 
 def test_the_source_of_a_class_is_included(tmp_path: Path) -> None:
-    (tmp_path / "a.py").write_text("import os\n\n\nclass A:\n    x = 1\n\n\ny = 2\n")
+    (tmp_path / "a.py").write_text("import os\n\n\n@made\nclass A:\n    x = 1\n\n\ny = 2\n")
     page = tmp_path / "page.md"
     page.write_text("<!-- from a.py: A -->\n```py\nold\n```\n\nand\n\n```py\nas it is\n```\n")
     included.update(page)
-    assert page.read_text() == "<!-- from a.py: A -->\n```py\nclass A:\n    x = 1\n```\n\nand\n\n```py\nas it is\n```\n"
+    assert (
+        page.read_text()
+        == "<!-- from a.py: A -->\n```py\n@made\nclass A:\n    x = 1\n```\n\nand\n\n```py\nas it is\n```\n"
+    )
