@@ -7,6 +7,7 @@
 #   make wheel    a wheel for other machines like this one, tried without a compiler: dist/
 #   make page     the script of pages that compute (needs node): src/clutchwork/page/static/
 #   make docs     the documentation: build/docs/index.html
+#   make pictures the pictures of the guides that something has changed for: docs/pictures/
 #   make setup    the environment alone
 #   make clean    removes .venv, build and out
 
@@ -37,11 +38,11 @@ PAGE := $(if $(NODE),build/page/stamp)
 PAGE_SOURCES := $(wildcard interfaces/page/*.* interfaces/page/src/*)
 CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*.cpp' 'interfaces/*.hpp' 'tests/cpp/*.cpp' 'tests/cpp/*.hpp')
 
-.PHONY: help setup demo test test-cpp test-python page test-page check-page check format bench wasm wheel docs picture clean
+.PHONY: help setup demo test test-cpp test-python page test-page check-page check format bench wasm wheel docs picture pictures clean
 .DELETE_ON_ERROR:
 
 help:
-	@sed -n '2,10p' Makefile | cut -c 3-
+	@sed -n '2,11p' Makefile | cut -c 3-
 
 # ---------------------------------------------------------------- environment
 
@@ -140,7 +141,7 @@ bench: $(STAMPS)/package $(STAMPS)/bench
 	@$(BIN)/python -m benchmarks $(ARGS)
 
 docs: $(STAMPS)/package $(STAMPS)/docs $(WASM) $(PAGE)
-	@$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/docs
+	@JOBS=$(JOBS) $(BIN)/python -m sphinx -W --keep-going -q --jobs $(JOBS) -b html -d build/doctrees docs build/docs
 	@echo "build/docs/index.html"
 
 wasm: $(WASM)
@@ -167,6 +168,10 @@ wheel: $(STAMPS)/wheel $(WASM) build/page/stamp
 		install --no-index --find-links build/wheel/index 'clutchwork[draw]'
 	@build/wheel/venv/bin/python tools/try_installed.py
 	@cp build/wheel/good/*.whl dist && cd build/wheel/good && for made in *.whl; do echo "dist/$$made"; done
+
+# those of the guides that are missing or stale; ARGS=--all draws all of them
+pictures: $(STAMPS)/package $(STAMPS)/docs
+	@JOBS=$(JOBS) $(BIN)/python docs/figures/committed.py $(ARGS)
 
 # the picture at the top of the README
 picture: $(STAMPS)/package $(STAMPS)/plot $(WASM) build/page/stamp

@@ -8,41 +8,18 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "tools"), str(HERE / "figures"), str(HERE)]
 
-import calibrations  # noqa: E402
-import drawings  # noqa: E402
-import experiments  # noqa: E402
-import gearboxes  # noqa: E402
-import kept  # noqa: E402
-import launches  # noqa: E402
 import live  # noqa: E402
-import schematics  # noqa: E402
-import shuffle  # noqa: E402
-import stories  # noqa: E402
 
 import clutchwork  # noqa: E402
-import examples  # noqa: E402
+import element_figures  # noqa: E402
 import gen_docs  # noqa: E402
 import gen_lists  # noqa: E402
 import parity  # noqa: E402
-import shifts  # noqa: E402
-import studies  # noqa: E402
-import sweeps  # noqa: E402
 
+element_figures.draw_all()
 gen_docs.write(HERE / "reference")
 gen_lists.write(HERE / "reference")
-kept.write(experiments.write, HERE / "reference" / "rig")
-kept.write(launches.write, HERE / "reference" / "car")
-kept.write(calibrations.write, HERE / "reference" / "calibrations")
-kept.write(live.write, HERE / "reference" / "pages", live.built())
-kept.write(studies.write, HERE / "reference" / "studies")
-kept.write(sweeps.write, HERE / "reference" / "sweeps")
-kept.write(drawings.write, HERE / "reference" / "pictures")
-kept.write(schematics.write, HERE / "reference" / "schematics")
-kept.write(gearboxes.write, HERE / "reference" / "diagrams")
-kept.write(shifts.write, HERE / "reference" / "shifts")
-kept.write(examples.write, HERE / "reference" / "examples")
-kept.write(stories.write, HERE / "reference" / "stories")
-kept.write(shuffle.write, HERE / "reference" / "linear")
+live.write(HERE / "reference" / "pages")
 parity.write(HERE / "reference")
 
 # what is public is documented by its public name, wherever it is defined
@@ -55,9 +32,15 @@ author = "the clutchwork authors"
 copyright = "the clutchwork authors, Apache-2.0"
 release = version = clutchwork.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_design", "mathml"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "mathml", "forge"]
 source_suffix = {".md": "markdown"}
-exclude_patterns = ["_build", "elements", "reference/pages", "fingerprint"]
+exclude_patterns = [
+    "_build",
+    "elements",
+    "reference/pages",
+    "*.fingerprint",
+    "**/*.fingerprint",
+]
 nitpicky = False
 
 myst_enable_extensions = [

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cache
+from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,9 +19,10 @@ from matplotlib.figure import Figure
 import clutchwork
 from clutchwork.declare.core import core as load_core
 from clutchwork.declare.node import Domain
+from clutchwork.declare.purposes import ELEMENT_ROLES, groups
 from clutchwork.results.plot.panels import scale
 from clutchwork.results.plot.style import COLOURS, EVENT_LINE, MILLIMETRE, RC
-from element_programs import performed
+from element_programs import performed, program
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,6 +61,14 @@ def example(cls: Any, source: str) -> Example:
     signals = tuple((name, unit) for name, unit in said["signals"])
     parts = tuple((name, kind) for name, kind in said["parts"])
     return Example(kept.with_suffix(".svg"), said["name"], tuple(said["given"]), signals, parts)
+
+
+def draw_all() -> None:
+    """Draw the pictures of all elements that are not kept, by all cores."""
+    classes = [cls for kinds in groups(*ELEMENT_ROLES).values() for cls in kinds.values()]
+    todo = [(cls, program(cls)) for cls in classes]
+    with ProcessPoolExecutor(int(os.environ.get("JOBS") or os.cpu_count() or 1), get_context("spawn")) as pool:
+        list(pool.map(example, *zip(*todo, strict=True), chunksize=4))
 
 
 @cache

@@ -51,7 +51,6 @@ def write(folder: Path) -> list[Path]:
     texts |= {"laws": "\n".join(_overview(laws)), "options": option_page.page(), "parts": parts_page.page()}
     texts |= {"gearboxes": gearbox_page.page()}
     texts |= {f"laws/{kind}": "\n".join(_law(kind, cls)) for kind, cls in laws}
-    (folder / "chooser.html").write_text(gearbox_page.chooser(), encoding="utf-8")
     for picture in element_figures.KEPT.glob("*.svg"):
         shutil.copy2(picture, folder / "elements" / f"{picture.stem.rpartition('-')[0]}.svg")
     return [_write(folder / f"{name}.md", text) for name, text in texts.items()]
@@ -148,13 +147,14 @@ def _symbols(cls: type) -> str:
 
 def _equations(kind: str) -> str:
     """The section of a law in the theory, without labels, which stay unique; the numbers are named instead."""
-    sections = re.split(r"^\(law-(\w+)\)=\n## .*\n", THEORY.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    sections = re.split(r'^<a id="law-(\w+)"></a>\n## .*\n', THEORY.read_text(encoding="utf-8"), flags=re.MULTILINE)
     found = dict(zip(sections[1::2], sections[2::2], strict=True))
     if kind not in found:
         return "They stand in the header that is named above."
     text = found[kind].partition("\n## ")[0].strip()
     labels = re.findall(r"^\$\$ \((friction-laws-\d+)\)$", text, re.MULTILINE)
     text = re.sub(r"^\$\$ \(friction-laws-\d+\)$", "$$", text, flags=re.MULTILINE)
+    text = re.sub(r"\]\(([\w-]+\.md)", r"](../../theory/\1", text)
     numbers = ", ".join(f"{{eq}}`{label}`" for label in labels)
     return f"{text}\n\nNumbers of these equations in the {{ref}}`theory <law-{kind}>`: {numbers}."
 

@@ -1,4 +1,4 @@
-"""Draw the pictures of examples that have none on a page of their own, for the documentation, whose build calls this."""
+"""Draw the pictures of examples that have none on a page of their own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Draw the pictures of the rig for the documentation, whose build calls this; they are never committed."""
+"""Draw the pictures of the rig."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Draw the gearboxes of the documentation, whose build calls this; they are never committed."""
+"""Draw the gearboxes of the documentation."""
 
 from __future__ import annotations
 

@@ -1,51 +1,56 @@
-"""Pictures that are drawn anew only when something has changed that they may depend on."""
+"""Files that are made anew only when something has changed that they may depend on, by all cores."""
 
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Callable, Iterable
-from functools import cache
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
-import stories
 
-import clutchwork
-from clutchwork.declare.core import core
-
-ROOT = Path(__file__).resolve().parents[2]
-PAGES = (*stories.PAGES, "linearise", "pictures")
-
-
-@cache
-def fingerprint() -> str:
-    """Fingerprint of the package, its core, the examples and what draws."""
-    folders = (
-        Path(clutchwork.__file__).parent,
-        ROOT / "examples",
-        ROOT / "docs" / "figures",
-        ROOT / "tools",
-    )
-    files = [
-        Path(core().__file__),
-        # their programs draw their pictures
-        *(ROOT / "docs" / "guide" / f"{name}.md" for name in PAGES),
-        *(file for folder in folders for file in sorted(folder.rglob("*.py"))),
-        *sorted(Path(clutchwork.__file__).parent.rglob("gearbox/catalogue/*.toml")),
+def fingerprint(files: Iterable[Path]) -> str:
+    """Fingerprint of files, or of all files of folders."""
+    found = [
+        file
+        for path in files
+        for file in ([path] if path.is_file() else path.rglob("*.*"))
     ]
-    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
+    known = sorted(
+        {
+            file
+            for file in found
+            if file.is_file() and file.suffix not in (".pyc", ".pyi")
+        }
+    )
+    return hashlib.sha256(b"".join(file.read_bytes() for file in known)).hexdigest()
 
 
 def write(
-    draw: Callable[[Path], list[Path]], folder: Path, also: Iterable[Path] = ()
+    makes: Callable[[str, Path], None], paths: Iterable[Path], files: Iterable[Path]
 ) -> None:
-    """Let a function write its pictures into a folder, unless those there are of the same fingerprint.
+    """Let a function make each file by its stem, unless it is there and what all are made from has not changed.
 
-    Parameters: also, other files that they depend on.
+    Parameters: paths, what to make, in one folder; files, what they are made from.
     """
-    mark = folder / "fingerprint"
-    known = [hashlib.sha256(file.read_bytes()).hexdigest() for file in sorted(also)]
-    now = " ".join([fingerprint(), *known])
-    if mark.exists() and mark.read_text() == now:
+    wanted = list(paths)
+    mark = wanted[0].parent / f"{makes.__name__}.fingerprint"
+    now = fingerprint(files)
+    kept = mark.exists() and mark.read_text() == now
+    todo = [path for path in wanted if not (kept and path.exists())]
+    if not todo:
         return
-    draw(folder)
+    mark.parent.mkdir(parents=True, exist_ok=True)
+    mark.unlink(missing_ok=True)
+    each([(makes, path.stem, path) for path in todo])
     mark.write_text(now)
+
+
+def each(calls: Iterable[tuple[Callable[..., None], *tuple[object, ...]]]) -> None:
+    """Call functions, each with what follows it, in as many processes as there are cores."""
+    todo = list(calls)
+    workers = min(int(os.environ.get("JOBS") or os.cpu_count() or 1), len(todo))
+    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
+        for done in [pool.submit(*call) for call in todo]:
+            done.result()

@@ -1,4 +1,4 @@
-"""Draw the pictures of the car for the documentation, whose build calls this; they are never committed."""
+"""Draw the pictures of the car."""
 
 from __future__ import annotations
 

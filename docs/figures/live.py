@@ -1,15 +1,19 @@
-"""Make the pages that compute for the documentation, whose build calls this; they are never committed."""
+"""Make the pages that compute."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
+import kept
+
 import clutchwork as cw
+from clutchwork.declare.core import core
 from clutchwork.page import static
 from clutchwork.page.static import missing
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+PACKAGE = Path(cw.__file__).parent
 sys.path[:0] = [str(EXAMPLES / "calibrate_shift"), str(EXAMPLES.parent / "tools")]
 
 import calibrate_shift  # noqa: E402
@@ -21,17 +25,21 @@ NOT_BUILT = (
 )
 
 
+def shift_run() -> cw.Trajectory:
+    """The launch and shift of the front page."""
+    return cw.Driveline.load(EXAMPLES / "six_speed" / "model.toml").simulate()
+
+
 def shift(path: Path) -> None:
     """The shift of the front page."""
-    run = cw.Driveline.load(EXAMPLES / "six_speed" / "model.toml").simulate()
-    run.page(
+    shift_run().page(
         path,
         drag=["F1.pressure", "F2.pressure"],
         show=["w1.speed", "w8.speed", "F1.slip", "F1.torque", "F2.torque"],
     )
 
 
-def stick_slip(path: Path) -> None:
+def stick_slip_run() -> cw.Trajectory:
     """A block on a belt, held by a spring."""
     d = cw.Driveline("block on a belt")
     block = d.mass("block", mass=1.0)
@@ -59,7 +67,12 @@ def stick_slip(path: Path) -> None:
             normal_force=10.0,
         )
     )
-    d.simulate(10.0).page(
+    return d.simulate(10.0)
+
+
+def stick_slip(path: Path) -> None:
+    """The block on a belt, whose speed is dragged."""
+    stick_slip_run().page(
         path,
         drag=["drive.speed"],
         sliders=[
@@ -72,7 +85,7 @@ def stick_slip(path: Path) -> None:
     )
 
 
-def hysteresis(path: Path) -> None:
+def hysteresis_run() -> cw.Trajectory:
     """A contact that is moved back and forth before it slides."""
     d = cw.Driveline("small movements")
     plate = d.shaft("plate", inertia=1.0)
@@ -93,7 +106,12 @@ def hysteresis(path: Path) -> None:
         static=0.15, kinetic=0.1, speed=1e-3, stiffness=400.0, damping=0.9, viscous=0.5
     )
     d.add(cw.Brake("contact", shaft=plate, friction=law, gain=1.0, normal_force=100.0))
-    d.simulate(4.0).page(
+    return d.simulate(4.0)
+
+
+def hysteresis(path: Path) -> None:
+    """The contact that is moved back and forth, whose law is turned."""
+    hysteresis_run().page(
         path,
         drag=[],
         sliders=[
@@ -106,11 +124,15 @@ def hysteresis(path: Path) -> None:
     )
 
 
+def calibrated_run() -> cw.Trajectory:
+    """The shift of examples/calibrate_shift before it is calibrated."""
+    case = calibrate_shift.eight_speed()
+    return cw.simulate(case.system, case.t_end)
+
+
 def calibrated(path: Path) -> None:
     """The shift of examples/calibrate_shift, by hand."""
-    case = calibrate_shift.eight_speed()
-    run = cw.simulate(case.system, case.t_end)
-    run.page(
+    calibrated_run().page(
         path,
         drag=["gearbox.C.pressure", "gearbox.E.pressure"],
         sliders=["gearbox.C.gain"],
@@ -126,31 +148,37 @@ PAGES = {
 }
 
 
-def built() -> list[Path]:
-    """Files that all pages are made of, as far as they are there."""
-    return [
-        path
-        for path in static.FOLDER.glob("*")
-        if path.suffix in (".js", ".css", ".wasm")
-    ]
-
-
 def _names() -> list[str]:
     return [*PAGES, *(f"law-{kind}" for kind in law_pages.kinds()), *cw.catalogue()]
 
 
+def computing(name: str, path: Path) -> None:
+    """Write the page of a model or of a law."""
+    if name in PAGES:
+        PAGES[name](path)
+    else:
+        law_pages.write(name.removeprefix("law-"), path)
+
+
+def gearbox(name: str, path: Path) -> None:
+    """Write the page of a gearbox of the catalogue."""
+    cw.catalogue()[name].page(path)
+
+
 def write(folder: Path) -> list[Path]:
-    """All pages, below `live` of the folder, as they are in the documentation."""
+    """All pages, below `live` of the folder, as they are in the documentation; those that have not changed are kept."""
     made = [folder / "live" / f"{name}.html" for name in _names()]
     made[0].parent.mkdir(parents=True, exist_ok=True)
     if missing():
         for path in made:
             path.write_text(NOT_BUILT, encoding="utf-8")
         return made
-    for name, page in PAGES.items():
-        page(folder / "live" / f"{name}.html")
-    for kind in law_pages.kinds():
-        law_pages.write(kind, folder / "live" / f"law-{kind}.html")
-    for name, box in cw.catalogue().items():
-        box.page(folder / "live" / f"{name}.html")
+    boxes = [path for path in made if path.stem in cw.catalogue()]
+    own = (Path(__file__), static.FOLDER)
+    # a gearbox is drawn without the core
+    rooms = (PACKAGE / name for name in ("base", "diagrams", "gearbox", "page"))
+    kept.write(gearbox, boxes, (*own, *rooms))
+    others = [path for path in made if path not in boxes]
+    programs = (EXAMPLES, EXAMPLES.parent / "tools")
+    kept.write(computing, others, (*own, PACKAGE, Path(core().__file__), *programs))
     return made

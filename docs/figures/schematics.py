@@ -1,4 +1,4 @@
-"""Draw the schematics of the documentation, whose build calls this; they are never committed."""
+"""Draw the schematics of the documentation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shifts of three gearboxes and the eight-speed car, for the documentation, whose build calls this."""
+"""Shifts of three gearboxes and the eight-speed car."""
 
 from __future__ import annotations
 

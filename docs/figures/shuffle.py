@@ -1,13 +1,13 @@
-"""Draw the picture of the car that is linearised, whose model is that of the guide; it is never committed."""
+"""Draw the picture of the car that is linearised, whose model is that of the guide."""
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from groups import programs
 
 import clutchwork as cw
 from clutchwork.results.plot.figure import figure_of
@@ -15,19 +15,14 @@ from clutchwork.results.plot.style import COLOURS
 
 mpl.use("agg")
 
-GUIDE = Path(__file__).resolve().parents[1] / "guide" / "linearise.md"
 FORCE = 1400.0  # N
 
 
 def model() -> Any:
     """The function of the guide that builds the car."""
-    (source, *_) = re.findall(
-        r"^```python\n(.*?)^```",
-        GUIDE.read_text(encoding="utf-8"),
-        re.DOTALL | re.MULTILINE,
-    )
+    source, *_ = programs("linearise")
     names: dict[str, Any] = {}
-    exec(compile(source.partition("\nlocked =")[0], str(GUIDE), "exec"), names)
+    exec(source.partition("\nlocked =")[0], names)
     return names["car"]
 
 

@@ -1,4 +1,4 @@
-"""Draw the picture of the sweep for the documentation, whose build calls this; it is never committed."""
+"""Draw the picture of the sweep."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ def test_the_chooser_has_a_label_and_asks_for_nothing_else() -> None:
     assert '<label for="gearbox">' in made
     assert '<select id="gearbox">' in made
     assert not re.search(r"https?:|//", re.sub(r"^\s*//.*$", "", made, flags=re.MULTILINE))
-    assert ":file: ../reference/chooser.html" in (ROOT / "docs/guide/gearboxes.md").read_text(encoding="utf-8")
+    assert "](../../tools/gearbox_page.py)" in (ROOT / "docs/guide/gearboxes.md").read_text(encoding="utf-8")
 
 
 def test_the_pages_are_those_of_the_catalogue() -> None:

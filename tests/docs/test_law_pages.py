@@ -132,4 +132,4 @@ def test_the_reference_and_the_guide_show_it(kind: str) -> None:
     page = "\n".join(gen_docs._law(kind, REGISTRY[Role.LAW][kind]))
     assert f'src="../../live/law-{kind}.html#compact"' in page
     guide = (ROOT / "docs/guide/choose-a-friction-law.md").read_text(encoding="utf-8")
-    assert f"../reference/laws/{kind}.md#turn-the-parameters" in guide
+    assert f"../../src/clutchwork/laws/{kind}.py#turn-the-parameters" in guide

@@ -58,7 +58,10 @@ def prose(name: str) -> str:
     text = page(name).partition("\n## Sources")[0]
     text = re.sub(r"^\|.*$|^\d+\. ", "", text, flags=re.MULTILINE)
     text = re.sub(
-        r"\{eq\}`[^`]*`|\$\$ \([\w-]+\)|`[^`]*`|\brules? \d+|\*\*Rule \d+\.\*\*", "", text, flags=re.IGNORECASE
+        r"\[\([\w-]+\)\]\([^)]*\)|\$\$ \([\w-]+\)|`[^`]*`|\brules? \d+|\*\*Rule \d+\.\*\*",
+        "",
+        text,
+        flags=re.IGNORECASE,
     )
     return " ".join(text.split())
 

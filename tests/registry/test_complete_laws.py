@@ -6,7 +6,6 @@ reason of its skipped test below says what it lacks to become one of ours.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -49,7 +48,7 @@ def _has_a_source(cls: Any) -> bool:
 
 def _has_a_section(cls: Any) -> bool:
     theory = (ROOT / "docs" / "theory" / "friction-laws.md").read_text(encoding="utf-8")
-    return re.search(rf"^\(law-{cls.kind}\)=$", theory, re.MULTILINE) is not None
+    return f'\n<a id="law-{cls.kind}"></a>\n## ' in theory
 
 
 def _sticks(cls: Any) -> bool:
@@ -71,7 +70,7 @@ def _any(_: Any) -> bool:
 # name, where it belongs, which laws need it, which have it
 NEEDS: tuple[tuple[str, str, Callable[[Any], bool], Callable[[Any], bool]], ...] = (
     ("source", 'a "doi:10..." in its docstring', _any, _has_a_source),
-    ("theory", "a section (law-{kind})= in docs/theory/friction-laws.md", _any, _has_a_section),
+    ("theory", 'a section <a id="law-{kind}"></a> in docs/theory/friction-laws.md', _any, _has_a_section),
     (
         "closed form",
         "numbers and the time to stop in tests/support/friction/closed_forms.py",
@@ -138,4 +137,4 @@ def test_what_a_bare_law_lacks_is_all_named() -> None:
         kind, sticks = "bare", False
 
     assert set(lacking(Bare)) == {"source", "theory", "counterpart", "drift test", "dissipation"}
-    assert "(law-bare)=" in lacking(Bare)["theory"]
+    assert '"law-bare"' in lacking(Bare)["theory"]

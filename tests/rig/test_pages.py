@@ -27,6 +27,6 @@ def test_every_experiment_has_its_place_in_the_guide(root: Path) -> None:
     page = (root / "docs" / "guide" / "rig.md").read_text(encoding="utf-8")
     for name in rig.EXPERIMENTS:
         assert f"\n### {name}\n" in page
-        assert f"(../reference/rig/{name}.png)" in page
+        assert f"(../pictures/rig/{name}.png)" in page
     for name in rig.PRESETS:
         assert f"| `{name}` |" in page
