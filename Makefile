@@ -46,7 +46,7 @@ help:
 
 # ---------------------------------------------------------------- environment
 
-setup: $(STAMPS)/package $(STAMPS)/plot
+setup: $(STAMPS)/package $(STAMPS)/draw
 
 $(STAMPS)/venv: tools/prerequisites.sh
 	@tools/prerequisites.sh $(PYTHON) $(CXX)
@@ -56,7 +56,7 @@ $(STAMPS)/venv: tools/prerequisites.sh
 	@touch $@
 
 # a stamp for each purpose, named as its extra in pyproject.toml
-EXTRAS := build plot test check docs bench wasm wheel
+EXTRAS := build plot draw test check docs bench wasm wheel
 $(EXTRAS:%=$(STAMPS)/%): $(STAMPS)/%: $(STAMPS)/venv pyproject.toml tools/extras.py
 	@echo "installing what '$*' needs"
 	@$(BIN)/python tools/extras.py $* | $(PIP) install --no-compile --requirement /dev/stdin
@@ -74,6 +74,7 @@ $(STAMPS)/package: $(STAMPS)/build $(CORE_SOURCES)
 # the same without derivatives, which take as long to compile as all the rest; what it is drawn with comes meanwhile
 $(STAMPS)/core: $(STAMPS)/build $(CORE_SOURCES)
 	@echo "building and installing the core of clutchwork, and what pictures are drawn with"
+	@mkdir -p build
 	@$(MAKE) --no-print-directory $(STAMPS)/plot >build/plot.log 2>&1 & \
 	$(INSTALL) --config-settings=cmake.define.CLUTCHWORK_DERIVATIVES=OFF --editable . && wait
 	@touch $@
