@@ -3,7 +3,6 @@
 #include "check.hpp"
 #include "typed_run.hpp"
 
-
 using namespace fixture;
 
 namespace {
