@@ -10,8 +10,6 @@ import clutchwork as cw
 from support import gradient_cases, samples
 from support.amount import amount
 
-pytestmark = pytest.mark.slow
-
 ELEMENTS = samples.declared(*samples.ELEMENT_ROLES)
 # guards that are the least of several, stops that are struck together, a speed that is round-off
 SEEN = {"laws": (24,), "stops": (22,), "contacts": (24,)}
@@ -25,6 +23,7 @@ def report(case, seed, count):
         return gradient_cases.checked(case, seed, count)
 
 
+@pytest.mark.random
 @pytest.mark.parametrize("kind", gradient_cases.KINDS)
 def test_random_drivelines(kind):
     compared, refused, wrong = 0, list[str](), list[str]()

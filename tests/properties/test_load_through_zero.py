@@ -146,6 +146,7 @@ def same_as_clipped(seed: int, compliant: bool) -> str:
     return against(exact, lambda: made.driveline(clipped=False))
 
 
+@pytest.mark.random
 @pytest.mark.parametrize("compliant", [False, True], ids=["sticking", "compliant"])
 def test_tables_through_zero(compliant: bool) -> None:
     sweep(lambda seed: same_as_clipped(seed, compliant), amount() // 2)
@@ -213,6 +214,7 @@ def closed_form(seed: int, plates: bool) -> str:
     return against((first - second)[None, :], made)
 
 
+@pytest.mark.random
 @pytest.mark.parametrize("plates", [False, True], ids=["sines", "products"])
 def test_waves_through_zero(plates: bool) -> None:
     sweep(lambda seed: closed_form(seed, plates), amount() // 2)
