@@ -78,6 +78,10 @@ test: TIER := first
 test-rest: TIER := last
 test-all: TIER := all
 test test-all: PARTS := test-cpp $(if $(NODE),test-page)
+# tests of the core are built once and take seconds: the rest are their other random cases
+test-rest: PARTS := test-cpp
+test-rest: export CTEST := -L random
+test test-rest test-all: export CLUTCHWORK_TIER = $(TIER)
 test test-rest test-all: $(STAMPS)/package $(STAMPS)/test $(WASM) $(PAGE)
 	@failed="$$CLUTCHWORK_FAILED"; \
 	for part in $(PARTS); do $(MAKE) --no-print-directory $$part || failed="$$failed make $$part;"; done; \
@@ -90,7 +94,7 @@ test-cpp: $(STAMPS)/build
 		-DCLUTCHWORK_PYTHON=OFF -DCLUTCHWORK_TESTS=ON -DCLUTCHWORK_QUICK=ON >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
 	@echo "building the tests of the core"
 	@$(BIN)/cmake --build build/cpp --parallel $(JOBS) >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
-	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure
+	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure $(CTEST)
 
 # the script of pages, into the package
 page: build/page/stamp

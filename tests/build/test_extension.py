@@ -145,7 +145,7 @@ WHOLE = (
     "tests/model/test_words.py",
 )
 BY_NAME = ("tests/physics", "tests/fit/test_recovery.py", "tests/model", "tests/interfaces/test_copies.py")
-PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "--no-header")
+PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "--no-header", "--tier", "first")
 
 
 def test_the_tests_over_all_components_pass_with_them(copy: Path, site: Path) -> None:
