@@ -51,6 +51,7 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out what the tier has not; files that take long come first, or one worker would end alone with them."""
     seconds, cases = tiers.measured(), [_case(item) for item in items]
+    config.stash[tiers.COLLECTED] = cases
     first = tiers.first_tier(cases, seconds)
     wanted = {
         "first": first,

@@ -163,7 +163,7 @@ void little_room() {
 
 }  // namespace
 
-int main() {
+int test_corruption() {
   untaken_events();
   little_room();
   corrupt(three_shafts(), 3, check::part(6000));

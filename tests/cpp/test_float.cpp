@@ -52,7 +52,7 @@ void bristles_hold(int method) {
 
 }  // namespace
 
-int main() {
+int test_float() {
   lock_and_break(1);
   lock_and_break(2);
   bristles_hold(1);

@@ -105,7 +105,7 @@ void whole_run() {
 
 }  // namespace
 
-int main() {
+int test_full() {
   jacobian();
   drift();
   whole_run();

@@ -101,7 +101,7 @@ void stays_the_same(const Model& model) {
 
 }  // namespace
 
-int main() {
+int test_save_restore() {
   const Model models[] = {three_shafts(), chain(), bristles(), hysteresis(), warm(), driven(), parallel(), long_row()};
   check::Random g{5};
   for (const Model& model : models) {

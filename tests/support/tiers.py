@@ -13,6 +13,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
+
 TESTS = Path(__file__).resolve().parents[1]
 MEASURED = TESTS / "cpu_seconds.json"
 TIERS = ("first", "last", "all")
@@ -22,6 +24,10 @@ QUICK = 0.5
 HELD = 3.0
 # the first tier draws one of so many random cases, and of seeds that are cases of their own
 PART = 4
+
+
+# all cases that were collected, whatever the tier
+COLLECTED: pytest.StashKey[list[Case]] = pytest.StashKey()
 
 
 @dataclass(frozen=True)
