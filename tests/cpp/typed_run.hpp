@@ -29,15 +29,15 @@ struct TypedRun {
 
 }  // namespace fixture
 
-/// Sizes of another scalar that are compiled: one and two speeds, two with a state.
+/// Sizes of another scalar that are compiled: one and two speeds, two with a state; others in the sparse form.
 #define ONLY_TWO_SPEEDS(...)                                                                             \
   namespace clutchwork {                                                                                 \
   template <>                                                                                            \
   Status dispatch<__VA_ARGS__, 1, 0>(Workspace<__VA_ARGS__> & ws, double t_end, Sink& sink) {            \
-    const int size = 10 * ws.reduced.nz + int(ws.sys.states);                                            \
+    const int size = ws.reduced.is_sparse ? 0 : 10 * ws.reduced.nz + int(ws.sys.states);                 \
     if (size == 10) return run_phase<SmallForm<__VA_ARGS__, 1, 0>>(ws, t_end, sink);                     \
     if (size == 20) return run_phase<SmallForm<__VA_ARGS__, 2, 0>>(ws, t_end, sink);                     \
     if (size == 21) return run_phase<SmallForm<__VA_ARGS__, 2, 1>>(ws, t_end, sink);                     \
-    return Status::no_mode;                                                                              \
+    return ws.reduced.is_sparse ? run_phase<SparseForm<__VA_ARGS__>>(ws, t_end, sink) : Status::no_mode; \
   }                                                                                                      \
   }

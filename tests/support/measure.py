@@ -1,6 +1,7 @@
 """CPU time of each case, with that of the processes that it starts: `pytest --measure` writes cpu_seconds.json.
 
-What cases share, a fixture of a module or a session, is divided among them, whichever of them asks for it first.
+What cases share, a fixture of a module or a session, is divided among them, whichever of them asks for it first; a
+fixture that takes more than a case may in the first tier belongs to each of them, which none of them is then.
 Seconds are those of a machine that does `work` in UNIT seconds, so that tiers stay where machines are faster.
 """
 
@@ -72,7 +73,7 @@ class Measure:
         seconds = dict(self.own)
         for key, took in self.shared.items():
             for name in self.users[key]:
-                seconds[name] += took / len(self.users[key])
+                seconds[name] += took if took * UNIT > tiers.HELD * self.unit else took / len(self.users[key])
         scale = 2.0 * UNIT / (self.unit + work())
         written = tiers.measured() if tiers.MEASURED.exists() else {}
         ran = {name.partition("::")[0] for name in self.own}
