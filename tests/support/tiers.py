@@ -57,11 +57,12 @@ def measured(path: Path = MEASURED) -> dict[str, float]:
 def first_tier(cases: Sequence[Case], seconds: Mapping[str, float]) -> set[str]:
     """Names of the cases of the first tier; all cases of a test are given."""
     costs = {case.name: seconds.get(case.name, 0.0) / (PART if case.random else 1) for case in cases}
-    few = _few_seeds(cases)
-    found = {case.name for case in few if case.always or costs[case.name] <= (HELD if case.random else QUICK)}
+    found = {
+        case.name for case in _few_seeds(cases) if case.always or costs[case.name] <= (HELD if case.random else QUICK)
+    }
     touched = {case.test for case in cases if case.name in found}
     slow: dict[str, list[str]] = defaultdict(list)
-    for case in few:
+    for case in cases:
         if case.test not in touched:
             slow[case.test].append(case.name)
     cheapest = (min(names, key=costs.__getitem__) for names in slow.values())
