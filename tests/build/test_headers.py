@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -82,8 +83,14 @@ def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 LIBRARY = re.compile(r"#include (<\w+>)")
 OWN = re.compile(r"#include (<clutchwork/[^>]*>)")
-# what elements and laws include first
-COMPONENT = "<clutchwork/component.hpp>"
+# what so many headers include first is compiled once for all of them
+OFTEN = 5
+
+
+def first_include(header: Path) -> str:
+    """The first header of ours that one includes, "" where it includes none."""
+    found = OWN.search(header.read_text())
+    return found[1] if found else ""
 
 
 class Compiler:
@@ -94,7 +101,12 @@ class Compiler:
         self.command = ["c++", "-std=c++20", "-Wall", "-Wextra", "-Werror", *include, "-x"]
         found = {name for header in HEADERS.rglob("*.hpp") for name in LIBRARY.findall(header.read_text())}
         self.library = self._precompiled(folder / "library.hpp", sorted(found))
-        self.component = self._precompiled(folder / "component.hpp", [COMPONENT])
+        often = Counter(map(first_include, HEADERS.rglob("*.hpp")))
+        self.first = {
+            name: self._precompiled(folder / f"first{place}.hpp", [name])
+            for place, (name, count) in enumerate(often.items())
+            if name and count >= OFTEN
+        }
 
     def _precompiled(self, header: Path, names: Sequence[str]) -> Path:
         header.write_text("".join(f"#include {name}\n" for name in names))
@@ -103,8 +115,7 @@ class Compiler:
 
     def says(self, header: Path) -> str:
         """What it says about a unit of one header; "": nothing."""
-        first = OWN.search(header.read_text())
-        before = self.component if first and first[1] == COMPONENT else self.library
+        before = self.first.get(first_include(header), self.library)
         command = [*self.command, "c++", "-fsyntax-only", "-Winvalid-pch", "-include", str(before), "-"]
         unit = f'#include "{header}"\n'
         return subprocess.run(command, input=unit, capture_output=True, text=True, check=False).stderr
