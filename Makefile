@@ -78,9 +78,11 @@ test: TIER := first
 test-rest: TIER := last
 test-all: TIER := all
 test test-all: PARTS := test-cpp $(if $(NODE),test-page)
-# tests of the core are built once and take seconds: the rest are their other random cases
+# of the core: whole runs of other scalars, and all random cases
 test-rest: PARTS := test-cpp
-test-rest: export CTEST := -L random
+test: export CORE_TESTS := first_tier
+test: export CTEST := -LE scalar
+test-rest: export CTEST := -L last
 test test-rest test-all: export CLUTCHWORK_TIER = $(TIER)
 test test-rest test-all: $(STAMPS)/package $(STAMPS)/test $(WASM) $(PAGE)
 	@failed="$$CLUTCHWORK_FAILED"; \
@@ -93,7 +95,7 @@ test-cpp: $(STAMPS)/build
 		-DCMAKE_CXX_COMPILER=$(CXX) -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
 		-DCLUTCHWORK_PYTHON=OFF -DCLUTCHWORK_TESTS=ON -DCLUTCHWORK_QUICK=ON >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
 	@echo "building the tests of the core"
-	@$(BIN)/cmake --build build/cpp --parallel $(JOBS) >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
+	@$(BIN)/cmake --build build/cpp --parallel $(JOBS) --target $(or $(CORE_TESTS),all) >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
 	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure $(CTEST)
 
 # the script of pages, into the package

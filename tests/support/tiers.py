@@ -21,7 +21,7 @@ TIERS = ("first", "last", "all")
 # s of CPU time that every case of the first tier may take
 QUICK = 0.5
 # s that the cheapest case of a test may take there, and each test that draws random cases
-HELD = 3.0
+HELD = 2.0
 # the first tier draws one of so many random cases, and of seeds that are cases of their own
 PART = 4
 
