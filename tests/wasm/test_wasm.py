@@ -79,6 +79,7 @@ def test_it_is_small_and_asks_for_nothing() -> None:
     assert done.stdout.strip() == "0"
 
 
+@pytest.mark.always
 def test_runs_have_the_bits_of_the_native_core(as_wasm: list[Answer]) -> None:
     """Another compiler, another processor, other forms of motion: the same bits of rows and events."""
     for place, (job, one, other) in enumerate(zip(JOBS, as_wasm, here(JOBS), strict=True)):
