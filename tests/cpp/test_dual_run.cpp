@@ -4,6 +4,7 @@
 #include "typed_run.hpp"
 
 using D = clutchwork::Dual<double, 2>;
+SMALL_AND_SPARSE(clutchwork::Dual<double, 2>)
 
 using namespace fixture;
 
@@ -74,7 +75,7 @@ void carries(const Model& model, int k, int l, int method) {
 
 }  // namespace
 
-int main() {
+int test_dual_run() {
   for (int method : {1, 2}) {
     // load and damping, gain and law
     carries(slipping(), 0, 3, method);

@@ -3,6 +3,8 @@
 #include "check.hpp"
 #include "typed_run.hpp"
 
+SMALL_AND_SPARSE(float)
+
 using namespace fixture;
 
 namespace {
@@ -50,7 +52,7 @@ void bristles_hold(int method) {
 
 }  // namespace
 
-int main() {
+int test_float() {
   lock_and_break(1);
   lock_and_break(2);
   bristles_hold(1);

@@ -14,11 +14,11 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import METHODS
 from clutchwork.page import core as module
 from support import example_models, random_drivelines, random_parts, random_stops, six_speed
-from support.amount import amount
+from support.amount import seeds
 from support.project import ROOT
 from support.wasm import WASM, Answer, Job, Stretch, grid, here, in_node
 
-CASES = max(4, amount() // 6)
+CASES = max(4, len(seeds()) // 6)
 
 
 def jobs() -> Iterator[Job]:
@@ -79,6 +79,7 @@ def test_it_is_small_and_asks_for_nothing() -> None:
     assert done.stdout.strip() == "0"
 
 
+@pytest.mark.always
 def test_runs_have_the_bits_of_the_native_core(as_wasm: list[Answer]) -> None:
     """Another compiler, another processor, other forms of motion: the same bits of rows and events."""
     for place, (job, one, other) in enumerate(zip(JOBS, as_wasm, here(JOBS), strict=True)):
