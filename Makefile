@@ -38,6 +38,8 @@ PAGE := $(if $(NODE),build/page/stamp)
 PAGE_SOURCES := $(wildcard interfaces/page/*.* interfaces/page/src/*)
 CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*.cpp' 'interfaces/*.hpp' 'tests/cpp/*.cpp' 'tests/cpp/*.hpp')
 
+# each recipe takes JOBS cores itself, and all install into one environment
+.NOTPARALLEL:
 .PHONY: help setup demo test test-rest test-all test-cpp test-python page test-page check-page check format bench wasm wheel docs picture pictures clean
 .DELETE_ON_ERROR:
 
@@ -57,31 +59,32 @@ $(STAMPS)/venv: tools/prerequisites.sh
 
 # a stamp for each purpose, named as its extra in pyproject.toml
 EXTRAS := build plot draw test check docs bench wasm wheel
+WITH_EXTRA = $(BIN)/python tools/extras.py $(1) | $(PIP) install --no-compile --requirement /dev/stdin && touch $(STAMPS)/$(1)
 $(EXTRAS:%=$(STAMPS)/%): $(STAMPS)/%: $(STAMPS)/venv pyproject.toml tools/extras.py
 	@echo "installing what '$*' needs"
-	@$(BIN)/python tools/extras.py $* | $(PIP) install --no-compile --requirement /dev/stdin
-	@touch $@
+	@$(call WITH_EXTRA,$*)
 
-# compiled for this machine: a wheel for others is made by `make wheel`
-INSTALL = CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH" \
-	$(PIP) install --no-build-isolation --no-deps --config-settings=cmake.define.CLUTCHWORK_NATIVE=ON
+# compiled for this machine, with or without derivatives; a wheel for others has a build of its own
+COMPILER = CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH"
+SETTING = --config-settings=cmake.define.CLUTCHWORK_
+INSTALL = $(COMPILER) $(PIP) install --no-build-isolation --no-deps $(SETTING)NATIVE=ON $(SETTING)DERIVATIVES=$(1) --editable .
 
 $(STAMPS)/package: $(STAMPS)/build $(CORE_SOURCES)
 	@echo "building and installing clutchwork"
-	@$(INSTALL) --config-settings=cmake.define.CLUTCHWORK_DERIVATIVES=ON --editable .
+	@$(call INSTALL,ON)
 	@touch $(STAMPS)/core $@
 
-# the same without derivatives, which take as long to compile as all the rest; what it is drawn with comes meanwhile
+# the same without derivatives, which take as long to compile as all the rest; matplotlib is installed meanwhile
 $(STAMPS)/core: $(STAMPS)/build $(CORE_SOURCES)
-	@echo "building and installing the core of clutchwork, and what pictures are drawn with"
+	@echo "building and installing the core of clutchwork"
 	@mkdir -p build
-	@$(MAKE) --no-print-directory $(STAMPS)/plot >build/plot.log 2>&1 & \
-	$(INSTALL) --config-settings=cmake.define.CLUTCHWORK_DERIVATIVES=OFF --editable . && wait
+	@($(call WITH_EXTRA,plot)) >build/plot.log 2>&1 & plot=$$!; $(call INSTALL,OFF); failed=$$?; wait $$plot; exit $$failed
 	@touch $@
 
 # ---------------------------------------------------------------- what people want
 
-demo: $(STAMPS)/core $(STAMPS)/plot
+# derivatives that are there stay
+demo: $(STAMPS)/$(if $(wildcard $(STAMPS)/package),package,core) $(STAMPS)/plot
 	@$(BIN)/clutchwork demo
 
 # `test` has what is quick and a part of the random cases, `test-rest` all the others, `test-all` both: CONTRIBUTING.md
@@ -166,8 +169,8 @@ $(WASM): $(STAMPS)/wasm $(CORE_SOURCES) tools/build_wasm.py
 wheel: $(STAMPS)/wheel $(WASM) build/page/stamp
 	@rm -rf build/wheel && mkdir -p build/wheel dist
 	@echo "building the wheel"
-	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(CURDIR)/$(BIN):$$PATH" \
-		$(PIP) wheel --no-build-isolation --no-deps --wheel-dir build/wheel/raw .
+	@$(COMPILER) $(PIP) wheel --no-build-isolation --no-deps --config-settings=build-dir=build/wheel/cmake \
+		$(SETTING)NATIVE=OFF $(SETTING)DERIVATIVES=ON --wheel-dir build/wheel/raw .
 	@if [ "$$(uname)" = Linux ]; then \
 		PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m auditwheel repair --wheel-dir build/wheel/good build/wheel/raw/*.whl; \
 	else mv build/wheel/raw build/wheel/good; fi

@@ -20,7 +20,6 @@ ROOT = Path(__file__).resolve().parents[1]
 T_END = 4.0
 FIRST, LAST = 0.2, 0.3
 NAME = "F1.gain"
-SELDOM_USED = ("lanes", "c_api", "local")
 PLAIN: dict[str, Any] = {"angles": False, "work": False}
 
 
@@ -43,12 +42,11 @@ def sweep(system: cw.System, variants: int, threads: int, outputs: Any = "w8.spe
 
 def loop(folder: Path, system: cw.System, variants: int) -> Callable[[int], Taken] | None:
     """The loop in C++ with the core of this build; None where there is none."""
-    builds = (ROOT / "build").glob("cp3*/CMakeFiles/clutchwork_core.dir/cpp/src")
+    builds = (ROOT / "build").glob("cp3*/core_objects.txt")
     newest = max(builds, key=lambda path: path.stat().st_mtime, default=None)
     if newest is None:
         return None
-    # in the order of CMakeLists.txt: of what several files compile the first one counts
-    objects = sorted(newest.glob("*.o"), key=lambda path: (path.name.split(".")[0] in SELDOM_USED, path.name))
+    objects = newest.read_text(encoding="utf-8").split()
     program, data = folder / "sweep_loop", folder / "system"
     command = [
         "c++",
@@ -58,7 +56,7 @@ def loop(folder: Path, system: cw.System, variants: int) -> Callable[[int], Take
         f"-I{ROOT / 'cpp/include'}",
         str(ROOT / "benchmarks/sweep_loop.cpp"),
     ]
-    subprocess.run([*command, *map(str, objects), "-o", str(program)], check=True)
+    subprocess.run([*command, *objects, "-o", str(program)], check=True)
     data.write_bytes(system.to_bytes())
 
     def run(threads: int) -> Taken:

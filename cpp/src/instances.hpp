@@ -44,6 +44,8 @@
   KEYWORD template DependentSet<double> dependent_set(Workspace<double>&, int, const double*, double);
 
 namespace clutchwork {
+static_assert(small_speeds == 4 && small_states == 2 && Dopri5::most_small_states == 0, "name all sizes in this file");
+
 #ifndef CLUTCHWORK_COMPONENTS
 CLUTCHWORK_SHARED(extern)
 #endif

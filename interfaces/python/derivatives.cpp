@@ -241,7 +241,7 @@ NB_MODULE(_derivatives, m) {
   m.doc() = "Runs of the core of clutchwork with derivatives.";
   m.attr("schema") = clutchwork::schema_text;
   m.attr("layout") = clutchwork::layout_text;
-  m.def("runs_here", &cw_tangents_run_here, "Whether it was compiled for the processor of this machine.");
+  m.def("supported", &cw_tangents_supported, "Whether it was compiled for the processor of this machine.");
   nb::class_<Adjoint>(m, "Adjoint")
       .def(nb::init<const nb::bytes&, const Words&, const Times&, double, const Options&, std::int64_t, std::int64_t>(),
            nb::arg("system"), nb::arg("words"), nb::arg("times"), nb::arg("t_end"), nb::arg("options"),

@@ -85,10 +85,10 @@ OBJECTS = ROOT / "build" / "cpp" / "CMakeFiles" / "clutchwork_core.dir" / "cpp" 
 
 def take_built(folder: Path) -> None:
     """Objects that `make test-cpp` compiled from these sources; make would compile the same again."""
-    sources = [path.stat().st_mtime for path in (ROOT / "cpp").rglob("*.?pp")]
+    sources = [path.stat().st_mtime for path in (ROOT / "cpp").rglob("*.*") if path.suffix in (".h", ".hpp", ".cpp")]
     made = [path for path in OBJECTS.glob("*.o") if path.stat().st_mtime > max(sources)]
     generated = [(path, ROOT / "build/cpp/generated/clutchwork" / path.name) for path in folder.rglob("*.gen.hpp")]
-    if made and all(filecmp.cmp(*pair, shallow=False) for pair in generated if pair[1].exists()):
+    if made and generated and all(two.exists() and filecmp.cmp(one, two, shallow=False) for one, two in generated):
         (folder / "build").mkdir(exist_ok=True)
         for path in made:
             name = path.name.removesuffix(".cpp.o")

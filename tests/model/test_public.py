@@ -164,7 +164,7 @@ def test_missing_core_or_one_of_another_layout_is_refused_at_import(core, words)
     _refused(f"import sys, types; sys.modules['clutchwork._core'] = {core}; import clutchwork", words)
 
 
-ONE = "types.SimpleNamespace(layout={layout}, schema=_core.schema, runs_here=lambda: {here})"
+ONE = "types.SimpleNamespace(layout={layout}, schema=_core.schema, supported=lambda: {here})"
 
 
 @pytest.mark.parametrize(
@@ -187,8 +187,12 @@ run = d.simulate(1.0)
 print("simulated")
 run.gradient("a.speed", "x.damping")
 """
-    _refused(code, words)
-    assert _python(code).stdout.strip() == "simulated"
+    done = _python(code)
+    assert done.returncode == 1
+    assert "ImportError" in done.stderr
+    assert words in done.stderr
+    assert "make" in done.stderr.partition(words)[2]
+    assert done.stdout.strip() == "simulated"
 
 
 SPRING = """

@@ -14,8 +14,8 @@ from support.amount import seeds
 FINE: dict[str, Any] = {"rtol": 1e-9, "atol": 1e-11, "max_steps": 400_000}
 
 
-# those behind ended early until a rule of the core was mended
-@pytest.mark.parametrize("seed", [*seeds(60), 197, 825, 910])
+# the first ones ended early until a rule of the core was mended
+@pytest.mark.parametrize("seed", [197, 825, 910, *seeds(60)])
 def test_energy_closes(seed: int) -> None:
     run = random_parts.driveline(seed).simulate(random_parts.T_END, dt=0.01, **FINE)
     assert run.status == "done", run.message

@@ -22,7 +22,7 @@ typedef struct cw_tangents cw_tangents;
 #define CW_GRAZE 5
 
 /* Whether they are compiled for the processor of this machine: 1, or 0, and no other call may follow. */
-int cw_tangents_run_here(void);
+int cw_tangents_supported(void);
 
 /* Bytes of memory that it needs; -1 when the bytes do not fit this core. */
 int64_t cw_tangents_size(const void* system, int64_t bytes);

@@ -26,7 +26,7 @@ void* plain(cw_tangents* run) { return run; }
 
 extern "C" {
 
-int cw_tangents_run_here(void) {
+int cw_tangents_supported(void) {
 #ifdef CLUTCHWORK_WIDE_ALONE
   return has_wide();
 #else

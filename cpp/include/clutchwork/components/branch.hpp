@@ -96,7 +96,7 @@ template <class E, class T>
 template <class T>
 CLUTCHWORK_INLINE T branch_torque(const Workspace<T>& ws, const Branch<T>& b, T rate, const T* state, T* rates) {
   if (b.law >= 0) return contact_torque(ws, b, rate, state, rates);
-  return visit_torque(b.kind, [&](auto tag) __attribute__((always_inline)) {
+  return visit_torque(b.kind, [&](auto tag) CLUTCHWORK_HOT_LAMBDA {
     using E = typename decltype(tag)::type;
     if constexpr (!computes_with<E, T> || !TorqueElement<E>)
       return T(0);
@@ -206,7 +206,7 @@ CLUTCHWORK_INLINE Partial<T> branch_partial_inline(const Workspace<T>& ws, const
     const S f = sliding_torque<T, S>(ws, b, x, input.at, law_input.at);
     return {f.v, f.d[0], f.d[1]};
   }
-  return visit_torque(b.kind, [&](auto tag) __attribute__((always_inline)) {
+  return visit_torque(b.kind, [&](auto tag) CLUTCHWORK_HOT_LAMBDA {
     using E = typename decltype(tag)::type;
     if constexpr (!computes_with<E, T> || !TorqueElement<E>)
       return Partial<T>{};

@@ -9,6 +9,9 @@
 // decisions/0041-light.md
 #ifndef CLUTCHWORK_HOT
 #define CLUTCHWORK_HOT inline __attribute__((always_inline))
+#define CLUTCHWORK_HOT_LAMBDA __attribute__((always_inline))
+#else
+#define CLUTCHWORK_HOT_LAMBDA
 #endif
 #ifndef CLUTCHWORK_INLINE
 #define CLUTCHWORK_INLINE CLUTCHWORK_HOT

@@ -119,7 +119,7 @@ class Phase : public Pace<typename Form::Scalar> {
   CLUTCHWORK_INLINE void look_here() {
     calls_.look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here);
   }
-  CLUTCHWORK_INLINE void look_there() {
+  CLUTCHWORK_INLINE void look_at_end() {
     calls_.look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
   }
 
@@ -181,7 +181,7 @@ class Phase : public Pace<typename Form::Scalar> {
     const double error = calls_.advance(form_, step_, reach_);
     if (!judge(error, all_finite(form_.n(), step_.y1()))) return false;
     if constexpr (Form::full) keep_ties(form_, step_, end_of_step(), step_.y1());
-    look_there();
+    look_at_end();
     return true;
   }
 
@@ -241,7 +241,7 @@ class Phase : public Pace<typename Form::Scalar> {
     fit(form_, step_);
     const double missed = error_until(form_, step_, inner);
     if (missed > most_inner_error) return error_ = missed, true;
-    look_there();
+    look_at_end();
     return false;
   }
 
