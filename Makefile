@@ -1,6 +1,6 @@
 # Everything runs in .venv, which the first target that needs it makes; no environment has to be active.
 #   make demo     the six-speed gearbox launches and shifts: out/demo/
-#   make test     all tests: C++ core under sanitizers, then Python
+#   make test     tests: C++ core under sanitizers, then Python; make test-all: also what takes long
 #   make check    format, lint, types, import contracts, spelling
 #   make bench    speed against peers; ARGS="--write" puts the table into docs/benchmarks.md
 #   make wasm     the core as WebAssembly: src/clutchwork/page/static/core.wasm
@@ -22,7 +22,7 @@ unexport PYTHONPATH PYTHONHOME VIRTUAL_ENV
 VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
-# a worker for each core; the tests of one file stay together, for they share what is costly; long files come first
+# a worker for each core; the tests of one file stay together, for they share what is costly
 PYTEST = $(BIN)/python -m pytest --numprocesses $(JOBS) --dist loadfile --no-loadscope-reorder
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 JOBS ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
@@ -38,7 +38,7 @@ PAGE := $(if $(NODE),build/page/stamp)
 PAGE_SOURCES := $(wildcard interfaces/page/*.* interfaces/page/src/*)
 CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*.cpp' 'interfaces/*.hpp' 'tests/cpp/*.cpp' 'tests/cpp/*.hpp')
 
-.PHONY: help setup demo test test-cpp test-python page test-page check-page check format bench wasm wheel docs picture pictures clean
+.PHONY: help setup demo test test-rest test-all test-cpp test-python page test-page check-page check format bench wasm wheel docs picture pictures clean
 .DELETE_ON_ERROR:
 
 help:
@@ -84,12 +84,22 @@ $(STAMPS)/core: $(STAMPS)/build $(CORE_SOURCES)
 demo: $(STAMPS)/core $(STAMPS)/plot
 	@$(BIN)/clutchwork demo
 
-# both parts run, a failure of either fails the target, and pytest has the last word
-test: $(STAMPS)/package $(STAMPS)/test $(WASM) $(PAGE)
-	@failed=0; $(MAKE) --no-print-directory test-cpp || failed=$$?; \
-	if [ $$failed -ne 0 ]; then echo "the C++ tests FAILED; the Python tests follow"; fi; \
-	if [ -n "$(NODE)" ]; then $(MAKE) --no-print-directory test-page || failed=1; fi; \
-	$(PYTEST) && exit $$failed
+# `test` has what is quick and a part of the random cases, `test-rest` all the others, `test-all` both: CONTRIBUTING.md
+# all parts run, a failure of any fails the target, and pytest has the last word
+test: TIER := first
+test-rest: TIER := last
+test-all: TIER := all
+test test-all: PARTS := test-cpp $(if $(NODE),test-page)
+# of the core: whole runs of other scalars, and all random cases
+test-rest: PARTS := test-cpp
+test: export CORE_TESTS := first_tier
+test: export CTEST := -LE scalar
+test-rest: export CTEST := -L last
+test test-rest test-all: export CLUTCHWORK_TIER = $(TIER)
+test test-rest test-all: $(STAMPS)/package $(STAMPS)/test $(WASM) $(PAGE)
+	@failed="$$CLUTCHWORK_FAILED"; \
+	for part in $(PARTS); do $(MAKE) --no-print-directory $$part || failed="$$failed make $$part;"; done; \
+	CLUTCHWORK_FAILED="$$failed" $(PYTEST) --tier $(TIER) && [ "$$failed" = "$$CLUTCHWORK_FAILED" ]
 
 test-cpp: $(STAMPS)/build
 	@mkdir -p build
@@ -97,8 +107,8 @@ test-cpp: $(STAMPS)/build
 		-DCMAKE_CXX_COMPILER=$(CXX) -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
 		-DCLUTCHWORK_PYTHON=OFF -DCLUTCHWORK_TESTS=ON -DCLUTCHWORK_QUICK=ON >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
 	@echo "building the tests of the core"
-	@$(BIN)/cmake --build build/cpp --parallel $(JOBS) >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
-	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure
+	@$(BIN)/cmake --build build/cpp --parallel $(JOBS) --target $(or $(CORE_TESTS),all) >build/cpp.log 2>&1 || { cat build/cpp.log; exit 1; }
+	@$(BIN)/ctest --test-dir build/cpp --parallel $(JOBS) --output-on-failure $(CTEST)
 
 # the script of pages, into the package
 page: build/page/stamp

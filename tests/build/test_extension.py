@@ -119,21 +119,18 @@ def test_the_page_shows_both_files_of_every_example() -> None:
         assert f"cpp/include/clutchwork/{folder}/{kind}.hpp" in FILES
 
 
-@pytest.mark.slow
 def test_type_checkers_and_editors_know_the_examples(site: Path) -> None:
     stub = (site / "clutchwork/__init__.pyi").read_text()
     assert "class HydraulicClutch(Element):" in stub
     assert "class Lorentzian(Law):" in stub
 
 
-@pytest.mark.slow
 def test_the_demonstration_runs_from_what_is_installed(site: Path, tmp_path: Path) -> None:
     shown = project.run_in(site, "-m", "clutchwork", "demo", folder=tmp_path)
     assert "2.4886 -> 1.8302 by gears" in shown.stdout, shown.stderr
     assert (site / "clutchwork/examples/six_speed/pressures.csv").is_file()
 
 
-@pytest.mark.slow
 def test_the_examples_compute_what_they_say(site: Path, tmp_path: Path) -> None:
     used = project.run_in(site, "-c", USE, str(tmp_path / "model.toml"))
     assert used.stdout.strip() == "used", used.stderr
@@ -148,10 +145,9 @@ WHOLE = (
     "tests/model/test_words.py",
 )
 BY_NAME = ("tests/physics", "tests/fit/test_recovery.py", "tests/model", "tests/interfaces/test_copies.py")
-PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "--no-header")
+PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "--no-header", "--tier", "first")
 
 
-@pytest.mark.slow
 def test_the_tests_over_all_components_pass_with_them(copy: Path, site: Path) -> None:
     report = passed(project.run_in(site, *PYTEST, "-rs", *WHOLE, folder=copy))
     # what our own laws have beside is asked for, in words and without a failure

@@ -11,11 +11,6 @@ from support import project
 from support.refused import ELEMENTS, HEADERS, LAWS, edit, refused_by_compiler, refused_by_generator
 
 
-@pytest.fixture
-def copy(tmp_path: Path) -> Path:
-    return project.copy(tmp_path)
-
-
 def test_the_untouched_project_passes(copy: Path) -> None:
     assert project.generate(copy).returncode == 0
     result = project.compile_registry(copy)

@@ -13,11 +13,6 @@ from support import project
 from support.refused import ELEMENTS, HEADERS, LAWS, edit, refused_by_compiler, refused_by_generator
 
 
-@pytest.fixture
-def copy(tmp_path: Path) -> Path:
-    return project.copy(tmp_path)
-
-
 def with_hook(name: str, role: str) -> tuple[str, str]:
     """Folder and kind of a component that has a hook in a header of its own."""
     for one in COMPILED_ROLES:

@@ -5,18 +5,11 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-import pytest
-
 from support import project
 from support.refused import edit
 
 RUN = "cpp/include/clutchwork/run"
 NAMES = "src/clutchwork/declare/layout.py"
-
-
-@pytest.fixture
-def copy(tmp_path: Path) -> Path:
-    return project.copy(tmp_path)
 
 
 def compiled(copy: Path) -> str:

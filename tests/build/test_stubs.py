@@ -136,7 +136,6 @@ def checked(tmp_path_factory):
     return len(lines), wrong, {int(number): words for number, words in said}, elsewhere
 
 
-@pytest.mark.slow
 def test_right_use_of_every_declaration_passes(checked):
     right, _, said, elsewhere = checked
     assert {number: words for number, words in said.items() if number <= right} == {}
@@ -144,7 +143,6 @@ def test_right_use_of_every_declaration_passes(checked):
     assert not [line for line in elsewhere if ": error:" in line]
 
 
-@pytest.mark.slow
 def test_every_mistake_is_an_error(checked):
     right, wrong, said, _ = checked
     expected = {**WRONG, **{line: '"nonsense"' for line in wrong if line not in WRONG}}

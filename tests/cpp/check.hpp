@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 /// Checks that print what failed and count; a test ends with `return check::result();`.
@@ -26,6 +27,12 @@ inline bool near(double a, double b, double tolerance, const char* text, const c
 }
 
 inline bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+/// How many random cases are tried of so many: a part of them in the first tier, as tests/support/tiers.py says.
+inline int part(int count) {
+  const char* tier = std::getenv("CLUTCHWORK_TIER");
+  return tier != nullptr && std::strcmp(tier, "first") == 0 ? (count + 3) / 4 : count;
+}
 
 /// Exit status of the test.
 inline int result() {

@@ -6,7 +6,7 @@
 
 using namespace clutchwork;
 
-int main() {
+int test_arena() {
   alignas(16) static unsigned char memory[4096];
   double *first = nullptr, *second = nullptr, *empty = nullptr;
   Arena counted(nullptr), carved(memory);

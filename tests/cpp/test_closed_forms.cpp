@@ -90,7 +90,7 @@ void prescribed() {
 
 }  // namespace
 
-int main() {
+int test_closed_forms() {
   engagement();
   break_away();
   energy();

@@ -172,7 +172,7 @@ void energy() {
 
 }  // namespace
 
-int main() {
+int test_compliant() {
   freewheels();
   freewheel_stops();
   relaxes<laws::LuGre>(false, {10, 0});

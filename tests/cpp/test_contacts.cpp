@@ -239,7 +239,7 @@ void rows_of_neighbours() {
 
 }  // namespace
 
-int main() {
+int test_contacts() {
   random_problems();
   rows_of_neighbours();
   plain_cases();

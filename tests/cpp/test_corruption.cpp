@@ -163,15 +163,15 @@ void little_room() {
 
 }  // namespace
 
-int main() {
+int test_corruption() {
   untaken_events();
   little_room();
-  corrupt(three_shafts(), 3, 6000);
-  corrupt(chain(), 4, 1500);
-  corrupt(bristles(), 5, 800);
-  corrupt(hysteresis(), 6, 600);
-  corrupt(warm(), 7, 600);
-  corrupt(long_row(), 8, 2000);
+  corrupt(three_shafts(), 3, check::part(6000));
+  corrupt(chain(), 4, check::part(1500));
+  corrupt(bristles(), 5, check::part(800));
+  corrupt(hysteresis(), 6, check::part(600));
+  corrupt(warm(), 7, check::part(600));
+  corrupt(long_row(), 8, check::part(2000));
   odd_parameters(bristles());
   odd_parameters(hysteresis());
   odd_parameters(warm());

@@ -125,7 +125,7 @@ void split(check::Random& g, int m, int n, int r) {
 
 }  // namespace
 
-int main() {
+int test_dense() {
   check::Random g{11};
   for (int n = 1; n <= 12; ++n) factors(g, n), inverses(g, n), envelopes(g, n);
   for (int round = 0; round < 300; ++round) {

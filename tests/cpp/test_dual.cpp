@@ -63,7 +63,7 @@ void nested() {
 
 }  // namespace
 
-int main() {
+int test_dual() {
   functions();
   comparisons();
   nested();

@@ -74,7 +74,7 @@ void carries(const Model& model, int k, int l, int method) {
 
 }  // namespace
 
-int main() {
+int test_dual_run() {
   for (int method : {1, 2}) {
     // load and damping, gain and law
     carries(slipping(), 0, 3, method);

@@ -104,7 +104,7 @@ void the_same_everywhere() {
 
 }  // namespace
 
-int main() {
+int test_elementary() {
   against_the_library();
   many_turns();
   at_the_ends();

@@ -3,7 +3,6 @@
 #include "check.hpp"
 #include "typed_run.hpp"
 
-
 using namespace fixture;
 
 namespace {
@@ -51,7 +50,7 @@ void bristles_hold(int method) {
 
 }  // namespace
 
-int main() {
+int test_float() {
   lock_and_break(1);
   lock_and_break(2);
   bristles_hold(1);

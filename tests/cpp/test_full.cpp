@@ -1,6 +1,8 @@
 // The full form: its Jacobian against differences, its torques against those of the sparse form.
 
+#include <instances.hpp>
 #include "friction.hpp"
+
 #include "typed_run.hpp"
 
 using namespace fixture;
@@ -103,7 +105,7 @@ void whole_run() {
 
 }  // namespace
 
-int main() {
+int test_full() {
   jacobian();
   drift();
   whole_run();

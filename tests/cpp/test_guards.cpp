@@ -100,7 +100,7 @@ void sampled_crossings() {
 
 }  // namespace
 
-int main() {
+int test_guards() {
   double_crossings();
   single_crossings();
   first_of_three();

@@ -211,7 +211,7 @@ void refusals() {
 
 }  // namespace
 
-int main() {
+int test_lanes() {
   any_number_of_them();
   with_rows_and_integrals();
   lanes_that_stop();

@@ -308,7 +308,7 @@ void karnopp() {
 
 }  // namespace
 
-int main() {
+int test_laws() {
   slides<laws::Stribeck>({});
   slides<laws::Karnopp>({0.1});
   slides<laws::NaiveSign>({});

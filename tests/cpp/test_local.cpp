@@ -61,7 +61,7 @@ void refusals() {
 
 }  // namespace
 
-int main() {
+int test_local() {
   warm_clutch();
   refusals();
   return check::result();

@@ -149,7 +149,7 @@ void in_groups() {
 
 }  // namespace
 
-int main() {
+int test_outside() {
   holds_and_follows();
   is_in_step_again();
   belongs_to_the_start();

@@ -461,7 +461,7 @@ void one_element() {
 
 }  // namespace
 
-int main() {
+int test_registry() {
   torque_kinds_all();
   contact_kinds_all();
   flow_kinds_all();

@@ -101,12 +101,12 @@ void stays_the_same(const Model& model) {
 
 }  // namespace
 
-int main() {
+int test_save_restore() {
   const Model models[] = {three_shafts(), chain(), bristles(), hysteresis(), warm(), driven(), parallel(), long_row()};
   check::Random g{5};
   for (const Model& model : models) {
     stays_the_same(model);
-    for (int i = 0; i < 8; ++i) continues(model, g.between(0, 2), 2.2);
+    for (int i = 0; i < check::part(8); ++i) continues(model, g.between(0, 2), 2.2);
   }
   // the explicit method, and the choice between both
   for (double method : {0.0, 2.0}) {

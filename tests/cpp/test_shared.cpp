@@ -104,7 +104,7 @@ void processes() {
 
 }  // namespace
 
-int main() {
+int test_shared() {
   exchange();
   heats_itself();
   gives_way();

@@ -16,6 +16,7 @@ from clutchwork.diagrams.lever.points import levers
 from clutchwork.gearbox.gear_set import HOUSING, GearSet
 from clutchwork.gearbox.motion import speeds
 from support import drawings
+from support.amount import part
 from support.drawn_gearboxes import BOXES, definitions
 
 ALL = sorted(BOXES)
@@ -77,7 +78,7 @@ def test_sets_that_share_two_members_are_one_lever() -> None:
     assert len(levers(BOXES["gm-4l60"].sets, merged=False)) == 2
 
 
-@settings(max_examples=10)
+@settings(max_examples=part(10))
 @given(definitions())
 def test_random_boxes(box: Any) -> None:
     drawn = layout(box, merged=False)

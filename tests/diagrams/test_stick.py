@@ -16,6 +16,7 @@ from clutchwork.diagrams.stick.lines import needed
 from clutchwork.diagrams.stick.looks import Scene
 from clutchwork.diagrams.stick.paint import painted
 from support import drawings
+from support.amount import part
 from support.drawn_gearboxes import BOXES, definitions
 
 ALL = sorted(BOXES)
@@ -71,7 +72,7 @@ def test_power_of_each_member_adds_up_to_nothing(name: str) -> None:
             assert abs(sum(power.values())) < 1e-9, member
 
 
-@settings(max_examples=10)
+@settings(max_examples=part(10))
 @given(definitions())
 def test_random_boxes(box: Any) -> None:
     plan = layout(box)

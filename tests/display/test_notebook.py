@@ -80,7 +80,6 @@ def png(data: dict[str, Any]) -> tuple[int, int]:
     return width, height
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("source", CELLS)
 def test_what_a_cell_shows(outputs: dict[str, list[Any]], source: str) -> None:
     kinds, words = CELLS[source]
@@ -101,7 +100,6 @@ def test_what_a_cell_shows(outputs: dict[str, list[Any]], source: str) -> None:
         assert html.count("data:image/png;base64,") == len(kinds & {"picture"})
 
 
-@pytest.mark.slow
 def test_a_figure_is_shown_once_and_in_its_size(outputs: dict[str, list[Any]]) -> None:
     # whether pyplot is there or not
     for source in ("run.plot()", "run.plot() again"):
@@ -111,7 +109,6 @@ def test_a_figure_is_shown_once_and_in_its_size(outputs: dict[str, list[Any]]) -
     assert outputs["import matplotlib.pyplot as plt"] == []
 
 
-@pytest.mark.slow
 def test_progress_shows_a_bar(outputs: dict[str, list[Any]]) -> None:
     shown = outputs["d.simulate(2.5, progress=True)"]
     texts = [output.get("text", "") for output in shown if output.output_type == "stream"]

@@ -20,6 +20,9 @@ PAGE = page("validation.md")
 NAMED = [name for row in table(PAGE, "claim") for name in code(row[-1])]
 # folders whose files are named one by one
 ONE_BY_ONE = ("physics", "properties", "reference")
+# how a file of tests opens; what Python caches beside them is none
+OPENS = {".py": '"""', ".cpp": "// "}
+FILES = [path for path in (ROOT / "tests").rglob("test_*.*") if path.suffix in OPENS]
 
 
 def test_everything_named_exists() -> None:
@@ -27,7 +30,7 @@ def test_everything_named_exists() -> None:
 
 
 def test_every_test_is_named() -> None:
-    files = [path.relative_to(ROOT) for path in (ROOT / "tests").rglob("test_*.*") if path.suffix in (".py", ".cpp")]
+    files = [path.relative_to(ROOT) for path in FILES]
     folders = {str(path.parent) for path in files if path.parts[1] not in ONE_BY_ONE}
     single = {str(path) for path in files if path.parts[1] in ONE_BY_ONE}
     assert sorted(single - set(NAMED)) == []
@@ -36,9 +39,7 @@ def test_every_test_is_named() -> None:
 
 def test_every_file_of_tests_opens_with_what_it_shows() -> None:
     """The generated list of all tests repeats these words."""
-    openings = {path: path.read_text(encoding="utf-8")[:3] for path in (ROOT / "tests").rglob("test_*.*")}
-    marks = {".py": '"""', ".cpp": "// "}
-    assert [path.name for path, opening in openings.items() if marks.get(path.suffix, opening) != opening] == []
+    assert [path.name for path in FILES if path.read_text(encoding="utf-8")[:3] != OPENS[path.suffix]] == []
 
 
 def _named(claim: str) -> set[str]:

@@ -51,7 +51,6 @@ def test_the_first_launch_prints_what_its_page_shows(clone: Path) -> None:
         assert (clone / made).stat().st_size > 5000
 
 
-@pytest.mark.slow
 def test_a_thermal_launch_is_drawn_exported_and_varied(clone: Path) -> None:
     asammdf = pytest.importorskip("asammdf")
     pandas = pytest.importorskip("pandas")
@@ -85,7 +84,6 @@ def test_a_thermal_launch_is_drawn_exported_and_varied(clone: Path) -> None:
     assert abs(names["warm"][np.argmin(found["lock"].reshape(10, 20)[5])] - 400.0) <= 10.0
 
 
-@pytest.mark.slow
 def test_a_closed_loop_shift_is_saved_in_the_middle(clone: Path) -> None:
     names = told("shift-controller")
     drive, sim, controller = names["drive"], names["gearbox"](), names["ShiftController"]()
@@ -110,7 +108,6 @@ def test_a_closed_loop_shift_is_saved_in_the_middle(clone: Path) -> None:
         assert (clone / made).stat().st_size > 10_000
 
 
-@pytest.mark.slow
 def test_the_page_about_notebooks_runs_as_one() -> None:
     pytest.importorskip("ipykernel")
     nbformat = pytest.importorskip("nbformat")

@@ -20,7 +20,7 @@ import clutchwork as cw
 from clutchwork.results import exchange
 from clutchwork.results.exchange.safe_names import matlab
 from support import random_drivelines
-from support.amount import amount
+from support.amount import seeds
 
 ROOT = Path(__file__).resolve().parents[2]
 MODELS = sorted(ROOT.glob("examples/*/model.toml"))
@@ -39,7 +39,7 @@ def _random(seed: int) -> cw.Trajectory:
 
 RUNS = [pytest.param(_example, path, id=path.parent.name) for path in MODELS]
 # every format reads every run: a tenth of the usual number of cases
-RUNS += [pytest.param(_random, seed, id=str(seed)) for seed in range(max(3, amount(30) // 10))]
+RUNS += [pytest.param(_random, seed, id=str(seed)) for seed in range(max(3, len(seeds(30)) // 10))]
 
 
 def from_csv(path: Path) -> Read:

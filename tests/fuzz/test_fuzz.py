@@ -15,6 +15,7 @@ from support.fuzz.cases import CASES
 LONGEST = 2.0
 
 
+@pytest.mark.random
 @pytest.mark.parametrize("kind", CASES)
 def test_damaged_files_are_refused_in_words(kind, root):
     count = amount()

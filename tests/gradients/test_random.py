@@ -10,8 +10,6 @@ import clutchwork as cw
 from support import gradient_cases, samples
 from support.amount import amount
 
-pytestmark = pytest.mark.slow
-
 ELEMENTS = samples.declared(*samples.ELEMENT_ROLES)
 # guards that are the least of several, stops that are struck together, a speed that is round-off
 SEEN = {"laws": (24,), "stops": (22,), "contacts": (24,)}
@@ -25,15 +23,18 @@ def report(case, seed, count):
         return gradient_cases.checked(case, seed, count)
 
 
+@pytest.mark.random
 @pytest.mark.parametrize("kind", gradient_cases.KINDS)
 def test_random_drivelines(kind):
     compared, refused, wrong = 0, list[str](), list[str]()
-    for seed in dict.fromkeys([*range(amount(6)), *SEEN.get(kind, ())]):
+    seeds = dict.fromkeys([*range(amount(4)), *SEEN.get(kind, ())])
+    for seed in seeds:
         found = report(gradient_cases.KINDS[kind](seed), seed, 2)
         compared, refused = compared + found.compared, [*refused, *found.refused]
         wrong += [f"seed {seed}: {text}" for text in found.wrong]
     assert not wrong, "\n".join(wrong)
-    assert compared > 5 * amount(6)
+    # one of two may have an event that no derivative passes
+    assert compared > 2 * len(seeds)
 
 
 @pytest.mark.parametrize("cls", ELEMENTS, ids=lambda cls: cls.kind)

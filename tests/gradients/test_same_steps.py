@@ -35,6 +35,7 @@ def test_examples(name: str) -> None:
     assert apart(*example_models.model(name)) <= SAME
 
 
+@pytest.mark.random
 def test_random_drivelines() -> None:
     found = list[float]()
     with warnings.catch_warnings():

@@ -55,6 +55,7 @@ def test_order_and_direction_change_no_hint(sign: float, turned: bool) -> None:
     assert other.numbers == pytest.approx(dict(plain.numbers), rel=1e-9)
 
 
+@pytest.mark.random
 def test_the_direction_of_a_random_driveline_changes_no_hint() -> None:
     for seed in range(amount(60)):
         description = random_drivelines.describe(seed)
@@ -62,6 +63,7 @@ def test_the_direction_of_a_random_driveline_changes_no_hint() -> None:
         assert said(other.hints) == said(one.hints), seed
 
 
+@pytest.mark.random
 def test_hints_about_random_drivelines_are_few_and_hold_what_they_say() -> None:
     found = 0
     for seed in range(amount(100)):

@@ -12,7 +12,7 @@ import clutchwork as cw
 from clutchwork.declare.schema import Role, specs
 from clutchwork.linear.instant import instant_of
 from support import random_contacts, random_drivelines, random_large, samples
-from support.amount import amount
+from support.amount import seeds
 from support.perturbed import Standing, mismatch
 
 # differences over a part h = 1e-5 of each size miss h^2 times third derivatives, and round-off over h is 1e-11
@@ -22,7 +22,7 @@ CLOSE = 1e-6
 INSTANTS = np.linspace(0.013, 1.987, 9)
 
 
-@pytest.mark.parametrize("seed", range(amount(24)))
+@pytest.mark.parametrize("seed", seeds(24))
 def test_random_drivelines_in_all_their_states(seed):
     run = random_drivelines.describe(seed).driveline().simulate(random_drivelines.T_END)
     for at in INSTANTS:
@@ -33,7 +33,7 @@ def test_random_drivelines_in_all_their_states(seed):
         assert mismatch(standing) < CLOSE, at
 
 
-@pytest.mark.parametrize("seed", range(amount(60)))
+@pytest.mark.parametrize("seed", seeds(60))
 def test_random_contacts_with_loops_and_freewheels(seed):
     run = random_contacts.driveline(seed).simulate(random_contacts.T_END)
     for at in (0.017, 0.26, 0.502, 0.744, 0.987):
@@ -42,7 +42,7 @@ def test_random_contacts_with_loops_and_freewheels(seed):
             assert mismatch(Standing(instant_of(run, at))) < CLOSE, at
 
 
-@pytest.mark.parametrize("seed", range(amount(6)))
+@pytest.mark.parametrize("seed", seeds(6))
 def test_many_speeds_with_gears_and_prescribed_speeds(seed):
     run = random_large.driveline(seed).simulate(random_large.T_END)
     for at in (0.017, 0.487):

@@ -218,6 +218,7 @@ def test_every_value_of_every_signal(kind):
     assert not any(found), "\n".join(found)
 
 
+@pytest.mark.random
 def test_random_drivelines():
     def check(seed: int) -> str:
         d = random_drivelines.describe(seed).driveline()
@@ -242,6 +243,7 @@ def test_where_a_stop_is_at_the_start(stop):
     assert d.assemble().changed({f"x.{name}": 0.002}).initial_state.tolist() == [0.002]
 
 
+@pytest.mark.random
 def test_six_speed_gearbox():
     def check(seed: int) -> str:
         d = six_speed.gearbox(six_speed.SHIFT)

@@ -14,7 +14,7 @@ from clutchwork.page.data import Wanted
 from clutchwork.page.page import page
 from clutchwork.run.settings import merged
 from support import example_models
-from support.amount import amount
+from support.amount import seeds
 from support.project import ROOT
 from support.transmissions import in_gear
 
@@ -56,7 +56,7 @@ def looked(request: pytest.FixtureRequest, browse: Any, tmp_path_factory: pytest
         assert main(["page", str(model), "--out", str(path)]) == 0
     programs = [name for name in example_models.MODELS if name not in files] if first else []
     files |= {name: example_page(name, folder / f"{name}.html") for name in programs}
-    boxes = cw.catalogue() if first and amount() > 1000 else BOXES if first else ()
+    boxes = cw.catalogue() if first and len(seeds()) > 1000 else BOXES if first else ()
     files |= {name: box_page(name, folder / f"{name}.html") for name in boxes}
     files["nasty"] = nasty(folder / "nasty.html")
     return dict(zip(files, browse("browser.mjs", request.param, *files.values()), strict=True))

@@ -116,6 +116,7 @@ def codes(run: cw.Trajectory, event: cw.Event) -> list[float]:
     return [event.time, contact, modes[event.before], modes[event.after], causes[event.cause]]
 
 
+@pytest.mark.random
 def test_every_position_of_the_knots_ends_with_a_status(engine: Any) -> None:
     data = page_data("six_speed")
     random = np.random.default_rng(3)

@@ -39,6 +39,7 @@ def quietly(d: cw.Driveline, t_end: float, **options: Any) -> Any:
         return d.simulate(t_end, **options)
 
 
+@pytest.mark.random
 @pytest.mark.parametrize("cls", [cls for cls in LAWS if cls.sticks], ids=lambda cls: cls.kind)
 def test_a_law_that_sticks_has_no_coefficient_below_zero(cls: Any) -> None:
     rng = np.random.default_rng(5)
@@ -63,6 +64,7 @@ def _from_runs(law: Any) -> list[tuple[float, float]]:
     return found
 
 
+@pytest.mark.random
 @pytest.mark.parametrize("cls", [cls for cls in LAWS if not cls.sticks], ids=lambda cls: cls.kind)
 def test_a_law_that_settles_in_sliding_opposes_it_or_warns(cls: Any) -> None:
     """Held at one slip long enough for its states to settle, a law takes power from the shaft."""

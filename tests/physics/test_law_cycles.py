@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import clutchwork as cw
 from clutchwork.declare.schema import Role
 from support import samples
+from support.amount import part
 from support.friction import core, sets
 from support.friction.histories import sweeps
 
@@ -32,7 +33,7 @@ def stored(law: Any, run: Any) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", sets.PASSIVE)
-@settings(max_examples=6)
+@settings(max_examples=part(6))
 @given(first=AMPLITUDES, second=AMPLITUDES, frequency=FREQUENCIES, phase=st.floats(0.0, 6.0))
 def test_friction_dissipates_in_every_motion(
     name: str, first: float, second: float, frequency: float, phase: float
@@ -61,7 +62,7 @@ def cycle(law: cw.Law, amplitude: float, frequency: float) -> tuple[float, float
 
 
 @pytest.mark.parametrize("name", sets.SWINGS)
-@settings(max_examples=12)
+@settings(max_examples=part(12))
 @given(amplitude=AMPLITUDES, frequency=FREQUENCIES)
 def test_friction_dissipates_in_every_swing(name: str, amplitude: float, frequency: float) -> None:
     heat, gap = cycle(sets.SWINGS[name], amplitude, frequency)
@@ -70,7 +71,7 @@ def test_friction_dissipates_in_every_swing(name: str, amplitude: float, frequen
     assert heat >= -(1e-9 + 2.0 * gap) * amplitude
 
 
-@settings(max_examples=10)
+@settings(max_examples=part(10))
 @given(there=st.floats(2e-5, 5e-4), back=st.floats(1e-6, 1e-4), time=st.floats(0.005, 0.3))
 def test_gms_gives_away_no_more_than_its_bound(there: float, back: float, time: float) -> None:
     """Sliding fast, stepping back slowly: (26) bounds the gain of each reversal."""

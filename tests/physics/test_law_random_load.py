@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import clutchwork as cw
+from support.amount import part
 from support.friction import core, sets
 from support.friction.build import counterpart
 from support.friction.compare import assert_agree
@@ -28,7 +29,7 @@ def corners(forces: list[float]) -> Corners:
 
 
 @pytest.mark.parametrize("name", WITH_STATES)
-@settings(max_examples=3)
+@settings(max_examples=part(3))
 @given(forces=FORCES, mass=MASSES)
 def test_random_load_agrees_with_the_independent_integration(name: str, forces: list[float], mass: float) -> None:
     law, force = sets.ALL[name], corners(forces)

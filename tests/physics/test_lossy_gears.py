@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from math import atan, cos, pi, tan
 
 import numpy as np
@@ -10,10 +9,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import clutchwork as cw
+from support.amount import seeds
 from support.lossy_chains import chain, misses
 
 TIGHT = {"rtol": 1e-9, "atol": 1e-11}
-CASES = int(os.environ.get("CLUTCHWORK_CASES", "60"))
+CASES = len(seeds(60))
 
 
 def residual(run):
@@ -78,10 +78,10 @@ def test_against_scipy_between_the_flips():
     assert not run.events.of("gear")
 
 
-@pytest.mark.parametrize("first", range(0, CASES, 20))
-def test_random_chains_keep_the_law_of_the_modelica_library(first):
+@pytest.mark.parametrize("first_seed", range(0, CASES, 20))
+def test_random_chains_keep_the_law_of_the_modelica_library(first_seed):
     """Loss torques over the torques at the ports, which follow from the accelerations and not from the loads."""
-    for seed in range(first, first + 20):
+    for seed in range(first_seed, first_seed + 20):
         made = chain(seed)
         run = made.driveline.simulate(1.5, **TIGHT)
         assert run.status == "done", f"{seed}: {run.message}"

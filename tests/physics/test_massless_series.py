@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import clutchwork as cw
+from support.amount import part
 from support.declarations import Coil, OiledCoil
 
 RATE = st.floats(20.0, 500.0)
@@ -53,7 +54,7 @@ def test_any_springs_in_series_are_one_spring(kind):
 
 
 @given(k1=RATE, k2=RATE, c=DAMPING)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=part(25), deadline=None)
 def test_a_damper_between_springs_is_a_maxwell_element(k1, k2, c):
     """At a steady rate v the torque is c v (1 - exp(-k t/c)), k that of both springs in series."""
     d = cw.Driveline("maxwell")
@@ -76,7 +77,7 @@ LINK = st.tuples(st.sampled_from(["spring", "coil", "damper", "both", "oiled"]),
 
 
 @given(links=st.lists(LINK, min_size=2, max_size=5))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=part(40), deadline=None)
 def test_every_chain_of_springs_and_dampers_moves_as_with_vanishing_inertia(links):
     d = _chain(links)
     assert [str(problem) for problem in d.check()] == []

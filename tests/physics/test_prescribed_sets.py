@@ -84,6 +84,7 @@ def test_a_law_of_pieces_stays_within_its_capacity_when_the_slip_jumps(after: fl
     assert np.abs(run["c.torque"]).max() <= 40.0 * 1.01
 
 
+@pytest.mark.random
 def test_a_freewheel_that_an_impulse_stopped_locks_under_a_ramp() -> None:
     """What the impulse leaves of the slip, and of the acceleration, is round-off: no endless sequence."""
     for seed in range(amount()):
@@ -96,6 +97,7 @@ def test_a_freewheel_that_an_impulse_stopped_locks_under_a_ramp() -> None:
         assert d.simulate(2.0).status == "done", seed
 
 
+@pytest.mark.random
 def test_a_load_that_dips_below_zero_by_round_off_goes_on() -> None:
     """A sine whose offset is its amplitude less 1e-12 of it, or exactly."""
     for seed in range(amount()):
@@ -111,6 +113,7 @@ def test_a_load_that_dips_below_zero_by_round_off_goes_on() -> None:
         assert d.simulate(2.0).status == "done", seed
 
 
+@pytest.mark.random
 def test_a_dip_of_the_capacity_within_a_step_is_seen() -> None:
     """The load exceeds the capacity, a sine, for a short while: the same events with a hundred steps a period."""
 

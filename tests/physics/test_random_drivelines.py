@@ -15,9 +15,10 @@ import pytest
 
 import clutchwork as cw
 from support import independent, random_drivelines
+from support.amount import part
 from support.runs import switches
 
-COUNT = 400
+COUNT = part(400)
 
 # asked for: at most 4 wrong of 400 at rtol 1e-4, 1 at 1e-6 (Rodas5P)
 ALLOWED = {1e-4: 4, 1e-6: 1}
@@ -43,6 +44,7 @@ def simulated(seed: int, rtol: float) -> tuple[tuple[float, str, str], ...]:
     return (*events(run), *stopped)
 
 
+@pytest.mark.random
 @pytest.mark.parametrize("rtol", ALLOWED)
 def test_sequences(rtol: float) -> None:
     wrong = []
@@ -53,6 +55,7 @@ def test_sequences(rtol: float) -> None:
     assert len(wrong) <= ALLOWED[rtol], f"seeds {wrong}"
 
 
+@pytest.mark.random
 def test_the_drivelines_are_worth_it() -> None:
     """Enough happens in them: events per run, break-aways as well as lock-ups."""
     lists = [simulated(seed, 1e-11) for seed in range(COUNT)]
@@ -62,7 +65,6 @@ def test_the_drivelines_are_worth_it() -> None:
     assert kinds.count("forward") + kinds.count("backward") > COUNT
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 2, 3, 5, 6, 7])
 def test_independent_solver(seed: int) -> None:
     """The same drivelines by enumeration and SciPy's DOP853, at rtol 1e-10."""

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from support.amount import amount
+from support.amount import seeds
 from support.runs import EXACT, TIGHT, at_end
 
 G, MASS, INERTIA, RADIUS = 9.80665, 1200.0, 3.0, 0.3
@@ -107,7 +107,7 @@ def test_a_wheel_that_lifts_off_slides_until_it_lands() -> None:
     _balanced(run)
 
 
-@pytest.mark.parametrize("seed", range(amount(20)))
+@pytest.mark.parametrize("seed", seeds(20))
 def test_random_drives_and_brakings_are_those_of_masses_alone(seed: int) -> None:
     """The wheel as a mass J/R^2, its torques over R: a clutch between two masses without gear and rim."""
     rng = np.random.default_rng(seed)

@@ -87,6 +87,7 @@ def same_events(one: Any, other: Any, tolerance: float) -> None:
             assert getattr(a, what) == pytest.approx(getattr(b, what), abs=tolerance * scale, rel=0), (what, a, b)
 
 
+@pytest.mark.random
 def test_a_controller_makes_the_events_of_a_table_in_random_drivelines() -> None:
     seen = 0
     for seed in range(amount()):
@@ -98,6 +99,7 @@ def test_a_controller_makes_the_events_of_a_table_in_random_drivelines() -> None
     assert seen > amount()
 
 
+@pytest.mark.random
 def test_knots_that_change_nothing_make_no_difference() -> None:
     for seed in range(amount() // 10):
         model = random_drivelines.describe(seed)

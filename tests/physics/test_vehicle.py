@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import clutchwork as cw
-from support.amount import amount
+from support.amount import seeds
 from support.runs import EXACT, TIGHT, at_end
 
 G = 9.80665
@@ -138,7 +138,7 @@ def _reference(points: list[tuple[float, float]], c0: float, x: float, v: float,
     raise AssertionError
 
 
-@pytest.mark.parametrize("seed", range(amount(30)))
+@pytest.mark.parametrize("seed", seeds(30))
 def test_random_roads_against_uniform_acceleration(seed: int) -> None:
     rng = np.random.default_rng(seed)
     n = int(rng.integers(2, 9))

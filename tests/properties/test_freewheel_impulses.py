@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 from scipy.optimize import isotonic_regression, nnls
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -177,17 +178,21 @@ def moving(seed: int) -> str:
     return ", ".join(back + pulls)
 
 
+@pytest.mark.random
 def test_chain_is_the_isotonic_regression_of_its_speeds() -> None:
     sweep(chain, amount())
 
 
+@pytest.mark.random
 def test_trees_and_loops_with_locked_clutches() -> None:
     sweep(together, amount())
 
 
+@pytest.mark.random
 def test_prescribed_speed_that_jumps() -> None:
     sweep(jump, amount())
 
 
+@pytest.mark.random
 def test_no_freewheel_turns_back_or_pulls() -> None:
     sweep(moving, amount())

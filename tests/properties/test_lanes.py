@@ -11,7 +11,7 @@ import pytest
 from clutchwork import _core
 from clutchwork.assembly.system import System
 from support import random_contacts, random_drivelines, random_large, six_speed
-from support.amount import amount
+from support.amount import seeds
 from support.pages import page
 from support.project import ROOT
 
@@ -52,7 +52,7 @@ def check(systems: list[System], seed: int, t_end: float, method: str, **options
         assert [told(one) for one in together] == [told(one) for one in alone]
 
 
-@pytest.mark.parametrize("seed", range(amount(24)))
+@pytest.mark.parametrize("seed", seeds(24))
 def test_random_drivelines(seed: int) -> None:
     """Groups of one structure, of any size, with both choices of the method and with integrals now and then."""
     rng = np.random.default_rng(seed)
@@ -63,7 +63,7 @@ def test_random_drivelines(seed: int) -> None:
     check([system] * int(rng.integers(2, 12)), seed, 1.0, method, **options)
 
 
-@pytest.mark.parametrize("seed", range(amount(6)))
+@pytest.mark.parametrize("seed", seeds(6))
 def test_mixed_groups(seed: int) -> None:
     """Neighbours in a group may be of different structures."""
     rng = np.random.default_rng(seed)
@@ -71,7 +71,7 @@ def test_mixed_groups(seed: int) -> None:
     check([pool[int(k)] for k in rng.integers(0, len(pool), 13)], seed, 1.0, "rodas5p")
 
 
-@pytest.mark.parametrize("seed", range(amount(8)))
+@pytest.mark.parametrize("seed", seeds(8))
 def test_in_pieces_with_work(seed: int) -> None:
     """Signals that vary are read elsewhere for the work: a run in pieces starts each with those of its own time."""
     system = random_drivelines.describe(seed).driveline().assemble()

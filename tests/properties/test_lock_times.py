@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import PchipInterpolator
 
@@ -157,22 +158,27 @@ def checker(make: Callable[[np.random.Generator], Engagement]) -> Callable[[int]
     return of
 
 
+@pytest.mark.random
 def test_stribeck() -> None:
     sweep(checker(with_stribeck), amount())
 
 
+@pytest.mark.random
 def test_karnopp() -> None:
     sweep(checker(with_karnopp), amount())
 
 
+@pytest.mark.random
 def test_exponential() -> None:
     sweep(checker(with_exponential), amount())
 
 
+@pytest.mark.random
 def test_smooth_table() -> None:
     sweep(checker(with_smooth_table), amount())
 
 
+@pytest.mark.random
 def test_linear_table() -> None:
     sweep(checker(with_linear_table), amount())
 
@@ -220,5 +226,6 @@ def gms(seed: int) -> str:
     return ""
 
 
+@pytest.mark.random
 def test_gms_slip_vanishes() -> None:
     sweep(gms, amount())

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 import clutchwork as cw
@@ -133,10 +134,12 @@ def check(seed: int, elastic: bool) -> str:
     return ""
 
 
+@pytest.mark.random
 def test_with_an_elastic_shaft() -> None:
     sweep(lambda seed: check(seed, elastic=True), amount() // 3)
 
 
+@pytest.mark.random
 def test_with_a_second_clutch() -> None:
     sweep(lambda seed: check(seed, elastic=False), amount() // 3)
 

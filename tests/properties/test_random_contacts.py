@@ -95,6 +95,7 @@ def answers(seed: int) -> dict[str, str]:
     return {question.__name__: question(made, contacts(model)) for question in QUESTIONS}
 
 
+@pytest.mark.random
 @pytest.mark.parametrize("question", [question.__name__ for question in QUESTIONS])
 def test_random_contacts(question: str) -> None:
     sweep(lambda seed: answers(seed)[question], COUNT)

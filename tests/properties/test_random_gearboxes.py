@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import pytest
 
 import clutchwork as cw
 from support.amount import amount
@@ -123,6 +124,7 @@ def check(seed: int) -> str:
     return power_fault(run, box, values)
 
 
+@pytest.mark.random
 def test_random_gearboxes() -> None:
     sweep(check, amount())
 

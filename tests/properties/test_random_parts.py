@@ -9,13 +9,13 @@ import pytest
 
 import clutchwork as cw
 from support import random_parts
-from support.amount import amount
+from support.amount import seeds
 
 FINE: dict[str, Any] = {"rtol": 1e-9, "atol": 1e-11, "max_steps": 400_000}
 
 
 # those behind ended early until a rule of the core was mended
-@pytest.mark.parametrize("seed", [*range(amount(60)), 197, 825, 910])
+@pytest.mark.parametrize("seed", [*seeds(60), 197, 825, 910])
 def test_energy_closes(seed: int) -> None:
     run = random_parts.driveline(seed).simulate(random_parts.T_END, dt=0.01, **FINE)
     assert run.status == "done", run.message
@@ -28,7 +28,7 @@ def test_energy_closes(seed: int) -> None:
     assert all(np.all(np.isfinite(run[name])) for name in run.names if run[name].dtype.kind == "f")
 
 
-@pytest.mark.parametrize("seed", range(amount(12)))
+@pytest.mark.parametrize("seed", seeds(12))
 def test_a_run_goes_on_from_its_state_with_the_same_bits(seed: int) -> None:
     driveline = random_parts.driveline(seed)
     half = 0.5 * random_parts.T_END
@@ -41,7 +41,7 @@ def test_a_run_goes_on_from_its_state_with_the_same_bits(seed: int) -> None:
     assert other.save().row == one.save().row
 
 
-@pytest.mark.parametrize("seed", range(amount(12)))
+@pytest.mark.parametrize("seed", seeds(12))
 def test_a_ratio_that_stays_is_a_gear(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each gear as a transmission whose ratio could vary: the same motion, whatever else is in the driveline."""
     fixed = random_parts.driveline(seed, with_gear=True).simulate(random_parts.T_END, dt=0.05, **FINE)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pytest
 from scipy.optimize import linprog
 
 import clutchwork as cw
@@ -156,18 +157,22 @@ FRICTION = ("clutch", "limiter")
 ALL = ("clutch", "limiter", "freewheel", "sprag")
 
 
+@pytest.mark.random
 def test_friction_on_one_shaft() -> None:
     sweep(lambda seed: lets_go(one_shaft(np.random.default_rng([seed, 10]), FRICTION)), amount())
 
 
+@pytest.mark.random
 def test_friction_and_freewheels_on_one_shaft() -> None:
     sweep(lambda seed: lets_go(one_shaft(np.random.default_rng([seed, 11]), ALL)), amount())
 
 
+@pytest.mark.random
 def test_friction_over_several_shafts() -> None:
     sweep(lambda seed: lets_go(several_shafts(np.random.default_rng([seed, 12]), FRICTION)), amount())
 
 
+@pytest.mark.random
 def test_friction_and_freewheels_over_several_shafts() -> None:
     sweep(lambda seed: lets_go(several_shafts(np.random.default_rng([seed, 13]), ALL)), amount())
 
@@ -219,5 +224,6 @@ def filling(seed: int) -> str:
     return "" if not told else f"{told[0].element} {told[0].before} -> {told[0].after} at {told[0].time:.9g} s"
 
 
+@pytest.mark.random
 def test_filling_brakes_on_a_standing_shaft() -> None:
     sweep(filling, amount())

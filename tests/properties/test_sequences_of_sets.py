@@ -79,6 +79,7 @@ def exact(seed: int) -> Sequence:
     return sequence(seed, 1e-11)
 
 
+@pytest.mark.random
 @pytest.mark.parametrize("rtol", ALLOWED)
 def test_sequences(rtol: float) -> None:
     wrong = {seed: text for seed in range(COUNT) if (text := difference(seed, rtol))}

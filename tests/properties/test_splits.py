@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pytest
 
 import clutchwork as cw
 from support.amount import amount
@@ -150,10 +151,12 @@ def shares_of(seed: int) -> str:
     return f"shares of {count} parts are off by {error.max():.1e} of the largest capacity"
 
 
+@pytest.mark.random
 def test_split_clutch_moves_as_one() -> None:
     sweep(moves_as_one, amount())
 
 
+@pytest.mark.random
 def test_shares_are_those_of_the_capacity() -> None:
     sweep(shares_of, amount())
 

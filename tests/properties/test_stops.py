@@ -10,10 +10,10 @@ import pytest
 
 import clutchwork as cw
 from support import random_stops
-from support.amount import amount
+from support.amount import seeds
 
 
-@pytest.mark.parametrize("seed", range(amount()))
+@pytest.mark.parametrize("seed", seeds())
 def test_random_stops(seed: int) -> None:
     d, found = _with_stops(seed)
     with warnings.catch_warnings():

@@ -115,6 +115,7 @@ def same(seed: int, make: Callable[[np.random.Generator], Load]) -> str:
     return "" if late <= TIME else f"events differ by {late:.1e} s"
 
 
+@pytest.mark.random
 @pytest.mark.parametrize("make", [sines, tables, reversed_tables, actuator])
 def test_same_as_one_signal(make: Callable[[np.random.Generator], Load]) -> None:
     sweep(lambda seed: same(seed, make), amount() // 2)

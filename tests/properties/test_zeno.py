@@ -44,10 +44,12 @@ def after_a_spring(seed: int) -> str:
     return "" if error <= 1e-6 else f"{count} clutches: speeds differ by {error:.1e} of full scale"
 
 
+@pytest.mark.random
 def test_freewheel_and_equal_clutches_after_a_spring() -> None:
     sweep(after_a_spring, amount())
 
 
+@pytest.mark.random
 def test_many_contacts_switch_at_once() -> None:
     """More contacts than the guard counts close, lock and let go in the same instants: on shafts of their own, on one
     shaft, and in a chain; with freewheels among them.
@@ -118,6 +120,7 @@ def stick_slip(rng: np.random.Generator, rate: float) -> cw.Driveline:
     return d
 
 
+@pytest.mark.random
 def test_events_without_end_stop_after_as_many_as_promised() -> None:
     """Stick-slip with 100 to 10 000 events within a microsecond."""
 
@@ -133,6 +136,7 @@ def test_events_without_end_stop_after_as_many_as_promised() -> None:
     sweep(check, amount() // 3)
 
 
+@pytest.mark.random
 def test_fewer_events_within_a_microsecond_go_on() -> None:
     """Stick-slip with 2 to 30 events within a microsecond, for ten of them."""
 

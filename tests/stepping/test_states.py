@@ -14,13 +14,13 @@ import pytest
 import clutchwork as cw
 from clutchwork.base import archive
 from clutchwork.results.exchange.saved import RUN_PARTS, RunFormatError
-from support.amount import amount
+from support.amount import seeds
 from support.random_contacts import driveline as random_contacts
 from support.random_drivelines import T_END, describe
 
 ROOT = Path(__file__).resolve().parents[2]
 MODELS = sorted((ROOT / "examples").glob("*/model.toml"))
-CASES = max(4, amount() // 12)
+CASES = max(4, len(seeds()) // 12)
 STEPS = {"output": "steps"}
 
 

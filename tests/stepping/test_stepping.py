@@ -12,14 +12,14 @@ import pytest
 
 import clutchwork as cw
 from support import six_speed
-from support.amount import amount
+from support.amount import seeds
 from support.random_drivelines import T_END, describe, sequence
 
 # tight enough that what the pieces of a run cut from steps of the solver is small beside what is compared
 TIGHT = {"rtol": 1e-9, "atol": 1e-11}
 # of the largest speed or torque; two runs of other steps may each be wrong by a few hundred times rtol
 CLOSE = 1e-6
-CASES = max(4, amount() // 12)
+CASES = max(4, len(seeds()) // 12)
 
 
 def pieces(rng: np.random.Generator, end: float, count: int) -> list[float]:

@@ -10,11 +10,11 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.declare.core import core
-from support.amount import amount
+from support.amount import seeds
 from support.random_drivelines import T_END, describe
 from support.wasm import Job, Stretch, grid, here, set_segments
 
-CASES = max(6, amount() // 10)
+CASES = max(6, len(seeds()) // 10)
 
 
 def pressures(seed: int) -> tuple[cw.System, str, int, cw.Table]:

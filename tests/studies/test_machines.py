@@ -17,7 +17,7 @@ from support import scattered, slow_study
 pytest.importorskip("pyarrow")
 pytest.importorskip("scipy")
 psutil = pytest.importorskip("psutil")
-pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
+pytestmark = pytest.mark.filterwarnings("ignore")
 ENGINES = {"ray": "ray", "dask": "distributed"}
 
 

@@ -13,7 +13,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ("pyproject.toml", "CMakeLists.txt", "README.md", "LICENSE", "src", "cpp", "interfaces", "tools")
 # neither caches nor anything that an in-place build left
-IGNORED = shutil.ignore_patterns("__pycache__", "*.so", "*.egg-info", "build", ".venv")
+IGNORED = shutil.ignore_patterns("__pycache__", "*.so", "*.egg-info", "build", ".venv", "node_modules", "static")
 
 
 def copy(to: Path, *more: str) -> Path:

@@ -90,6 +90,7 @@ def test_six_speed_gearbox():
     assert compared(system, found, 4.0, {}, range(0, 64, 5)) == ""
 
 
+@pytest.mark.random
 def test_random_drivelines_random_names():
     def check(seed: int) -> str:
         rng = np.random.default_rng(seed)

@@ -14,11 +14,11 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import METHODS
 from clutchwork.page import core as module
 from support import example_models, random_drivelines, random_parts, random_stops, six_speed
-from support.amount import amount
+from support.amount import seeds
 from support.project import ROOT
 from support.wasm import WASM, Answer, Job, Stretch, grid, here, in_node
 
-CASES = max(4, amount() // 6)
+CASES = max(4, len(seeds()) // 6)
 
 
 def jobs() -> Iterator[Job]:
