@@ -127,3 +127,17 @@ def test_stribeck_without_fall_is_coulomb() -> None:
     one = body(even, START).simulate(2.0, dt=0.01, **TIGHT)
     other = body(cw.Coulomb(static=STATIC, kinetic=STATIC), START).simulate(2.0, dt=0.01, **TIGHT)
     assert one["m.speed"] == pytest.approx(other["m.speed"], abs=1e-12)
+
+
+def test_where_tables_over_the_temperature_have_crossed_the_kinetic_coefficient_holds() -> None:
+    """At 450 K the lines have 0.25 at rest and 0.26 while it slips: what sticks holds 0.26 of the load."""
+    law = cw.TemperatureTable(
+        static=[(300.0, 0.4), (400.0, 0.3)],
+        kinetic=[(300.0, 0.35), (400.0, 0.29)],
+        temperature=450.0,
+        extrapolation="linear",
+    )
+    with pytest.warns(UserWarning, match="kinetic falls to zero at 883"):
+        run = body(law, force=cw.Ramp(height=2.0, duration=2.0)).simulate(2.0, **TIGHT)
+    assert changes(run, "forward") == [pytest.approx(0.26 * LOAD, abs=EXACT)]
+    assert changes(run, "locked") == []
