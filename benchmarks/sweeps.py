@@ -20,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 T_END = 4.0
 FIRST, LAST = 0.2, 0.3
 NAME = "F1.gain"
+SELDOM_USED = ("lanes", "c_api", "local")
 PLAIN: dict[str, Any] = {"angles": False, "work": False}
 
 
@@ -42,10 +43,12 @@ def sweep(system: cw.System, variants: int, threads: int, outputs: Any = "w8.spe
 
 def loop(folder: Path, system: cw.System, variants: int) -> Callable[[int], Taken] | None:
     """The loop in C++ with the core of this build; None where there is none."""
-    builds = sorted((ROOT / "build").glob("*/libclutchwork_core.a"), key=lambda path: path.stat().st_mtime)
-    builds = [path for path in builds if path.parent.name != "cpp"]
-    if not builds:
+    builds = (ROOT / "build").glob("cp3*/CMakeFiles/clutchwork_core.dir/cpp/src")
+    newest = max(builds, key=lambda path: path.stat().st_mtime, default=None)
+    if newest is None:
         return None
+    # in the order of CMakeLists.txt: of what several files compile the first one counts
+    objects = sorted(newest.glob("*.o"), key=lambda path: (path.name.split(".")[0] in SELDOM_USED, path.name))
     program, data = folder / "sweep_loop", folder / "system"
     command = [
         "c++",
@@ -55,7 +58,7 @@ def loop(folder: Path, system: cw.System, variants: int) -> Callable[[int], Take
         f"-I{ROOT / 'cpp/include'}",
         str(ROOT / "benchmarks/sweep_loop.cpp"),
     ]
-    subprocess.run([*command, str(builds[-1]), "-o", str(program)], check=True)
+    subprocess.run([*command, *map(str, objects), "-o", str(program)], check=True)
     data.write_bytes(system.to_bytes())
 
     def run(threads: int) -> Taken:

@@ -1,4 +1,4 @@
-"""Break one rule of the physics on purpose, and tell which test of a tier sees it: tools/broken_rules.toml.
+"""Break one rule of the physics on purpose, and report which test of a tier sees it: tools/broken_rules.toml.
 
 Usage: PYTHON tools/break_rules.py --list
        PYTHON tools/break_rules.py [--tier first|last|all] [--likely] [NAME...]

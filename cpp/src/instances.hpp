@@ -13,8 +13,8 @@
 #define CLUTCHWORK_PHASES(KEYWORD, FORM) \
   KEYWORD template Status run_phase<FORM<double>>(Workspace<double>&, double, Sink&);
 /// Groups of runs take the steps of these phases themselves.
-#define CLUTCHWORK_SMALL_PHASES(KEYWORD)                        \
-  KEYWORD template class Phase<SmallForm<double>>;              \
+#define CLUTCHWORK_SMALL_PHASES(KEYWORD)           \
+  KEYWORD template class Phase<SmallForm<double>>; \
   CLUTCHWORK_PHASES(KEYWORD, SmallForm)
 
 /// What is the same in all forms.

@@ -4,6 +4,7 @@
 #include "typed_run.hpp"
 
 using D = clutchwork::Dual<double, 2>;
+SMALL_AND_SPARSE(clutchwork::Dual<double, 2>)
 
 using namespace fixture;
 

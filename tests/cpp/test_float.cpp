@@ -3,6 +3,8 @@
 #include "check.hpp"
 #include "typed_run.hpp"
 
+SMALL_AND_SPARSE(float)
+
 using namespace fixture;
 
 namespace {

@@ -28,3 +28,13 @@ struct TypedRun {
 };
 
 }  // namespace fixture
+
+/// Forms of another scalar that are compiled: those of few speeds in one, others in the sparse form.
+#define SMALL_AND_SPARSE(...)                                                             \
+  namespace clutchwork {                                                                  \
+  template <>                                                                             \
+  Status dispatch<__VA_ARGS__>(Workspace<__VA_ARGS__> & ws, double t_end, Sink& sink) {   \
+    if (ws.reduced.is_sparse) return run_phase<SparseForm<__VA_ARGS__>>(ws, t_end, sink); \
+    return run_phase<SmallForm<__VA_ARGS__>>(ws, t_end, sink);                            \
+  }                                                                                       \
+  }

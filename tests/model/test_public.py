@@ -164,6 +164,33 @@ def test_missing_core_or_one_of_another_layout_is_refused_at_import(core, words)
     _refused(f"import sys, types; sys.modules['clutchwork._core'] = {core}; import clutchwork", words)
 
 
+ONE = "types.SimpleNamespace(layout={layout}, schema=_core.schema, runs_here=lambda: {here})"
+
+
+@pytest.mark.parametrize(
+    ("module", "words"),
+    [
+        ("None", "derivatives of runs are computed by a compiled module of their own, which cannot be loaded"),
+        (ONE.format(layout="'another'", here=True), "derivatives of clutchwork were built from other declarations"),
+        (ONE.format(layout="_core.layout", here=False), "derivatives of clutchwork were built for another processor"),
+    ],
+)
+def test_runs_need_no_derivatives_and_gradients_say_what_is_missing(module, words):
+    code = f"""
+import sys, types
+from clutchwork import _core
+sys.modules["clutchwork._derivatives"] = {module}
+import clutchwork as cw
+d = cw.Driveline()
+d.add(cw.Damper("x", base=d.housing, follower=d.shaft("a", inertia=1.0, speed=1.0), damping=1.0))
+run = d.simulate(1.0)
+print("simulated")
+run.gradient("a.speed", "x.damping")
+"""
+    _refused(code, words)
+    assert _python(code).stdout.strip() == "simulated"
+
+
 SPRING = """
 import sys, types
 from clutchwork import _core

@@ -20,8 +20,10 @@ MEASURED = TESTS / "cpu_seconds.json"
 TIERS = ("first", "last", "all")
 # s of CPU time that every case of the first tier may take
 QUICK = 0.5
-# s that the cheapest case of a test may take there, and each test that draws random cases
+# s that the cheapest case of a test may take there
 HELD = 2.0
+# s that a part of the random cases of a test may take there
+DRAWN = 3.0
 # the first tier draws one of so many random cases, and of seeds that are cases of their own
 PART = 4
 
@@ -58,7 +60,7 @@ def first_tier(cases: Sequence[Case], seconds: Mapping[str, float]) -> set[str]:
     """Names of the cases of the first tier; all cases of a test are given."""
     costs = {case.name: seconds.get(case.name, 0.0) / (PART if case.random else 1) for case in cases}
     found = {
-        case.name for case in _few_seeds(cases) if case.always or costs[case.name] <= (HELD if case.random else QUICK)
+        case.name for case in _few_seeds(cases) if case.always or costs[case.name] <= (DRAWN if case.random else QUICK)
     }
     touched = {case.test for case in cases if case.name in found}
     slow: dict[str, list[str]] = defaultdict(list)

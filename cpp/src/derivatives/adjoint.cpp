@@ -4,8 +4,8 @@
 
 #include <cstring>
 #include <new>
-#include "lifted.hpp"
 #include "../system_checks.hpp"
+#include "lifted.hpp"
 
 using namespace clutchwork;
 

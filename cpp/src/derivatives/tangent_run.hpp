@@ -3,8 +3,8 @@
 
 #include <cstring>
 #include <new>
-#include "lifted.hpp"
 #include "../system_checks.hpp"
+#include "lifted.hpp"
 #include "tangents.hpp"
 
 /// A run with derivatives in some directions, for registers of R numbers.

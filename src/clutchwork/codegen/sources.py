@@ -16,6 +16,8 @@ CHECKOUT = Path(__file__).resolve().parents[3]
 GENERATED = Path("include", "clutchwork")
 REGISTRY = GENERATED / "registry.gen.hpp"
 ENDINGS = (".cpp", ".hpp", ".h")
+# a controller runs without derivatives
+LEFT_OUT = "derivatives"
 
 
 def sources() -> dict[Path, bytes]:
@@ -30,8 +32,9 @@ def sources() -> dict[Path, bytes]:
 
 def _below(folder: Path) -> Iterator[tuple[Path, bytes]]:
     for path in sorted(folder.rglob("*")):
-        if path.suffix in ENDINGS or path.name == "LICENSE":
-            yield path.relative_to(folder), path.read_bytes()
+        inside = path.relative_to(folder)
+        if LEFT_OUT not in {path.stem, *inside.parts} and (path.suffix in ENDINGS or path.name == "LICENSE"):
+            yield inside, path.read_bytes()
 
 
 def _generated() -> dict[Path, bytes]:

@@ -28,8 +28,7 @@ def core() -> Any:
 
 @cache
 def derivatives() -> Any:
-    """The module of runs with derivatives; ImportError with the remedy when it is missing, does not fit the core or was
-    built for another processor."""
+    """The module of runs with derivatives; ImportError with the remedy when it is missing or does not fit."""
     try:
         found = import_module("clutchwork._derivatives")
     except ImportError as error:

@@ -32,16 +32,16 @@ struct Curve {
 template <class T, class Words>
 struct Word {
   T number;  ///< [1]
-  CLUTCHWORK_INLINE operator Words() const { return Words(int(common(number))); }
+  CLUTCHWORK_HOT operator Words() const { return Words(int(common(number))); }
 };
 
 /// Own inputs, by the names of the declaration: `at.input[Input::...]`.
 template <class S>
 struct OwnInputs {
   const S* first;
-  CLUTCHWORK_INLINE OwnInputs(const S* inputs) : first(inputs) {}
+  CLUTCHWORK_HOT OwnInputs(const S* inputs) : first(inputs) {}
   template <class Name>
-  CLUTCHWORK_INLINE const S& operator[](Name name) const {
+  CLUTCHWORK_HOT const S& operator[](Name name) const {
     static_assert(std::is_enum_v<Name>, "an input is read by its name, as at.input[Input::...]");
     return first[int(name)];
   }
@@ -51,10 +51,10 @@ struct OwnInputs {
 template <class S>
 struct OwnRates {
   const S* first = nullptr;
-  CLUTCHWORK_INLINE OwnRates() = default;
-  CLUTCHWORK_INLINE OwnRates(const S* rates) : first(rates) {}
+  CLUTCHWORK_HOT OwnRates() = default;
+  CLUTCHWORK_HOT OwnRates(const S* rates) : first(rates) {}
   template <class Name>
-  CLUTCHWORK_INLINE const S& operator[](Name name) const {
+  CLUTCHWORK_HOT const S& operator[](Name name) const {
     static_assert(std::is_enum_v<Name>, "a rate is read by the name of its way, as at.rates[Way::...]");
     return first[int(name)];
   }
@@ -64,9 +64,9 @@ struct OwnRates {
 template <class S>
 struct OwnTorques {
   S* first;
-  CLUTCHWORK_INLINE OwnTorques(S* torques) : first(torques) {}
+  CLUTCHWORK_HOT OwnTorques(S* torques) : first(torques) {}
   template <class Name>
-  CLUTCHWORK_INLINE S& operator[](Name name) const {
+  CLUTCHWORK_HOT S& operator[](Name name) const {
     static_assert(std::is_enum_v<Name>, "a torque is set by the name of its way, as torque[Way::...]");
     return first[int(name)];
   }
@@ -85,20 +85,20 @@ struct At {
 
 /// Number of kinks inside a curve, where one linear piece follows another.
 template <class T>
-CLUTCHWORK_INLINE int curve_edges(const Curve<T>& c) {
+CLUTCHWORK_HOT int curve_edges(const Curve<T>& c) {
   const int n = int(common(c.count));
   return n > 2 ? n - 2 : 0;
 }
 
 /// Abscissa of kink number i.
 template <class T, class G>
-CLUTCHWORK_INLINE G curve_edge(const Curve<T>& c, const G* points, int i) {
+CLUTCHWORK_HOT G curve_edge(const Curve<T>& c, const G* points, int i) {
   return points[3 * (int(common(c.first)) + i + 1)];
 }
 
 /// Value of a curve on one of its pieces, continued linearly beyond it.
 template <class T, class S>
-CLUTCHWORK_INLINE S curve_value(const Curve<T>& c, const Point<S>* points, S x, int piece) {
+CLUTCHWORK_HOT S curve_value(const Curve<T>& c, const Point<S>* points, S x, int piece) {
   const Point<S>* p = points + 3 * (int(common(c.first)) + piece);
   return (x - S(p[0])) * S(p[2]) + S(p[1]);
 }

@@ -6,7 +6,7 @@
 #include <limits>
 
 // what every step spends its time in is inlined in every build, the rest where a build asks for speed:
-// docs/theory/integrators.md
+// decisions/0041-light.md
 #ifndef CLUTCHWORK_HOT
 #define CLUTCHWORK_HOT inline __attribute__((always_inline))
 #endif

@@ -101,11 +101,11 @@ struct NumberOf<Tangent<N, R>> : NumberOf<double> {
   using Point = Tangent<N, R>;
 };
 
-#define CLUTCHWORK_CHAIN(NAME, F, SLOPE)                         \
-  template <int N, int R>                                        \
+#define CLUTCHWORK_CHAIN(NAME, F, SLOPE)                      \
+  template <int N, int R>                                     \
   CLUTCHWORK_HOT Tangent<N, R> NAME(const Tangent<N, R>& x) { \
-    const double f = F;                                          \
-    return Tangent<N, R>::chain(x, f, SLOPE);                    \
+    const double f = F;                                       \
+    return Tangent<N, R>::chain(x, f, SLOPE);                 \
   }
 CLUTCHWORK_CHAIN(exp, exp(x.v), f)
 CLUTCHWORK_CHAIN(log, log(x.v), 1 / x.v)

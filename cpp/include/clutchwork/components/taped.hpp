@@ -129,10 +129,10 @@ struct NumberOf<Taped> : NumberOf<double> {
   using Point = Taped;
 };
 
-#define CLUTCHWORK_CHAIN(NAME, F, SLOPE)         \
+#define CLUTCHWORK_CHAIN(NAME, F, SLOPE)      \
   CLUTCHWORK_HOT Taped NAME(const Taped& x) { \
-    const double f = F;                          \
-    return Taped::chain(x, f, SLOPE);            \
+    const double f = F;                       \
+    return Taped::chain(x, f, SLOPE);         \
   }
 CLUTCHWORK_CHAIN(exp, exp(x.v), f)
 CLUTCHWORK_CHAIN(log, log(x.v), 1 / x.v)

@@ -27,7 +27,12 @@ class Together {
  public:
   /// Phases that have begun, all in one mode; `first` is one of those that are there.
   Together(Workspace<Lanes<2>>& ws, const LaneKernel& kernel, LanePhase* const* phases, int first)
-      : ws_(ws), kernel_(kernel), phase_(phases), form_(form_of(ws, pace_of(phases[first]).ws_)), step_(form_), n_(form_.n()) {
+      : ws_(ws),
+        kernel_(kernel),
+        phase_(phases),
+        form_(form_of(ws, pace_of(phases[first]).ws_)),
+        step_(form_),
+        n_(form_.n()) {
     take_mode(ws_, run_of(first));
     for (int i = 0; i < n_lanes; ++i) enter(i, phase_[i] != nullptr ? i : first);
     list_varying(ws_);

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 /// What a phase calls in every step. For few speeds that is compiled for each size, all else once for all sizes.
-/// docs/theory/integrators.md
+/// decisions/0041-light.md
 namespace clutchwork {
 
 /// The calls of any form.

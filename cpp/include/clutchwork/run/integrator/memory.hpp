@@ -21,7 +21,7 @@ struct StepRow {
 template <class Form>
 struct Step;
 
-/// What is called in every step: an integrator for a form, and looks at the motion. docs/theory/integrators.md
+/// What is called in every step: an integrator for a form, and looks at the motion. run/step_calls.hpp
 template <class Form>
 struct StepCalls {
   using T = typename Form::Scalar;
@@ -40,7 +40,7 @@ struct Step {
   using T = typename Form::Scalar;
   StepRows<T, Form::fixed_size> rows;
   Real<T> t = 0, h = 0;
-  bool dense = false;  ///< it has an interpolant
+  bool dense = false;                      ///< it has an interpolant
   const StepCalls<Form>* calls = nullptr;  ///< of its phase
 
   explicit Step(Form& form) : rows(form.ws, form.n()) {}
