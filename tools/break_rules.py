@@ -52,7 +52,7 @@ sys.meta_path[:] = [one for one in sys.meta_path if "ScikitBuild" not in type(on
 
 @dataclass(frozen=True)
 class Rule:
-    """A rule: its words, the text that makes it, and a text that breaks it."""
+    """A rule: its words, the code that makes it, and code that breaks it."""
 
     name: str
     words: str
