@@ -1,4 +1,4 @@
-"""Rules that tools/break_rules.py breaks on purpose: each can be broken, and the tool reports which test has seen it."""
+"""Rules that tools/break_rules.py breaks on purpose: each can be broken, and the test that has seen it is named."""
 
 from __future__ import annotations
 
