@@ -39,3 +39,16 @@ def test_the_first_peak_of_the_torque_moves_with_stiffness_and_inertia():
     peak = SPEED * np.sqrt(INERTIA * STIFFNESS)
     assert value[0] == pytest.approx(peak, rel=1e-7)
     np.testing.assert_allclose(matrix[0], [peak / (2 * INERTIA), peak / (2 * STIFFNESS)], rtol=1e-5)
+
+
+def test_the_power_of_the_spring_changes_with_its_torque_and_with_its_rate():
+    """-k x v of the closed form is -(1/2) sqrt(J k) v0^2 sin(2 w t): both factors change with the inertia."""
+    time = 0.25
+    by = ["a.inertia", "a.speed"]
+    function = cw.differentiable(oscillator(), 0.3, of=cw.at("k.power", time), by=by, rtol=1e-10, atol=1e-12)
+    value, matrix = function.value_and_jacobian(function.x0)
+    rate, size = np.sqrt(STIFFNESS / INERTIA), -0.5 * np.sqrt(INERTIA * STIFFNESS) * SPEED**2
+    power = size * np.sin(2 * rate * time)
+    by_inertia = power / (2 * INERTIA) - size * np.cos(2 * rate * time) * rate * time / INERTIA
+    assert value[0] == pytest.approx(power, abs=1e-7 * abs(size))
+    np.testing.assert_allclose(matrix[0], [by_inertia, 2 * power / SPEED], rtol=1e-5)

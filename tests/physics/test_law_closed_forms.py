@@ -127,3 +127,14 @@ def test_stribeck_without_fall_is_coulomb() -> None:
     one = body(even, START).simulate(2.0, dt=0.01, **TIGHT)
     other = body(cw.Coulomb(static=STATIC, kinetic=STATIC), START).simulate(2.0, dt=0.01, **TIGHT)
     assert one["m.speed"] == pytest.approx(other["m.speed"], abs=1e-12)
+
+
+@pytest.mark.parametrize(("beyond", "held"), [("linear", 0.26), ("nearest", 0.3)])
+@pytest.mark.filterwarnings("ignore:.*kinetic falls to zero")
+def test_a_body_beyond_a_table_over_the_temperature_lets_go(beyond: Any, held: float) -> None:
+    """At 450 K the lines have crossed, 0.25 at rest and 0.26 sliding: the larger holds, or the last point."""
+    static, kinetic = [(300.0, 0.4), (400.0, 0.3)], [(300.0, 0.35), (400.0, 0.29)]
+    law = cw.TemperatureTable(static=static, kinetic=kinetic, temperature=450.0, extrapolation=beyond)
+    run = body(law, force=cw.Ramp(height=2.0, duration=2.0)).simulate(2.0, **TIGHT)
+    assert changes(run, "forward") == [pytest.approx(held * LOAD, abs=EXACT)]
+    assert changes(run, "locked") == []

@@ -61,3 +61,27 @@ def test_order(method: str, events: bool) -> None:
     slope = np.polyfit(np.log(STEPS), np.log(errors), 1)[0]
     # within 0.2 of the nominal 5: asked for
     assert slope == pytest.approx(5.0, abs=0.2), errors
+
+
+def heated(t: float, step: float | None) -> float:
+    """Temperature of a lining that a brake heats with a force over time, and that an ambient cools."""
+    d = cw.Driveline("heated")
+    a = d.shaft("a", inertia=0.3)
+    lining, air = d.thermal("lining", capacity=20.0, temperature=300.0), d.ambient("air", temperature=300.0)
+    d.add(cw.PrescribedSpeed("drive", shaft=a, speed=10.0))
+    force = cw.Sine(amplitude=80.0, frequency=1.3, offset=100.0)
+    law = cw.Coulomb(static=0.2, kinetic=0.2)
+    d.add(cw.Brake("b", shaft=a, friction=law, gain=1.0, normal_force=force, heat=lining))
+    d.add(cw.Conduction("wall", hot=lining, cold=air, conductance=100.0))
+    exact: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-13}
+    fixed: dict[str, Any] = {"rtol": 0.1, "atol": 1e6, "first_step": step, "max_step": step}
+    run = d.simulate(t, dt=t, method="rodas5p", **(exact if step is None else fixed))
+    return float(run["lining.temperature"][-1])
+
+
+def test_order_where_heat_changes_over_time() -> None:
+    """The implicit step has the order of its name where it knows how the heat changes with the force."""
+    steps = [5.0 * step for step in STEPS]
+    exact = np.array([heated(t, None) for t in ENDS])
+    errors = [np.sqrt(np.mean((np.array([heated(t, step) for t in ENDS]) - exact) ** 2)) for step in steps]
+    assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(5.0, abs=0.2), errors

@@ -254,16 +254,21 @@ def test_both_integrators_agree(method):
         assert run[f"{name}.temperature"][-1] == pytest.approx(fine[f"{name}.temperature"][-1], rel=1e-7)
 
 
-def test_heat_of_an_impulse_arrives_too():
-    """A clutch that starts locked between speeds that differ loses E at once."""
+@pytest.mark.parametrize("share", [1.0, 0.4])
+def test_heat_of_an_impulse_arrives_too(share):
+    """A clutch that starts locked between speeds that differ loses E at once, of which the node takes its share."""
     d = cw.Driveline()
     a, b = d.shaft("a", inertia=1.0, speed=10.0), d.shaft("b", inertia=1.0, speed=0.0)
     plates = d.thermal("plates", capacity=5.0)
     law = cw.Coulomb(static=0.2, kinetic=0.1)
-    d.add(cw.Clutch("c", base=b, follower=a, friction=law, gain=1.0, pressure=100.0, locked=True, heat=plates))
+    d.add(
+        cw.Clutch(
+            "c", base=b, follower=a, friction=law, gain=1.0, pressure=100.0, locked=True, heat=plates, heat_share=share
+        )
+    )
     run = d.simulate(0.1, **FINE)
     assert run.energy.heat["c"] == pytest.approx(25.0)
-    assert run["plates.temperature"][-1] == pytest.approx(305.0)
+    assert run["plates.temperature"][-1] == pytest.approx(300.0 + 5.0 * share)
     assert abs(run.energy.residual) <= 1e-9
 
 
