@@ -37,7 +37,9 @@ def derivatives() -> Any:
     if (found.layout, found.schema) != (core().layout, core().schema):
         raise ImportError(f"the compiled derivatives of clutchwork were built from other declarations; {REMEDY}")
     if not found.supported():
-        raise ImportError("the compiled derivatives of clutchwork were built for another processor; run make clean setup")
+        raise ImportError(
+            "the compiled derivatives of clutchwork were built for another processor; run make clean setup"
+        )
     return found
 
 
