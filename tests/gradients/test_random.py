@@ -27,7 +27,7 @@ def report(case, seed, count):
 @pytest.mark.parametrize("kind", gradient_cases.KINDS)
 def test_random_drivelines(kind):
     compared, refused, wrong = 0, list[str](), list[str]()
-    seeds = dict.fromkeys([*range(amount(4)), *SEEN.get(kind, ())])
+    seeds = dict.fromkeys([*range(amount(6)), *SEEN.get(kind, ())])
     for seed in seeds:
         found = report(gradient_cases.KINDS[kind](seed), seed, 2)
         compared, refused = compared + found.compared, [*refused, *found.refused]

@@ -76,7 +76,7 @@ def test_every_law_in_both_directions(cls):
     assert max(told) < CLOSE
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(8))
 def test_random_drivelines(seed):
     run = random_drivelines.describe(seed).driveline().simulate(random_drivelines.T_END, **TIGHT)
     told = [part for at in np.linspace(0.07, 1.93, 6) if (part := along(run, at)) is not None]

@@ -149,7 +149,7 @@ def same_as_clipped(seed: int, compliant: bool) -> str:
 @pytest.mark.random
 @pytest.mark.parametrize("compliant", [False, True], ids=["sticking", "compliant"])
 def test_tables_through_zero(compliant: bool) -> None:
-    sweep(lambda seed: same_as_clipped(seed, compliant), amount() // 4)
+    sweep(lambda seed: same_as_clipped(seed, compliant), amount() // 2)
 
 
 def impulse(force: Callable[[np.ndarray], np.ndarray], knots: Sequence[float] = ()) -> np.ndarray:
@@ -217,7 +217,7 @@ def closed_form(seed: int, plates: bool) -> str:
 @pytest.mark.random
 @pytest.mark.parametrize("plates", [False, True], ids=["sines", "products"])
 def test_waves_through_zero(plates: bool) -> None:
-    sweep(lambda seed: closed_form(seed, plates), amount() // 4)
+    sweep(lambda seed: closed_form(seed, plates), amount() // 2)
 
 
 def test_reference_is_the_closed_form() -> None:
