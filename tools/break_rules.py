@@ -40,7 +40,7 @@ FOLDERS = (
 )
 # s after which a tree of tests that does not come to its end counts as a failure
 LONGEST = 1200.0
-ENDLESS = "does not come to its end"
+ENDLESS, CRASHES = "does not come to its end", "crashes"
 # tests of runs with derivatives
 DERIVATIVES = ("gradients", "calibration", "fit")
 FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+::.+?|\S+\.py)(?: - .*)?$", re.MULTILINE)
@@ -119,9 +119,14 @@ class Copy:
             done = self._run(*command, *paths)
         except subprocess.TimeoutExpired:
             return f"{' '.join(paths)} {ENDLESS}"
-        found = FAILED.search(done.stdout)
-        # no test of these files in this tier
-        return found.group(1) if found else "" if done.returncode in (0, 5) else done.stdout[-300:]
+        if found := FAILED.search(done.stdout):
+            return found.group(1)
+        if done.returncode < 0:
+            return f"{' '.join(paths)} {CRASHES}"
+        # 5: no test of these files is in this tier
+        if done.returncode not in (0, 5):
+            raise SystemExit(done.stdout)
+        return ""
 
     def core_fails(self) -> bool:
         """Whether the tests of the core alone fail."""
@@ -200,7 +205,7 @@ def _first_that_counts(tier: str, paths: Sequence[str], broken: Copy, sound: Cop
         if not path or path.startswith(DERIVATIVES):
             broken.build("_derivatives")
         while found := broken.first_failure(tier, [f"tests/{path}".rstrip("/")]):
-            if found.endswith(ENDLESS) or not sound.first_failure("all", [found]):
+            if found.endswith((ENDLESS, CRASHES)) or not sound.first_failure("all", [found]):
                 return found
             if "::" not in found:
                 raise SystemExit(f"fails in the sound copy: {found}")
