@@ -32,13 +32,13 @@ BROKEN = Broken()
 
 def object_problems(thing: Any, at: At) -> Iterator[Problem]:
     """All mistakes of a declared object: an element, a law or a signal."""
-    found = [] if is_sound(thing) else list(value_problems(type(thing), vars(thing), at))
+    sound = is_sound(thing)
+    found = [] if sound else list(value_problems(type(thing), vars(thing), at))
     yield from found
-    if not found and not is_sound(thing):
+    if not found and not sound:
         mark_sound(thing)
     # rules between fields only make sense once each field does; what is wrong inside a law is its own affair
-    inside = tuple(f"{at.inner(item.name).quantity}." for item, _ in specs(type(thing), "law"))
-    if all(problem.quantity.startswith(inside) for problem in found):
+    if not found or all(problem.quantity.startswith(_inside(thing, at)) for problem in found):
         try:
             for name, message, remedy in thing.problems():
                 yield at.inner(name).problem(message, remedy=remedy)
@@ -46,6 +46,11 @@ def object_problems(thing: Any, at: At) -> Iterator[Problem]:
             yield at.problem(
                 "has values too large or too small to compute with", remedy="correct the values of unusual magnitude"
             )
+
+
+def _inside(thing: Any, at: At) -> tuple[str, ...]:
+    """How the places of values inside of its laws begin."""
+    return tuple(f"{at.inner(item.name).quantity}." for item, _ in specs(type(thing), "law"))
 
 
 # types whose values never change
@@ -79,9 +84,12 @@ def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Pro
     """Mistakes of the values for the fields of a declaration, some of which may be missing."""
     for item, spec in specs(cls):
         value = values.get(item.name, item.default)
-        if (spec.what in NUMBERS and is_right(value, spec)) or (value is None and spec.optional) or value is BROKEN:
+        kind = type(value)
+        if kind is float and spec.what in NUMBERS and is_right(value, spec):
             continue
-        if spec.what == "port" and type(value) is Node and not spec.domain:
+        if (value is None and spec.optional) or value is BROKEN:
+            continue
+        if kind is Node and spec.what == "port" and not spec.domain:
             continue
         if spec.unit == "*":
             place = At(at.path, at.inner(item.name).quantity, at.unit, units=at.units)

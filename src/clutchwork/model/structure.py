@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Component, Domain, Node
-from clutchwork.declare.ports import directions, ports
+from clutchwork.declare.ports import coefficients, ports
 from clutchwork.declare.rational import MINUS, ONE, Row, exact, plus
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
@@ -83,7 +83,7 @@ class Mechanism:
     def directions(self, component: Component) -> list[Row]:
         """Rate of each way of an element over the nodes."""
         joined = ports(component)
-        return [self._over(joined, way.coefficients) for way in directions(component)]
+        return [self._over(joined, way) for way in coefficients(component)]
 
     def _over(self, joined: Mapping[str, Node], coefficients: Mapping[str, Fraction]) -> Row:
         row: Row = {}
