@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import Any
 
 from clutchwork.declare.layout import layout_text
-from clutchwork.declare.schema import REGISTRY, Role, compiled_text
+from clutchwork.declare.schema import REGISTRY, compiled_text
 
 REMEDY = "build it in the project folder: make setup, or pip install -e ."
 STALE = f"the compiled core of clutchwork was built from other declarations; {REMEDY}"
@@ -41,16 +41,12 @@ def derivatives() -> Any:
     return found
 
 
+@cache
 def number(cls: Any) -> int:
     """The number of a declaration in the core, among those of its role; ImportError when the core knows another one."""
-    return _number(cls.role, cls.kind)
-
-
-@cache
-def _number(role: Role, kind: str) -> int:
-    place = _places().get(compiled_text(REGISTRY[role][kind]))
+    place = _places().get(compiled_text(REGISTRY[cls.role][cls.kind]))
     if place is None:
-        raise ImportError(f"{STALE} (it has no {kind} with these fields)")
+        raise ImportError(f"{STALE} (it has no {cls.kind} with these fields)")
     return place
 
 
