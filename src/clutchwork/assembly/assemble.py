@@ -251,7 +251,7 @@ def _shaped(arrays: Mapping[str, Any], model: Mechanism, made: Kinematics) -> di
     shaped = {}
     for name, kind, shape, _ in FIELDS:
         given = arrays[name]
-        made = np.array(given, dtype=TYPES[kind])
+        array = np.array(given, dtype=TYPES[kind])
         lengths = tuple(size if isinstance(size, int) else sizes.get(size, len(given)) for size in shape)
-        shaped[name] = made if made.shape == lengths else made.reshape(lengths)
+        shaped[name] = array if array.shape == lengths else array.reshape(lengths)
     return shaped

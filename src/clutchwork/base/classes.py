@@ -90,7 +90,7 @@ def _init(thing: Any, /, *args: Any, **named: Any) -> None:
     for name, make in makers:
         if name not in values:
             values[name] = make()
-    if values.keys() != names:
+    if len(values) != len(names) or not names.issuperset(named):
         _refuse(thing, args, named)
     for name, make in own:
         values[name] = make()

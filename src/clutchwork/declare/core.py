@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import Any
 
 from clutchwork.declare.layout import layout_text
-from clutchwork.declare.schema import REGISTRY, compiled_text
+from clutchwork.declare.schema import REGISTRY, Role, compiled_text
 
 REMEDY = "build it in the project folder: make setup, or pip install -e ."
 STALE = f"the compiled core of clutchwork was built from other declarations; {REMEDY}"
@@ -36,17 +36,23 @@ def derivatives() -> Any:
         raise ImportError(f"{message} ({error}); {REMEDY}") from error
     if (found.layout, found.schema) != (core().layout, core().schema):
         raise ImportError(f"the compiled derivatives of clutchwork were built from other declarations; {REMEDY}")
-    if not found.runs_here():
-        raise ImportError(f"the compiled derivatives of clutchwork were built for another processor; {REMEDY}")
+    if not found.supported():
+        raise ImportError(
+            "the compiled derivatives of clutchwork were built for another processor; run make clean setup"
+        )
     return found
 
 
-@cache
 def number(cls: Any) -> int:
     """The number of a declaration in the core, among those of its role; ImportError when the core knows another one."""
-    place = _places().get(compiled_text(REGISTRY[cls.role][cls.kind]))
+    return _number(cls.role, cls.kind)
+
+
+@cache
+def _number(role: Role, kind: str) -> int:
+    place = _places().get(compiled_text(REGISTRY[role][kind]))
     if place is None:
-        raise ImportError(f"{STALE} (it has no {cls.kind} with these fields)")
+        raise ImportError(f"{STALE} (it has no {kind} with these fields)")
     return place
 
 

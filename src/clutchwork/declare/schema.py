@@ -377,18 +377,26 @@ Declared: TypeAlias = "tuple[tuple[Field[Any], Spec], ...]"
 Inputs: TypeAlias = "tuple[tuple[tuple[str, ...], Spec], ...]"
 
 
-@cache
-def specs(cls: Any, *what: str) -> Declared:
+def specs(cls: type, *what: str) -> Declared:
     """The declared fields of a component, in order; optionally only some sorts."""
+    return _specs(cls, what)
+
+
+@cache
+def _specs(cls: Any, what: tuple[str, ...]) -> Declared:
     found = [(item, item.metadata["spec"]) for item in fields(cls) if "spec" in item.metadata]
     # sorting keeps the order of equals
     ordered = sorted(found, key=lambda pair: pair[1].last)
     return tuple((item, spec) for item, spec in ordered if not what or spec.what in what)
 
 
-@cache
-def inputs(cls: Any) -> Inputs:
+def inputs(cls: type) -> Inputs:
     """The inputs of a component in order: the names under which each can be given, and its spec."""
+    return _inputs(cls)
+
+
+@cache
+def _inputs(cls: Any) -> Inputs:
     others = [(item.name, spec.instead_of) for item, spec in specs(cls, "alternative")]
     return tuple(
         ((item.name, *(name for name, stands_for in others if stands_for == item.name)), spec)

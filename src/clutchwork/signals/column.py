@@ -42,7 +42,8 @@ class Column(Signal):
         from clutchwork.signals.bases.measured.reading import read
 
         wanted = Wanted(self.path, self.time, self.column, self.scale, self.group or "")
-        return read(join(self.folder, self.path), wanted)
+        # a Path takes longer than a column of a file that is known
+        return read(join(self.folder, self.path), wanted)  # noqa: PTH118
 
     @cached_property
     def points(self) -> tuple[tuple[float, float], ...]:
