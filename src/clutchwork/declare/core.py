@@ -36,10 +36,8 @@ def derivatives() -> Any:
         raise ImportError(f"{message} ({error}); {REMEDY}") from error
     if (found.layout, found.schema) != (core().layout, core().schema):
         raise ImportError(f"the compiled derivatives of clutchwork were built from other declarations; {REMEDY}")
-    if not found.supported():
-        raise ImportError(
-            "the compiled derivatives of clutchwork were built for another processor; run make clean setup"
-        )
+    if not found.runs_here():
+        raise ImportError(f"the compiled derivatives of clutchwork were built for another processor; {REMEDY}")
     return found
 
 
