@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from clutchwork.declare.layout import EVENT
-from clutchwork.declare.status import DONE, EVENTS_FULL, ROWS_FULL
+from clutchwork.declare.layout import DONE, EVENT, EVENTS_FULL, ROWS_FULL
 
 
 class FakeRun:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from clutchwork.declare.status import DONE, INTERRUPTED
+from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.results.trajectory import SimulationError
 from clutchwork.run import record as module
 from clutchwork.run.control import Control, Controller

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.declare.status import NOT_FINITE
+from clutchwork.declare.layout import NOT_FINITE
 from clutchwork.results.ratios import phases
 from clutchwork.run import simulation
 

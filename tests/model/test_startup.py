@@ -16,11 +16,8 @@ IMPORT = {
     *("face", "face.names", "_core"),
 }
 SIMULATE = {
-    *("assembly.wiring", "base.above", "base.extras", "base.kept", "base.progress", "declare.status"),
-    *("results", "results.events", "results.exchange", "results.exchange.exports", "results.held", "results.raster"),
-    *("results.state", "results.trajectory"),
-    *("run", "run.begin", "run.control", "run.effort", "run.failure", "run.grid", "run.jumps"),
-    *("run.record", "run.settings", "run.simulation"),
+    *("base.kept", "results", "results.events", "results.exports", "results.trajectory"),
+    *("run", "run.begin", "run.control", "run.jumps", "run.record", "run.settings", "run.simulation"),
 }
 # rooms with a command of their own
 ROOMS = ("codegen", "diagrams", "fit", "linear", "page", "rig", "schematic", "sweeps")

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 import clutchwork as cw
 from clutchwork.declare.core import core
-from clutchwork.declare.status import EVENTS_FULL
+from clutchwork.declare.layout import EVENTS_FULL
 from support.project import ROOT
 
 Array = NDArray[np.float64]

@@ -18,8 +18,7 @@ from clutchwork.base.errors import ModelError
 from clutchwork.declare.core import number
 from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.node import is_reference
-from clutchwork.declare.ports import ports
-from clutchwork.declare.rational import ONE, Row, plus
+from clutchwork.declare.rational import ONE, Row, plus, product
 from clutchwork.declare.schema import Role, inputs
 from clutchwork.declare.speech import path_of
 from clutchwork.model.findings import Findings, Structure, findings
@@ -151,7 +150,7 @@ def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, 
     rows: dict[int, Row] = {node: {} for node in made.independent}
     for inertia, speed in zip(model.inertia, made.speeds, strict=True):
         for node in speed.keys() & rows.keys() if inertia else ():
-            rows[node] = plus(rows[node], inertia * speed[node], speed)
+            rows[node] = plus(rows[node], product(inertia, speed[node]), speed)
     for node in made.followers.values():
         # what follows from a transmission has no inertia; a unit keeps the matrix regular
         rows[node] = {node: ONE}
@@ -241,10 +240,8 @@ def _tolerance(contact: Any) -> float:
 
 
 def _gears(model: Mechanism) -> Iterable[Gearing]:
-    for gear in model.geared:
-        joined = ports(gear)
-        for row in gear.rows():
-            yield Gearing(gear, {port: (model.places.of(joined[port]), float(c)) for port, c in row.items()})
+    for gear, joined, row in model.gear_rows:
+        yield Gearing(gear, {port: (model.places.of(joined[port]), float(c)) for port, c in row.items()})
 
 
 def _shaped(arrays: Mapping[str, Any], model: Mechanism, made: Kinematics) -> dict[str, Array]:
@@ -253,6 +250,8 @@ def _shaped(arrays: Mapping[str, Any], model: Mechanism, made: Kinematics) -> di
     sizes |= {"elements": len(arrays["element_kind"]), "contacts": len(arrays["contact_kind"])}
     shaped = {}
     for name, kind, shape, _ in FIELDS:
-        lengths = [size if isinstance(size, int) else sizes.get(size, len(arrays[name])) for size in shape]
-        shaped[name] = np.array(arrays[name], dtype=TYPES[kind]).reshape(lengths)
+        given = arrays[name]
+        array = np.array(given, dtype=TYPES[kind])
+        lengths = tuple(size if isinstance(size, int) else sizes.get(size, len(given)) for size in shape)
+        shaped[name] = array if array.shape == lengths else array.reshape(lengths)
     return shaped

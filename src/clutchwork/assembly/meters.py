@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import Role
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
 
+    from clutchwork.declare.node import Node
     from clutchwork.declare.rational import Row
     from clutchwork.model.structure import Mechanism
 
@@ -37,18 +38,16 @@ def multipliers(rigid: Matrix, inertia: Matrix, acting: Matrix) -> Matrix:
 
 def meter_arrays(model: Mechanism) -> dict[str, Any]:
     """Arrays of the rigid lines of a model."""
-    lines = [(gear, len(gear.rows())) for gear in model.role(Role.GEAR)]
-    places, first = [], 0
-    for gear, count in lines:
-        if set(ports(gear)) == ENDS:
-            places.append((gear, first))
-        first += count
+    # the first row of each line
+    firsts: dict[int, tuple[int, Mapping[str, Node], Mapping[str, Fraction]]] = {}
+    for place, (gear, joined, row) in enumerate(model.gear_rows):
+        if gear.role is Role.GEAR and joined.keys() == ENDS:
+            firsts.setdefault(id(gear), (place, joined, row))
     ends, columns, values, nodes = list[int](), list[int](), list[float](), list[int]()
-    made = _multipliers(model) if places else np.zeros((0, 0))
-    for gear, place in places:
-        joined = ports(gear)
+    made = _multipliers(model) if firsts else np.zeros((0, 0))
+    for place, joined, coefficients in firsts.values():
         moving = joined["base"] if joined["follower"].fixed else joined["follower"]
-        row = made[place] * float(gear.rows()[0]["follower"])
+        row = made[place] * float(coefficients["follower"])
         used = np.flatnonzero(row)
         columns += used.tolist()
         values += row[used].tolist()

@@ -36,6 +36,8 @@ from clutchwork.model.settings import plain_settings
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from clutchwork.model.findings import Findings
+
 MAGIC = b"CLUTCHWK"
 # what a Driveline can do itself
 CALLS = {
@@ -142,9 +144,12 @@ class System:
         return dependent_sets([contact.name for contact in self.contacts], entries(self.arrays, "contact_rate"))
 
     @classmethod
-    def of(cls, model: Model, independent: Sequence[str] = ()) -> System:
-        """The System of a model without mistakes; `independent` names the shafts with the independent speeds."""
-        made, settings = assembled(model, independent), MappingProxyType(plain_settings(model.settings))
+    def of(cls, model: Model, independent: Sequence[str] = (), found: Findings | None = None) -> System:
+        """The System of a model without mistakes; `independent` names the shafts with the independent speeds.
+
+        Parameters: found, what the checks of the model have found, where they were made already.
+        """
+        made, settings = assembled(model, independent, found), MappingProxyType(plain_settings(model.settings))
         # lists inside may be changed by their owner later
         source = deepcopy(model.copy()) if may_change(model) else model.copy()
         return cls(**made, settings=settings, source=source, wanted=tuple(independent))

@@ -80,7 +80,9 @@ def _call(cls: Any) -> _Call:
 def _init(thing: Any, /, *args: Any, **named: Any) -> None:
     cls: Any = type(thing)
     places, names, defaults, makers, own, checked, accepts, named_first = _call(cls)
-    values = {**defaults, **named}
+    values = vars(thing)
+    values.update(defaults)
+    values.update(named)
     if args:
         if len(args) > len(places) or (named and not named.keys().isdisjoint(places[: len(args)])):
             _refuse(thing, args, named)
@@ -88,11 +90,10 @@ def _init(thing: Any, /, *args: Any, **named: Any) -> None:
     for name, make in makers:
         if name not in values:
             values[name] = make()
-    if values.keys() != names:
+    if len(values) != len(names) or not names.issuperset(named):
         _refuse(thing, args, named)
     for name, make in own:
         values[name] = make()
-    vars(thing).update(values)
     if accepts and not (
         (not named or PLAIN.issuperset(map(type, named.values())))
         and (len(args) <= named_first or PLAIN.issuperset(map(type, args[named_first:])))

@@ -47,7 +47,6 @@ def explained(call: str, **such: str) -> Callable[[F], F]:
 
     Parameters: such, what arguments may be, as Python writes it, where that is not what `SUCH` says.
     """
-    meanings = {name: f"give one, such as {name}={value}" for name, value in {**SUCH, **such}.items()}
 
     def wrap(function: F) -> F:
         @functools.wraps(function)
@@ -55,6 +54,7 @@ def explained(call: str, **such: str) -> Callable[[F], F]:
             try:
                 return function(*args, **named)
             except TypeError:
+                meanings = {name: f"give one, such as {name}={value}" for name, value in {**SUCH, **such}.items()}
                 problems = list(_problems(function, args, named, meanings))
                 if not problems:
                     raise

@@ -250,6 +250,11 @@ STATUS = (
     ),
     ("interrupted", "the run was interrupted", "what was computed up to here is kept in .trajectory"),
 )
+# the numbers of these
+STATUSES = [name for name, *_ in STATUS]
+DONE, ROWS_FULL, EVENTS_FULL, NOT_FINITE, INTERRUPTED = (
+    STATUSES.index(name) for name in ("done", "rows_full", "events_full", "not_finite", "interrupted")
+)
 
 
 @cache

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import HOUSING, Component, Domain, Node, ThermalNode
@@ -16,7 +17,19 @@ if TYPE_CHECKING:
 
 def ports(component: Component) -> dict[str, Node]:
     """Nodes at the ports of an element; an optional port that is not given is the housing."""
-    return {item.name: getattr(component, item.name) or HOUSING for item, _ in specs(type(component), "port")}
+    return {name: getattr(component, name) or HOUSING for name in _names(type(component), "port")}
+
+
+@cache
+def _names(cls: Any, what: str) -> tuple[str, ...]:
+    """Names of the ports of a class, those on nodes or those on thermal nodes."""
+    return tuple(item.name for item, _ in specs(cls, what))
+
+
+@cache
+def _free(cls: Any) -> tuple[str, ...]:
+    """Names of the ports that may be on shafts and on masses."""
+    return tuple(item.name for item, spec in specs(cls, "port") if not spec.domain)
 
 
 @dataclass(frozen=True)
@@ -30,19 +43,26 @@ class Direction:
     number: int = 0  # among those of the element
 
 
-def directions(component: Component) -> tuple[Direction, ...]:
-    """The directions of an element: follower - base, shaft - base, or what its ways say."""
+def coefficients(component: Component) -> list[dict[str, Fraction]]:
+    """Coefficients by port of each direction of an element: follower - base, shaft - base, or what its ways say."""
     ways = type(component).ways
     if not ways:
-        moving, base = _moving(component)
-        rows = {moving: ONE, **({base: MINUS} if base else {})}
-        return (Direction(component.name, rows, _domain(component)),)
+        moving, base = _moving(type(component))
+        return [{moving: ONE, base: MINUS} if base else {moving: ONE}]
     rows_of = component.directions()
+    return [{port: exact(coefficient) for port, coefficient in rows_of[way.name].items()} for way in ways]
+
+
+def directions(component: Component) -> tuple[Direction, ...]:
+    """The directions of an element, one for each of its ways."""
+    ways, rows = type(component).ways, coefficients(component)
+    if not ways:
+        return (Direction(component.name, rows[0], _domain(component)),)
     several = sum(not way.watched for way in ways) > 1
     return tuple(
         Direction(
             f"{component.name}.{way.name}" if several or way.watched else component.name,
-            {port: exact(coefficient) for port, coefficient in rows_of[way.name].items()},
+            rows[number],
             Domain(way.domain) if way.domain else _domain(component),
             way,
             number,
@@ -51,17 +71,17 @@ def directions(component: Component) -> tuple[Direction, ...]:
     )
 
 
-def _moving(component: Component) -> tuple[str, str]:
+@cache
+def _moving(cls: Any) -> tuple[str, str]:
     """Names of the ports that the rate is counted of and from; the second is empty where there is none."""
-    names = ports(component)
+    names = _names(cls, "port")
     return "follower" if "follower" in names else "shaft", "base" if "base" in names else ""
 
 
 def _domain(component: Component) -> Domain:
     """Kind of motion of the first port that is not the housing, of those that are free in this."""
     joined = ports(component)
-    free = [item.name for item, spec in specs(type(component), "port") if not spec.domain]
-    order = [*reversed(free), *joined]
+    order = [*reversed(_free(type(component))), *joined]
     return next((joined[name].domain for name in order if not joined[name].fixed), Domain.ROTATION)
 
 
@@ -78,5 +98,5 @@ def port_domains(component: Component) -> dict[str, Domain]:
 
 def thermal_ports(component: Component) -> dict[str, ThermalNode]:
     """Thermal nodes at the ports of an element, those that are given."""
-    values = {item.name: getattr(component, item.name) for item, _ in specs(type(component), "thermal")}
+    values = {name: getattr(component, name) for name in _names(type(component), "thermal")}
     return {name: node for name, node in values.items() if node is not None}

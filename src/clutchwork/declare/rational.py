@@ -34,7 +34,7 @@ def plus(row: Mapping[int, Fraction], factor: Fraction, other: Mapping[int, Frac
     made = dict(row)
     if factor:
         for column, value in other.items():
-            term = _product(factor, value)
+            term = product(factor, value)
             before = made.get(column)
             total = term if before is None else before + term
             if total:
@@ -44,7 +44,7 @@ def plus(row: Mapping[int, Fraction], factor: Fraction, other: Mapping[int, Frac
     return made
 
 
-def _product(one: Fraction, other: Fraction) -> Fraction:
+def product(one: Fraction, other: Fraction) -> Fraction:
     """Product of two fractions, of which most are plus or minus one."""
     if one is ONE:
         return other

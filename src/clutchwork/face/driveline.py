@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.declare.options import Options
+    from clutchwork.model.findings import Findings
     from clutchwork.results.hints.hint import Hints
     from clutchwork.results.recorded import Recorded
     from clutchwork.results.trajectory import Trajectory
@@ -165,13 +166,17 @@ class Driveline:
 
         What is allowed and rarely wanted, such as a friction law that can give energy away, is a `ModelWarning`.
         """
+        return list(self._looked_at().problems)
+
+    def _looked_at(self) -> Findings:
+        """What the checks find, its advice as warnings."""
         from clutchwork.model.findings import findings
 
         with words_of_files(self._model.from_file):
             found = findings(self._model)
         for one in found.advice:
             warn(one)
-        return list(found.problems)
+        return found
 
     def hints(self) -> Hints:
         """What an expert would say of the model before it runs, with numbers and a remedy; print it to read it.
@@ -189,7 +194,7 @@ class Driveline:
             if found.problems:
                 raise ModelError(found.problems, self.name)
             try:
-                return of_model(System.of(self._model))
+                return of_model(System.of(self._model, found=found))
             except ArithmeticError:
                 raise ModelError([TOO_FAR_APART], self.name) from None
 
@@ -203,12 +208,12 @@ class Driveline:
         from clutchwork.assembly.system import System
         from clutchwork.model.problems import TOO_FAR_APART
 
-        problems = self.check()
-        if problems:
-            raise ModelError(problems, self.name)
+        found = self._looked_at()
+        if found.problems:
+            raise ModelError(list(found.problems), self.name)
         with words_of_files(self._model.from_file):
             try:
-                return System.of(self._model, independent)
+                return System.of(self._model, independent, found)
             except ArithmeticError:
                 raise ModelError([TOO_FAR_APART], self.name) from None
 

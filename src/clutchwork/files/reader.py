@@ -40,7 +40,7 @@ class Reader(Values):
         if data.get("format", FORMAT) != FORMAT:
             remedy = f"this version reads format {FORMAT}"
             self._report(At("file", "format"), "is an unknown format", shown(data["format"]), remedy)
-        model = Model(self._text(data, "name", At("file", ""), "driveline"))
+        model = Model(self._text(data, "name", "file", "driveline"))
         for kind, domain in (("shaft", Domain.ROTATION), ("mass", Domain.TRANSLATION)):
             for place, entry in self._entries(data, kind):
                 self._node(model, entry, domain, kind, place)
@@ -58,21 +58,20 @@ class Reader(Values):
             return []
         return list(enumerate(entries, 1))
 
-    def _text(self, data: Mapping[str, Any], key: str, at: At, default: str = "") -> str:
+    def _text(self, data: Mapping[str, Any], key: str, path: str, default: str = "") -> str:
         value = data.get(key, default)
         if isinstance(value, str) and value:
             return value
         message = "must be a string" if key in data else "is missing"
-        self._report(at.inner(key), message, shown(value) if key in data else "", f"give a {key}")
+        self._report(At(path, key), message, shown(value) if key in data else "", f"give a {key}")
         return default
 
     def _node(self, model: Model, entry: Mapping[str, Any], domain: Domain, kind: str, place: int) -> None:
-        name = self._text(entry, "name", At(f"{kind} number {place}", ""))
+        name = self._text(entry, "name", f"{kind} number {place}")
         known, at = NODE_FIELDS[domain], At(node_path(kind, name or f"number {place}"), "")
         self._unknown(entry, ("name", *known), at)
         values: list[Any] = [
-            self._number(entry[key], spec, at.inner(key, spec.unit)) if key in entry else None
-            for key, spec in known.items()
+            self._value(entry[key], spec, at, key) if key in entry else None for key, spec in known.items()
         ]
         # a mistake is reported already: stand-ins let the rest be checked
         inertia, speed, angle = (
@@ -83,7 +82,7 @@ class Reader(Values):
         self.nodes.setdefault(name, node)
 
     def _thermal_node(self, model: Model, entry: Mapping[str, Any], kind: str, place: int) -> None:
-        name = self._text(entry, "name", At(f"{kind} number {place}", ""))
+        name = self._text(entry, "name", f"{kind} number {place}")
         known, at = THERMAL_FIELDS[kind], At(node_path(kind, name or f"number {place}"), "")
         self._unknown(entry, ("name", *known), at)
         # a mistake is reported already: stand-ins let the rest be checked
@@ -99,9 +98,9 @@ class Reader(Values):
         self.thermal.setdefault(name, node)
 
     def _element(self, entry: Mapping[str, Any], place: int) -> Component | None:
-        name = self._text(entry, "name", At(f"element number {place}", ""))
+        name = self._text(entry, "name", f"element number {place}")
         path, known = f'element "{name}"' if name else f"element number {place}", element_kinds()
-        kind = self._text(entry, "type", At(path, ""))
+        kind = self._text(entry, "type", path)
         before = len(self.problems)
         if kind and kind not in known:
             remedy = f"known types: {listed(known)}"

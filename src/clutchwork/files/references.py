@@ -45,7 +45,9 @@ class References(Container[str]):
 
     def part(self, name: object) -> Node | ThermalNode | Component | None:
         """A node or an element that is part of an element: "disc.surface", "gearbox.A"."""
-        words = name.split(".") if isinstance(name, str) else []
+        if not isinstance(name, str) or "." not in name:
+            return None
+        words = name.split(".")
         wholes = (self.get(".".join(words[:cut])) for cut in range(len(words) - 1, 0, -1))
         whole = next((found for found in wholes if found is not None), None)
         parts = take_apart([whole]) if whole is not None and not any(component_problems(whole)) else Parts()

@@ -35,6 +35,12 @@ def element_kinds() -> dict[str, Any]:
     return {kind: cls for role in ELEMENTS for kind, cls in REGISTRY[role].items()}
 
 
+@cache
+def _fields(cls: Any) -> Mapping[str, Spec]:
+    """The fields of a declaration by name."""
+    return {item.name: spec for item, spec in specs(cls)}
+
+
 def is_path(value: Any) -> bool:
     """Whether what a composite is built by is the path of a file."""
     return isinstance(value, str) and value.lower().endswith((".toml", ".json"))
@@ -67,14 +73,17 @@ class Values:
 
     def _values(self, cls: type, entry: Mapping[str, Any], at: At, taken: tuple[str, ...]) -> dict[str, Any]:
         """Values of the fields of a declaration, in SI; mistakes are reported."""
-        known = {item.name: spec for item, spec in specs(cls)}
-        values = self._read(cls, known, entry, at, taken)
-        for key, spec in known.items():
-            if spec.what == "elements" and isinstance(values.get(key), Mapping):
+        values = self._read(cls, _fields(cls), entry, at, taken)
+        for item, _ in specs(cls, "elements"):
+            key = item.name
+            if isinstance(values.get(key), Mapping):
                 values[key] = self._described(values[key], cls.entry_kinds(values), at.inner(key))  # type: ignore[attr-defined]
         self.problems += value_problems(cls, values, at)
         # lists could be changed by their owner, and the reader has none
-        return {key: _in_tuples(value) if type(value) is list else value for key, value in values.items()}
+        for key, value in values.items():
+            if type(value) is list:
+                values[key] = _in_tuples(value)
+        return values
 
     def _read(
         self, cls: type, known: Mapping[str, Spec], entry: Mapping[str, Any], at: At, taken: tuple[str, ...]
@@ -119,6 +128,8 @@ class Values:
         if type(value) is float and spec.what == "param" and spec.unit != "*":
             # minus zero becomes zero, so that what is written reads back to the same bits
             return value + 0.0
+        if spec.what == "port" and type(value) is str and value in self.nodes:
+            return self.nodes[value]
         at = _place(owner, key, spec)
         if spec.what in ("port", "thermal"):
             return self._port(value, spec, at)
@@ -246,6 +257,8 @@ class Values:
         signal = self._typed(value, Role.SIGNAL, place, ("type", "unit"))
         if isinstance(signal, Column):
             signal = replace(signal, scale=signal.scale * place.scale.factor, folder=self.folder)
+            if place.scale is PLAIN:
+                self._made(signal)
             if place.scale.zero:
                 remedy = "write the unit into the head of the column: temperature [degC]"
                 return self._report(at.inner("unit"), "has another zero than kelvin", shown(value["unit"]), remedy)

@@ -22,8 +22,7 @@ from clutchwork.gradients.task import Found, Task
 from clutchwork.results.channels import channels
 from clutchwork.results.gradient import Gradient
 from clutchwork.run.control import controllers
-from clutchwork.run.effort import refuse_endless
-from clutchwork.run.settings import merged
+from clutchwork.run.settings import merged, refuse_endless
 from clutchwork.run.simulation import Assembles, model_of
 from clutchwork.sweeps.batch import Wanted
 from clutchwork.sweeps.order import threads_of

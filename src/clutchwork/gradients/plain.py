@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import core
-from clutchwork.declare.status import DONE
+from clutchwork.declare.layout import DONE
 from clutchwork.gradients import extremes, jerk
 from clutchwork.gradients.measures import number_of
 from clutchwork.gradients.steps import Steps

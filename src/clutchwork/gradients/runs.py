@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import derivatives
-from clutchwork.declare.status import DONE, INTERRUPTED
+from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.gradients.chart import Slopes
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots

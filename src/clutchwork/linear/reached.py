@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.declare.status import DONE
+from clutchwork.declare.layout import DONE
 from clutchwork.results.trajectory import SimulationError
 from clutchwork.run.begin import begun
 from clutchwork.run.control import controllers

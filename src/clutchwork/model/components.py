@@ -148,8 +148,9 @@ def connection_problems(component: Component, nodes: Mapping[int, Node], within:
     moving = {name: node for name, node in joined.items() if not node.fixed}
     at = At(path_of(component), "")
     for name, node in moving.items():
-        own = any(node.name == other.name for other in nodes.values())
-        if id(node) not in nodes and (own or not within.holds(node)):
+        if id(node) in nodes:
+            continue
+        if any(node.name == other.name for other in nodes.values()) or not within.holds(node):
             found = near(node.name, [n.name for n in nodes.values() if n.name != node.name])
             yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
     if not moving:
@@ -160,7 +161,9 @@ def connection_problems(component: Component, nodes: Mapping[int, Node], within:
             f"{names} are both attached to {shown(next(iter(joined.values())).name)}",
             remedy="attach them to two shafts",
         )
-    free = [name for _item, spec in specs(type(component), "port") if not spec.domain for name in [_item.name]]
+    if len({node.domain for node in moving.values()}) < 2:
+        return
+    free = [item.name for item, spec in specs(type(component), "port") if not spec.domain]
     if len({moving[name].domain for name in free if name in moving}) > 1:
         kinds = ", ".join(f"{name} is in {moving[name].domain.value}" for name in free if name in moving)
         yield at.problem(f"connects a shaft and a mass: {kinds}", remedy="put a `RollingWheel` between them")

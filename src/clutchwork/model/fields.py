@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING
+from functools import cache
 from numbers import Real
 from typing import Any
 
@@ -12,7 +13,7 @@ from clutchwork.base.shown import shown
 from clutchwork.declare.given import settled
 from clutchwork.declare.node import Component, Domain, Law, Node, Signal, ThermalNode, is_reference
 from clutchwork.declare.quantity import has_unit, within
-from clutchwork.declare.schema import Role, Spec, inputs, specs
+from clutchwork.declare.schema import Inputs, Role, Spec, inputs, specs
 from clutchwork.declare.speech import kinds_of, say
 from clutchwork.declare.units import has_comma, split
 from clutchwork.declare.wanted import wanted
@@ -32,13 +33,13 @@ BROKEN = Broken()
 
 def object_problems(thing: Any, at: At) -> Iterator[Problem]:
     """All mistakes of a declared object: an element, a law or a signal."""
-    found = [] if is_sound(thing) else list(value_problems(type(thing), vars(thing), at))
+    sound = is_sound(thing)
+    found = [] if sound else list(value_problems(type(thing), vars(thing), at))
     yield from found
-    if not found and not is_sound(thing):
+    if not found and not sound:
         mark_sound(thing)
     # rules between fields only make sense once each field does; what is wrong inside a law is its own affair
-    inside = tuple(f"{at.inner(item.name).quantity}." for item, _ in specs(type(thing), "law"))
-    if all(problem.quantity.startswith(inside) for problem in found):
+    if not found or all(problem.quantity.startswith(_inside(thing, at)) for problem in found):
         try:
             for name, message, remedy in thing.problems():
                 yield at.inner(name).problem(message, remedy=remedy)
@@ -48,8 +49,13 @@ def object_problems(thing: Any, at: At) -> Iterator[Problem]:
             )
 
 
+def _inside(thing: Any, at: At) -> tuple[str, ...]:
+    """How the places of values inside of its laws begin."""
+    return tuple(f"{at.inner(item.name).quantity}." for item, _ in specs(type(thing), "law"))
+
+
 # types whose values never change
-PLAIN = (float, int, bool, str, type(None), Node)
+PLAIN = frozenset((float, int, bool, str, type(None), Node))
 # in the dictionary of a frozen object: its values are right, and stay so
 SOUND = "_values_are_right"
 
@@ -61,12 +67,13 @@ def is_sound(thing: Any) -> bool:
 
 def mark_sound(thing: Any) -> None:
     """Remember that the values of a declared object are right; not of one with lists, which may change."""
-    if all(map(_stays, vars(thing).values())):
-        vars(thing)[SOUND] = True
+    values = vars(thing)
+    if all(_stays(value) for value in values.values() if type(value) not in PLAIN):
+        values[SOUND] = True
 
 
 def _stays(value: Any) -> bool:
-    if type(value) in PLAIN or (isinstance(value, Law | Signal) and is_sound(value)):
+    if isinstance(value, Law | Signal) and is_sound(value):
         return True
     try:
         hash(value)
@@ -77,17 +84,19 @@ def _stays(value: Any) -> bool:
 
 def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
     """Mistakes of the values for the fields of a declaration, some of which may be missing."""
-    for item, spec in specs(cls):
-        value = values.get(item.name, item.default)
-        if (spec.what in NUMBERS and is_right(value, spec)) or (value is None and spec.optional) or value is BROKEN:
+    for name, default, spec, plain in _fields(cls):
+        value = values.get(name, default)
+        kind = type(value)
+        if (kind is plain and (kind is Node or is_right(value, spec))) or (value is None and spec.optional):
             continue
-        if spec.what == "port" and type(value) is Node and not spec.domain:
+        if value is BROKEN:
             continue
         if spec.unit == "*":
-            place = At(at.path, at.inner(item.name).quantity, at.unit, units=at.units)
+            place = At(at.path, at.inner(name).quantity, at.unit, units=at.units)
         else:
-            spec = settled(item.name, spec, cls, values) if has_unit(value) or isinstance(value, Signal) else spec
-            place = at.inner(item.name, spec.unit)
+            if spec.units and (has_unit(value) or isinstance(value, Signal)):
+                spec = settled(name, spec, cls, values)
+            place = at.inner(name, spec.unit)
         if value is MISSING:
             yield place.problem("is missing", remedy=f"give {wanted(spec, place.unit)}: {spec.doc}")
         else:
@@ -95,11 +104,21 @@ def value_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Pro
     yield from _choice_problems(cls, values, at)
 
 
+@cache
+def _fields(cls: Any) -> tuple[tuple[str, Any, Spec, type | None], ...]:
+    """The fields of a declaration: name, default, spec, and the type of a value that mostly needs no further look."""
+    return tuple((item.name, item.default, spec, _plain(spec)) for item, spec in specs(cls))
+
+
+def _plain(spec: Spec) -> type | None:
+    if spec.what == "port":
+        return None if spec.domain else Node
+    return float if spec.what in NUMBERS else None
+
+
 def _choice_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
     """Signals that can be given in one of several ways: exactly one, or none where there is a default."""
-    for names, spec in inputs(cls):
-        if len(names) == 1:
-            continue
+    for names, spec in _choices(cls):
         given = [name for name in names if values.get(name) is not None]
         if len(given) > 1:
             yield at.inner(given[1]).problem(
@@ -108,6 +127,12 @@ def _choice_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[P
         if not given and spec.otherwise is None:
             choice = " or ".join(names)
             yield at.inner(names[0]).problem("is missing", remedy=f"give {choice}: {spec.doc}{within(spec.unit)}")
+
+
+@cache
+def _choices(cls: Any) -> Inputs:
+    """The inputs that can be given in several ways."""
+    return tuple((names, spec) for names, spec in inputs(cls) if len(names) > 1)
 
 
 def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
@@ -145,7 +170,7 @@ def _shown(value: Any) -> str:
 def signal_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """Mistakes of what drives an input: a number, a signal or a reference."""
     if isinstance(value, Signal):
-        found = list(object_problems(value, at._replace(units=spec.units)))
+        found = list(object_problems(value, At(at.path, at.quantity, at.unit, at.scale, spec.units)))
         yield from found
         for name, message, remedy in () if found else value.unit_problems((at.unit, *spec.units)):
             yield at.inner(name).problem(message, remedy=remedy)

@@ -64,7 +64,8 @@ def _wanted_places(model: Mechanism, wanted: Sequence[str]) -> tuple[list[Proble
 def _order(model: Mechanism, wanted: Sequence[int]) -> list[int]:
     """Nodes in the order in which they are solved for: what is left are the independent ones."""
     rest = [place for place in range(len(model.nodes)) if place not in wanted]
-    by_inertia = sorted(rest, key=lambda place: (model.inertia[place], -place))
+    # floats compare faster than fractions, and mostly tell them apart
+    by_inertia = sorted(rest, key=lambda place: (float(model.inertia[place]), model.inertia[place], -place))
     return [*by_inertia, *reversed(wanted)]
 
 

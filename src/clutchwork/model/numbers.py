@@ -128,24 +128,24 @@ def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield at.problem("must be a list of points", value=shown(value), remedy=f"write [[x, y], ...]: {spec.doc}")
         return
     before = None
+    plain = Spec("param", spec.unit_x, "", units=spec.units_x)
+    bounded = Spec("param", at.unit, "", at_least=spec.at_least, units=(*spec.units, *at.units))
     for number, point in enumerate(value, 1):
         place = At(at.path, f"{at.quantity}, point {number}", at.unit, units=at.units)
         # one mistake is enough: those behind it often follow from it
-        found = list(_point(point, spec, place)) or list(_order(before, point, spec, place))
+        found = list(_point(point, (plain, bounded), place)) or list(_order(before, point, spec, place))
         if found:
             yield from found
             return
         before = point
 
 
-def _point(point: Any, spec: Spec, at: At) -> Iterator[Problem]:
+def _point(point: Any, specs: tuple[Spec, Spec], at: At) -> Iterator[Problem]:
     """A pair of finite numbers."""
     if has_unit(point) or not hasattr(point, "__len__") or len(point) != 2:
         yield at.problem("must be a pair of numbers", value=shown(point), remedy="write [x, y]")
         return
-    plain = Spec("param", spec.unit_x, "", units=spec.units_x)
-    bounded = Spec("param", at.unit, "", at_least=spec.at_least, units=(*spec.units, *at.units))
-    for number, part in zip(point, (plain, bounded), strict=True):
+    for number, part in zip(point, specs, strict=True):
         yield from number_problems(number, part, At(at.path, at.quantity, part.unit))
 
 

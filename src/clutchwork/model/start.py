@@ -157,6 +157,8 @@ def _balance(model: Mechanism, made: Kinematics, node: int) -> Row:
 
 def _row(speed: Row, inputs: dict[int, Fraction], wanted: Fraction) -> Row:
     """Node speed over the independent ones = wanted, with the prescribed inputs on the right."""
+    if inputs.keys().isdisjoint(speed):
+        return {**speed, KNOWN: wanted} if wanted else dict(speed)
     row = {column: factor for column, factor in speed.items() if column not in inputs}
     known = wanted - sum((factor * inputs[column] for column, factor in speed.items() if column in inputs), ZERO)
     return {**row, KNOWN: known} if known else row

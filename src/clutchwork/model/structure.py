@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Component, Domain, Node
-from clutchwork.declare.ports import directions, ports
+from clutchwork.declare.ports import coefficients, ports
 from clutchwork.declare.rational import MINUS, ONE, Row, exact, plus
 from clutchwork.declare.schema import Role
 from clutchwork.declare.speech import path_of
@@ -83,26 +83,26 @@ class Mechanism:
     def directions(self, component: Component) -> list[Row]:
         """Rate of each way of an element over the nodes."""
         joined = ports(component)
-        return [self._over(joined, way.coefficients) for way in directions(component)]
+        return [self._over(joined, way) for way in coefficients(component)]
 
     def _over(self, joined: Mapping[str, Node], coefficients: Mapping[str, Fraction]) -> Row:
         row: Row = {}
         for port, coefficient in coefficients.items():
-            row = plus(row, ONE, self._at(joined[port], coefficient))
+            node = joined[port]
+            if coefficient and not node.fixed:
+                place = self.places.of(node)
+                row = plus(row, ONE, {place: coefficient}) if place in row else {**row, place: coefficient}
         return row
 
-    def _at(self, node: Node, factor: Fraction) -> Row:
-        return {} if node.fixed else {self.places.of(node): factor}
+    @cached_property
+    def gear_rows(self) -> list[tuple[Any, Mapping[str, Node], Mapping[str, Fraction]]]:
+        """Each row of the gears by port: its gear, what that joins, and the coefficients."""
+        return [(gear, ports(gear), row) for gear in self.geared for row in gear.rows()]
 
     def rigid_rows(self) -> Iterator[RigidRow]:
         """Rows of all gears, then of contacts that have some, then of all prescribed speeds."""
-        for gear in self.geared:
-            joined = ports(gear)
-            for coefficients in gear.rows():
-                row: Row = {}
-                for port, coefficient in coefficients.items():
-                    row = plus(row, coefficient, self._at(joined[port], ONE))
-                yield RigidRow(path_of(gear), row, gear)
+        for gear, joined, row in self.gear_rows:
+            yield RigidRow(path_of(gear), self._over(joined, row), gear)
         for number, motion in enumerate(self.role(Role.MOTION), len(self.nodes)):
             yield RigidRow(path_of(motion), {**self.direction(motion), number: MINUS}, motion)
 

@@ -92,7 +92,7 @@ def start_grips(model: Mechanism, made: Kinematics) -> Iterator[tuple[Any, Row]]
     And of stops that touch what follows from one, such as a cam.
     """
     following = set(made.followers.values())
-    for contact in model.role(Role.CONTACT):
+    for contact in model.role(Role.CONTACT) if following else ():
         row = made.over(model.direction(contact))
         touches = contact.locked or (isinstance(contact, Stop) and contact.rests())
         if touches and following & row.keys():

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
-from clutchwork.base.extras import need
 from clutchwork.base.paths import target
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import columns
@@ -117,6 +116,8 @@ class Events(Sequence[Event]):
 
     def to_pandas(self) -> Any:
         """A pandas DataFrame with one line for each event; `frame.attrs["units"]` holds the units. Needs pandas."""
+        from clutchwork.base.extras import need
+
         pandas = need("pandas", "tables", "a table")
         words = ("element", "before", "after", "cause")
         frame = pandas.DataFrame(

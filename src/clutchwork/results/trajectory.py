@@ -10,21 +10,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.wiring import Wiring, wiring
-from clutchwork.base.above import above
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, OptionError
 from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained, explained_methods
+from clutchwork.declare.layout import DONE, STATUSES
 from clutchwork.declare.options import Options
-from clutchwork.declare.status import DONE, NAMES
 from clutchwork.results.events import Events
-from clutchwork.results.exchange.exports import Exports
+from clutchwork.results.exports import Exports
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from clutchwork.assembly.system import System
+    from clutchwork.assembly.wiring import Wiring
     from clutchwork.declare.node import Number
     from clutchwork.results.channels import Channels
     from clutchwork.results.dependence import DependentPhase
@@ -76,7 +75,7 @@ class Trajectory(Exports):
     @property
     def finished(self) -> bool:
         """Whether the run reached its end time."""
-        return self.status == NAMES[DONE]
+        return self.status == STATUSES[DONE]
 
     @property
     def reached(self) -> float:
@@ -92,6 +91,8 @@ class Trajectory(Exports):
     @property
     def wiring(self) -> Wiring:
         """Who is joined to what."""
+        from clutchwork.assembly.wiring import wiring
+
         return wiring(self.system)
 
     @property
@@ -222,6 +223,8 @@ class Trajectory(Exports):
         ValueError, says where a derivative does not exist, and why. `cw.differentiable` is for many points.
         docs/guide/gradients.md
         """
+        from clutchwork.base.above import above
+
         found: Gradient = above("run.gradient", self, of, by)
         return found
 
@@ -245,6 +248,8 @@ class Trajectory(Exports):
         The page runs the model from its begin, with these options; UseError names what cannot be changed in it. It
         needs no network and no installation, and sends nothing anywhere. docs/guide/page.md
         """
+        from clutchwork.base.above import above
+
         written: Path = above("run.page", self, path, drag, sliders, show)
         return written
 
@@ -261,6 +266,8 @@ class Trajectory(Exports):
         Parameters: as those of `page`. The widget has `knots`, {"F1.pressure": [[time, value], ...]}, and `values`,
         {"c1.gain": value}, in SI, which may be set too; `widget.system` is the driveline as its reader left it.
         """
+        from clutchwork.base.above import above
+
         return above("run.widget", self, drag, sliders, show)
 
     @cached_property

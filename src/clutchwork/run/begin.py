@@ -8,15 +8,15 @@ import numpy as np
 
 from clutchwork.base.shown import shown
 from clutchwork.declare.core import core
+from clutchwork.declare.layout import DONE, EVENTS_FULL, ROWS_FULL
 from clutchwork.declare.options import Options
-from clutchwork.declare.status import DONE, EVENTS_FULL, ROWS_FULL
-from clutchwork.results.held import Held
-from clutchwork.results.state import State, StateError, fingerprint
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from clutchwork.assembly.system import System
+    from clutchwork.results.held import Held
+    from clutchwork.results.state import State
 
 # budgets of a run count what it does itself
 BUDGETS = {"max_steps": ("steps", "rejected"), "max_events": ("events",)}
@@ -41,6 +41,8 @@ def begun(system: System, options: Options, start: State | None) -> Any:
 
 def put(run: Any, system: System, state: State) -> None:
     """Restore a run; StateError where the state is that of another model, or damaged."""
+    from clutchwork.results.state import StateError
+
     state.fits(system)
     try:
         run.restore(state.core)
@@ -70,6 +72,8 @@ def state_of(
 
     Parameters: row, that of the present time where it is known; left, the one before what was set there.
     """
+    from clutchwork.results.state import State, fingerprint
+
     saved = run.save()
     if row is None:
         row = np.asarray(row_of(run)).tobytes()

@@ -7,33 +7,16 @@ from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from clutchwork.base.classes import dataclass
-from clutchwork.results.held import Held
 from clutchwork.results.trajectory import SimulationError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from clutchwork.assembly.records import Input
     from clutchwork.results.channels import Channels
-
-
-class Readings(Mapping[str, Any]):
-    """All signals at one instant by name, each evaluated when it is read."""
-
-    def __init__(self, channels: Channels, row: NDArray[np.float64]) -> None:
-        self._channels = channels
-        self._row = np.asarray(row).reshape(1, -1)
-
-    def __getitem__(self, name: str) -> Any:
-        return self._channels[name].evaluate(self._row)[0].item()
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._channels)
-
-    def __len__(self) -> int:
-        return len(self._channels)
+    from clutchwork.results.held import Held
 
 
 @dataclass(frozen=True)
@@ -98,6 +81,8 @@ class Control:
         due = [controller for controller in self.controllers if is_due(controller.period, time)]
         if not due:
             return []
+        from clutchwork.run.readings import Readings
+
         readings = Readings(self.channels(), run.row() if given is None else given)
         return [(controller.index, controller.value(time, readings)) for controller in due]
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.declare.layout import EVENT
-from clutchwork.declare.status import DONE, EVENTS_FULL, INTERRUPTED, ROWS_FULL
+from clutchwork.declare.layout import DONE, EVENT, EVENTS_FULL, INTERRUPTED, ROWS_FULL
 
 if TYPE_CHECKING:
     from clutchwork.run.course import Course

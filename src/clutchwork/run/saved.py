@@ -22,10 +22,9 @@ from clutchwork.base.paths import path_of
 from clutchwork.base.regular import reason
 from clutchwork.base.shown import listed, shortened
 from clutchwork.declare.calls import explained
-from clutchwork.declare.layout import MODES
+from clutchwork.declare.layout import MODES, STATUSES
 from clutchwork.declare.options import Options
 from clutchwork.declare.speech import say
-from clutchwork.declare.status import NAMES
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Event, Events
 from clutchwork.results.exchange.content import program
@@ -86,7 +85,7 @@ def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
     missing = [key for key in ("system", "t_end", "options", "status", "message", "statistics") if key not in about]
     if missing:
         raise ValueError(f"it does not say {listed(missing)}")
-    if about["status"] not in NAMES:
+    if about["status"] not in STATUSES:
         raise ValueError("its status is none that a run has")
     return about
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import OptionError
 from clutchwork.declare.options import DEFAULTS, Options, end_time, known
 from clutchwork.declare.speech import say
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.records import Input
 
 ON_COMMAND_LINE = "give --t-end, or t_end in the [simulation] table of the model file"
 IN_PYTHON = "give the end time to the call in s, or set t_end in d.simulation, the [simulation] table of a model file"
@@ -46,6 +49,19 @@ def without_end(settings: Mapping[str, Any], given: Mapping[str, Any], options: 
     wanted = {name: value for name, value in _wanted(settings, given, options).items() if name not in useless}
     known(wanted)
     return (options or DEFAULTS).changed(wanted).changed({"times": None})
+
+
+def refuse_endless(inputs: Sequence[Input], begin: float, t_end: float, max_steps: int) -> None:
+    """OptionError for signals that repeat, or are asked for, more often than the run may take steps."""
+    found = []
+    for item in inputs:
+        sampling = item.signal.sampling()
+        period = sampling.period if sampling else item.signal.repeats()
+        if period > 0.0 and (t_end - begin) / period > max_steps:
+            times = f"more than max_steps = {max_steps} times up to {t_end:g} s"
+            found.append(f"{item.name} has a period of {period:g} s, {times}; give a longer period or a shorter run")
+    if found:
+        raise OptionError(found)
 
 
 def _wanted(settings: Mapping[str, Any], given: Mapping[str, Any], options: Options | None) -> dict[str, Any]:

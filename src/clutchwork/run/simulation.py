@@ -6,6 +6,7 @@ import os
 import time
 import warnings
 from collections.abc import Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, Unpack
@@ -14,30 +15,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
-from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, caller
-from clutchwork.base.progress import MEASURED, followed
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
+from clutchwork.declare.layout import DONE, INTERRUPTED, NOT_FINITE, STATUSES
 from clutchwork.declare.options import Options, instants
-from clutchwork.declare.status import DONE, INTERRUPTED, NAMES, NOT_FINITE
 from clutchwork.results.events import from_rows
-from clutchwork.results.state import State
 from clutchwork.results.trajectory import SimulationError, Trajectory
 from clutchwork.run.begin import advance, begun, reach, row_of, state_of
 from clutchwork.run.control import Control, controllers
-from clutchwork.run.effort import refuse_endless
-from clutchwork.run.failure import Interrupted, StoppedEarly, explain, report_faults
-from clutchwork.run.grid import output_grid
 from clutchwork.run.jumps import jump_times
 from clutchwork.run.record import Progress, Recording, Told, record
-from clutchwork.run.settings import merged
+from clutchwork.run.settings import merged, refuse_endless
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.results.channels import Channels
+    from clutchwork.results.state import State
     from clutchwork.run.course import Course
 
 Array = NDArray[np.float64]
@@ -73,6 +69,8 @@ class Job:
         if times is None:
             bare = self.options.changed({"times": None, "dt": None, "output": "steps"})
             return trajectory(replace(self, options=bare), None)
+        from clutchwork.run.failure import StoppedEarly
+
         wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
         with warnings.catch_warnings():
             # whoever has the run was warned
@@ -129,11 +127,22 @@ def simulate(
     held, changed = (start.held, start.changed) if start else ({}, {})
     asked, first = controllers(system.inputs, held), start.before if start else None
     control = Control(asked, partial(_channels, system), held=held, changed=changed, first=first)
-    asks = "(time, t_end)"
-    with followed(progress, end, "simulate", asks, chosen.t_start, bar_format=MEASURED, unit="s") as told:
+    with _followed(progress, chosen.t_start, end) as told:
         run = trajectory(Job(system, end, chosen, control, start), told)
-    report_faults(run)
+    if any(event.cause == "fault" for event in run.events):
+        from clutchwork.run.failure import report_faults
+
+        report_faults(run)
     return run
+
+
+def _followed(progress: Any, begin: float, t_end: float) -> AbstractContextManager[Told | None]:
+    """What takes the time that is reached; None where nobody asked."""
+    if progress is None:
+        return nullcontext()
+    from clutchwork.base.progress import MEASURED, followed
+
+    return followed(progress, t_end, "simulate", "(time, t_end)", begin, bar_format=MEASURED, unit="s")
 
 
 def _channels(system: System) -> Channels:
@@ -154,6 +163,8 @@ def model_of(call: str, model: Assembles | System, options: object = None) -> Sy
 
 def begin_of(system: System, start: object, given: Mapping[str, Any]) -> dict[str, float]:
     """The time of a state of a System as an option; an error for anything else."""
+    from clutchwork.results.state import State
+
     if not isinstance(start, State):
         remedy = "give what sim.save(), run.state() or cw.State.load(path) returned"
         raise UseError("simulate", [f"start is {shown(start)}: {remedy}"])
@@ -180,17 +191,25 @@ def trajectory(job: Job, progress: Told | None) -> Trajectory:
     if failure is not None:
         raise SimulationError(str(failure), made) from failure.__cause__
     if isinstance(recording.raised, KeyboardInterrupt):
+        from clutchwork.run.failure import Interrupted
+
         raise Interrupted(made.message, made) from None
     if recording.raised is not None:
         raise recording.raised
     if not made.finished:
+        from clutchwork.run.failure import StoppedEarly
+
         warnings.warn(StoppedEarly(made.message, made), stacklevel=caller())
     return made
 
 
 def _collect(job: Job, progress: Told | None) -> tuple[Recording, SimulationError | None]:
     """Record a run; smooth output repeats it on a grid that is known to hold every step and event."""
-    grid = output_grid(job.options, job.t_end)
+    grid = None
+    if job.options.dt is not None or job.options.times is not None:
+        from clutchwork.run.grid import output_grid
+
+        grid = output_grid(job.options, job.t_end)
     first, failure = _once(job, grid, progress)
     if grid is not None or job.options.output != "smooth" or failure is not None or first.status == INTERRUPTED:
         return first, failure
@@ -257,20 +276,25 @@ def names_part(system: System, index: int) -> bool:
 
 def _acting(system: System) -> list[Any]:
     """The elements and contacts by the numbers that the core has for them: one of several ways has one for each."""
+    from clutchwork.assembly.wiring import wiring
+
     known = wiring(system)
     return [branch.component for branch in (*known.elements, *known.contacts)]
 
 
 def told(system: System, status: int, index: int, at: float, value: float, column: int) -> str:
     """Why a run stopped at a time: an element or contact by its number, and its value, or a number of the row."""
+    from clutchwork.run.failure import explain
+
     parts = _acting(system)
-    if NAMES[status] == "zeno" and index < 0:
+    if STATUSES[status] == "zeno" and index < 0:
         number = int(value)
         if number >= len(system.inputs):
             return explain(status, system.processes[number - len(system.inputs)], at, value)
         return explain(status, None, at, value, system.inputs[number].name)
     if status != NOT_FINITE or names_part(system, index):
         return explain(status, parts[index] if names_part(system, index) else None, at, value)
+    from clutchwork.assembly.wiring import wiring
     from clutchwork.results.rows import numbers
 
     name, _ = numbers(wiring(system))[column]
@@ -290,7 +314,7 @@ def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
         time=recording.times,
         rows=recording.rows,
         events=from_rows(recording.events, [contact.name for contact in system.contacts]),
-        status=NAMES[status],
+        status=STATUSES[status],
         message=message,
         repeat=job.again,
         capture=job.state,

@@ -15,14 +15,15 @@ from clutchwork.base import html
 from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained, explained_methods
+from clutchwork.declare.layout import DONE, EVENTS_FULL
 from clutchwork.declare.options import Options
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
-from clutchwork.declare.status import DONE, EVENTS_FULL
 from clutchwork.results.state import State, StateError
 from clutchwork.results.trajectory import SimulationError
 from clutchwork.run.begin import begun, choose, put, seen, state_of
-from clutchwork.run.control import Controller, Readings, controllers, instants, is_due
+from clutchwork.run.control import Controller, controllers, instants, is_due
 from clutchwork.run.failure import warn_of_faults
+from clutchwork.run.readings import Readings
 from clutchwork.run.settings import without_end
 from clutchwork.run.simulation import Assembles, begin_of, message_of, model_of
 from clutchwork.stepping.outside import Outside

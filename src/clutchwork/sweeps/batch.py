@@ -15,7 +15,7 @@ from clutchwork.assembly.wiring import row_columns
 from clutchwork.base.errors import UseError, near
 from clutchwork.base.shown import listed
 from clutchwork.declare.core import core
-from clutchwork.declare.status import DONE, INTERRUPTED
+from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import LOCKED
 from clutchwork.sweeps.axes import Plan, systems_of

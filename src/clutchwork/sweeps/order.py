@@ -10,8 +10,7 @@ from clutchwork.assembly.system import System
 from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.options import Options
-from clutchwork.run.effort import refuse_endless
-from clutchwork.run.settings import merged
+from clutchwork.run.settings import merged, refuse_endless
 from clutchwork.sweeps.asking import ROWS
 from clutchwork.sweeps.axes import Plan
 from clutchwork.sweeps.mistakes import few

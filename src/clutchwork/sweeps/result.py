@@ -18,7 +18,7 @@ from clutchwork.base.paths import target
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
 from clutchwork.declare.calls import explained, explained_methods
-from clutchwork.declare.status import DONE, INTERRUPTED, NAMES
+from clutchwork.declare.layout import DONE, INTERRUPTED, STATUSES
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.selection import chosen
 from clutchwork.run.simulation import told
@@ -98,7 +98,7 @@ class Sweep:
     def take_one(self, number: int, found: Mapping[str, Any], status: str) -> None:
         """Take over what was made of the run of one variant."""
         if self.codes[number] == INTERRUPTED:
-            self.codes[number] = NAMES.index(status)
+            self.codes[number] = STATUSES.index(status)
         for name, value in found.items():
             if name not in self.values:
                 self.values[name] = self._column(name, value)
@@ -145,7 +145,7 @@ class Sweep:
     @property
     def status(self) -> Array:
         """How each variant ended, in the shape of the grid."""
-        return np.array(NAMES)[self.codes].reshape(self.shape)
+        return np.array(STATUSES)[self.codes].reshape(self.shape)
 
     @property
     def finished(self) -> NDArray[np.bool_]:
@@ -210,7 +210,7 @@ class Sweep:
 
     def _words(self) -> str:
         """How many variants there are, and how they ended."""
-        ends = Counter(np.array(NAMES)[self.codes].tolist())
+        ends = Counter(np.array(STATUSES)[self.codes].tolist())
         told_of = ", ".join(f"{count} {name}" for name, count in ends.most_common())
         return f"Sweep of {counted(len(self), 'variants')}: {told_of}"
 
@@ -247,7 +247,7 @@ class Sweep:
             values = self.flat(name)
             lines = values.T if isinstance(self.swept.outputs[name], AtTimes) else [values]
             yield from zip(self._columns_of(name), lines, strict=True)
-        yield "status", np.array(NAMES)[self.codes]
+        yield "status", np.array(STATUSES)[self.codes]
 
     def column_units(self, names: Any = None) -> dict[str, str]:
         """The unit of each column of `columns` that has one; a value at an instant has that of its output."""
@@ -301,7 +301,7 @@ class Sweep:
                 dims = (*axes, f"{name} time")
                 coords[dims[-1]] = (dims[-1], np.array(output.times), {"units": "s"})
             data[name] = (dims, values.reshape((*shape, *values.shape[1:])), {"units": units[name]})
-        data["status"] = (axes, np.array(NAMES)[self.codes].reshape(shape))
+        data["status"] = (axes, np.array(STATUSES)[self.codes].reshape(shape))
         return xarray.Dataset(data, coords=coords)
 
     @explained("sweep.to_parquet", path="'sweep.parquet'")

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.base.shown import shown
+from clutchwork.declare.layout import INTERRUPTED
 from clutchwork.declare.node import Signal
-from clutchwork.declare.status import INTERRUPTED
 from clutchwork.run.control import controllers
 from clutchwork.sweeps.axes import Plan
 from clutchwork.sweeps.batch import Batch, Wanted, Way

@@ -65,26 +65,26 @@ class Values:
     head: Head
 
 
-def read(path: Path, wanted: Wanted) -> Values:
-    """The column of a file; FileError names what is wrong with the file, up to a few mistakes."""
-    sheet = sheets.known(path)
+def read(where: str, wanted: Wanted) -> Values:
+    """The column of the file at a path; FileError names what is wrong with the file, up to a few mistakes."""
+    sheet = sheets.known(where)
     made = _column(sheet, wanted) if sheet else None
     if made is not None:
         return made
     try:
-        with open_regular(path, MOST_BYTES) as file, with_commas(file) as plain:
-            return _read(plain, wanted, path)
+        with open_regular(where, MOST_BYTES) as file, with_commas(file) as plain:
+            return _read(plain, wanted, where)
     except FileNotFoundError:
-        raise wanted.error("path", "does not exist", f"put the file into {_folder(path)}") from None
+        raise wanted.error("path", "does not exist", f"put the file into {_folder(where)}") from None
     except OSError as error:
         raise wanted.error("path", f"cannot be read: {reason(error)}", "give a CSV file") from None
     except (UnicodeDecodeError, csv.Error):
         raise wanted.error("path", "cannot be read: it is not UTF-8 text", "give a CSV file") from None
 
 
-def _folder(path: Path) -> str:
+def _folder(where: str) -> str:
     """The folder in which a file is looked for, in full."""
-    return shown(str(path.absolute().parent))
+    return shown(str(Path(where).absolute().parent))
 
 
 def _scaled(table: Array, scales: tuple[Scale, Scale], wanted: Wanted) -> Array:
@@ -112,14 +112,14 @@ def _column(sheet: Sheet, wanted: Wanted) -> Values | None:
     return Values(made if scales == (PLAIN, PLAIN) else _scaled(made, scales, wanted), column)
 
 
-def _read(file: BinaryIO, wanted: Wanted, path: Path) -> Values:
+def _read(file: BinaryIO, wanted: Wanted, where: str) -> Values:
     alike = _scan(file, wanted)
     size = file.tell()
     with as_text(file) as text:
         header, lines = _opened(text)
         if not header:
             raise wanted.error("path", "is empty", "give a header line and at least one row of numbers")
-        sheet = sheets.keep(path, size, header, lines) if alike else None
+        sheet = sheets.keep(where, size, header, lines) if alike else None
         found = _column(sheet, wanted) if sheet else None
         if found is not None:
             return found

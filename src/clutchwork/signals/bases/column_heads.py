@@ -41,7 +41,7 @@ class Head:
 
 def split(head: str) -> tuple[str, str]:
     """Name and unit of a head such as `slip [rad/s]`."""
-    match = _HEAD.fullmatch(head)
+    match = _HEAD.fullmatch(head) if head.endswith("]") else None
     return (match[1], "" if match[2].strip() in BARE else match[2]) if match else (head, "")
 
 

@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import field
 from itertools import chain
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +38,7 @@ class Sheet:
         return self._plain[time]
 
 
-_SHEETS: ContextVar[dict[Path, Sheet] | None] = ContextVar("sheets", default=None)
+_SHEETS: ContextVar[dict[str, Sheet] | None] = ContextVar("sheets", default=None)
 
 
 @contextmanager
@@ -52,12 +51,12 @@ def one_reading() -> Iterator[None]:
         _SHEETS.reset(token)
 
 
-def known(path: Path) -> Sheet | None:
-    """The sheet of a file that was read before."""
-    return (_SHEETS.get() or {}).get(path)
+def known(where: str) -> Sheet | None:
+    """The sheet of the file at a path that was read before."""
+    return (_SHEETS.get() or {}).get(where)
 
 
-def keep(path: Path, size: int, header: list[str], lines: Iterator[list[str]]) -> Sheet | None:
+def keep(where: str, size: int, header: list[str], lines: Iterator[list[str]]) -> Sheet | None:
     """The sheet of a file of a size, kept for the next column; None where it has other cells, or nobody reads more."""
     sheets = _SHEETS.get()
     if sheets is None or size > MOST_BYTES:
@@ -69,5 +68,5 @@ def keep(path: Path, size: int, header: list[str], lines: Iterator[list[str]]) -
         return None
     if not len(table) or not np.all(np.isfinite(table)):
         return None
-    sheets[path] = Sheet(header, table)
-    return sheets[path]
+    made = sheets[where] = Sheet(header, table)
+    return made

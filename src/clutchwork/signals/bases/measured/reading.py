@@ -18,19 +18,19 @@ from clutchwork.signals.bases.measured.series import Array, Clock, Series
 Faults = list[tuple[str, str, str]]
 
 
-def read(path: Path, wanted: Wanted) -> Values:
-    """The column of a file; FileError names what is wrong with the file, up to a few mistakes."""
+def read(where: str, wanted: Wanted) -> Values:
+    """The column of the file at a path; FileError names what is wrong with the file, up to a few mistakes."""
     try:
         # what was read as a sheet is a CSV file
-        form = "" if sheets.known(path) else format_of(path)
+        form = "" if sheets.known(where) else format_of(Path(where))
     except OSError:
         form = ""
     if not form:
         if wanted.group:
             raise wanted.error("group", "has no groups: it is a CSV file", "remove group")
-        return column_file.read(path, wanted)
+        return column_file.read(where, wanted)
     try:
-        with opened(path, form, wanted.path) as found:
+        with opened(Path(where), form, wanted.path) as found:
             one = pick(found, wanted)
             clock, values = _clock(one, found, wanted), one.values()
             invalid = one.invalid()
