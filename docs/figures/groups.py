@@ -79,20 +79,22 @@ GROUPS = {
         ),
     ),
     "plots": Group("drawings", (PLOT,), ("pictures",)),
-    "rig": Group("experiments", ("src/clutchwork/rig/**/*.py",)),
+    "rig": Group("experiments", ("src/clutchwork/rig/**/*.py", PLOT)),
     "schematics": Group(
         "schematics", (SCHEMATIC, *_examples("launch", "car_launch", "six_speed"))
     ),
     "shifts": Group(
         "shifts",
-        (*_examples("eight_speed"), "src/clutchwork/shifts/**/*.py", CATALOGUE),
+        (*_examples("eight_speed"), "src/clutchwork/shifts/**/*.py", CATALOGUE, PLOT),
     ),
     "stories": Group(
         "stories",
         (PLOT, SCHEMATIC, *_examples("six_speed", "shift_controller", "tune_launch")),
         STORIES,
     ),
-    "studies": Group("studies", tuple(_examples("million_shifts"))),
+    "studies": Group(
+        "studies", (*_examples("million_shifts"), "src/clutchwork/studies/picture.py")
+    ),
     "sweeps": Group("sweeps", tuple(_examples("shift_sweep"))),
 }
 
