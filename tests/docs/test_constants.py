@@ -46,6 +46,8 @@ def test_exit_codes() -> None:
 
 def test_the_speed_that_the_readme_claims_is_measured() -> None:
     """Simulating a gear shift takes a fraction of a millisecond."""
-    assert "Simulating a gear shift takes a fraction of a millisecond" in plain((ROOT / "README.md").read_text(encoding="utf-8"))
+    assert "Simulating a gear shift takes a fraction of a millisecond" in plain(
+        (ROOT / "README.md").read_text(encoding="utf-8")
+    )
     (shift,) = [row[1] for row in table(page("benchmarks.md"), "what") if row[0].startswith("shift: Rodas5P, core")]
     assert float(shift.partition(" us")[0]) < 500.0
