@@ -8,7 +8,7 @@
 #   make page     the script of pages that compute (needs node): src/clutchwork/page/static/
 #   make docs     the documentation: build/docs/index.html
 #   make pictures the pictures of the guides that something has changed for: docs/pictures/
-#   make setup    the environment alone
+#   make setup    the package with derivatives, in its environment
 #   make clean    removes .venv, build and out
 
 PYTHON ?= python3
@@ -70,13 +70,13 @@ SETTING = --config-settings=cmake.define.CLUTCHWORK_
 INSTALL = $(COMPILER) $(PIP) install --no-build-isolation --no-deps $(SETTING)NATIVE=ON $(SETTING)DERIVATIVES=$(1) --editable .
 
 $(STAMPS)/package: $(STAMPS)/build $(CORE_SOURCES)
-	@echo "building and installing clutchwork"
+	@echo "building and installing clutchwork (a minute or two)"
 	@$(call INSTALL,ON)
 	@touch $(STAMPS)/core $@
 
 # the same without derivatives, which take as long to compile as all the rest; matplotlib is installed meanwhile
 $(STAMPS)/core: $(STAMPS)/build $(CORE_SOURCES)
-	@echo "building and installing the core of clutchwork"
+	@echo "building and installing the core of clutchwork (about a minute)"
 	@mkdir -p build
 	@($(call WITH_EXTRA,plot)) >build/plot.log 2>&1 & plot=$$!; $(call INSTALL,OFF); failed=$$?; wait $$plot; exit $$failed
 	@touch $@

@@ -33,7 +33,7 @@ def derivatives() -> Any:
         found = import_module("clutchwork._derivatives")
     except ImportError as error:
         message = "derivatives of runs are computed by a compiled module of their own, which cannot be loaded"
-        raise ImportError(f"{message} ({error}); {REMEDY}") from error
+        raise ImportError(f"{message} ({error}); {REMEDY}") from None
     if (found.layout, found.schema) != (core().layout, core().schema):
         raise ImportError(f"the compiled derivatives of clutchwork were built from other declarations; {REMEDY}")
     if not found.supported():
