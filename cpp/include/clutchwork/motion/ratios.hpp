@@ -373,6 +373,37 @@ void settle_ties(Form& form, T* y) {
   }
 }
 
+/// Locked contacts that share a load pass it on otherwise than the carriers would alone: transmissions take the
+/// difference, at the point that was evaluated last. docs/theory/varying-ratios.md (21)
+template <class Form, class T = typename Form::Scalar>
+[[gnu::noinline]] void carry_shares(Form& form) {
+  Workspace<T>& ws = form.ws;
+  const Ratios<T>& r = ws.ratios;
+  const Tied<T>& w = r.plain;
+  const int ne = int(ws.sys.elements), nv = int(ws.sys.speeds), nz = form.nz();
+  T *torque = ws.reduced.column, *reduced = w.push;
+  for (int i = 0; i < nv; ++i) torque[i] = T(0);
+  for (int k = 0; k < ws.held.n_sets; ++k) {
+    const int first = ws.held.set_first[k];
+    for (int i = first; i < ws.held.set_first[k + 1]; ++i) {
+      const int d = ne + ws.held.set_member[i], own = ws.branch_of[d];
+      T more = ws.out.torque[d];
+      if (own >= 0 && own < ws.n_branches) more -= ws.seen.torque[own];
+      if (i - first < ws.held.set_rank[k]) more -= ws.seen.carried[ws.held.set_place[i]];
+      add_direction(ws, d, more, torque);
+    }
+  }
+  for (int i = 0; i < nz; ++i) reduced[i] = T(0);
+  for (int i = 0; i < nv; ++i) ws.rows.expansion.add(i, torque[i], reduced);
+  for (int t = 0; t < r.ties; ++t) w.wanted[t] = T(0);
+  carry(r, w, reduced, nz);
+  for (int a = 0; a < r.n; ++a) {
+    const int d = first_of(ws, a), k = r.place[2 * a];
+    ws.seen.torque[k] += w.torque[a], ws.seen.torque[k + 1] -= w.ratio[a] * w.torque[a];
+    ws.out.torque[d] = ws.seen.torque[k], ws.out.torque[d + 1] = ws.seen.torque[k + 1];
+  }
+}
+
 /// Torques of the locked contacts whose directions vary, behind those of the others.
 template <class T, class S, class Of>
 void varying_multipliers(const Workspace<T>& ws, const Tied<S>& w, T* out, Of&& of) {

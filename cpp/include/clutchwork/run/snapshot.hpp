@@ -50,6 +50,9 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
   multipliers(ws, ws.seen.torque, true, ws.seen.carried);
   if (sys.loads > 0) loads_seen(ws);
   locked_torques(ws, ws.seen.carried, [&](int c, T x) { ws.out.torque[ne + c] += x; });
+  if constexpr (Form::full) {
+    if (ws.ratios.n > 0 && ws.held.n_sets > 0) carry_shares(form);
+  }
   if (sys.loads > 0) loads_of_all(ws, ws.out.torque, ws.loads.now);
   expand(form, shot.y, shot.v);
   bool algebraic = false;
