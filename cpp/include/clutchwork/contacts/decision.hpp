@@ -310,6 +310,23 @@ int steepest(const Workspace<T>& ws) {
   return found;
 }
 
+/// Candidates between prescribed speeds that part slip before the others are asked. A freewheel that is turned backward
+/// ends it (-1: none).
+template <class T>
+int release_driven(Workspace<T>& ws, double tolerance) {
+  int* candidate = ws.decision.candidate;
+  free_motion(ws, candidate, ws.decision.motion);
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (!candidate[c] || !is_rigid(ws, c)) continue;
+    const double parting = value(slip_acceleration(ws, c, ws.decision.motion));
+    if (abs(parting) <= 1e6 * tolerance) continue;
+    if (parting * free_way(ws, c) < 0) return c;
+    release(ws, c, parting > 0 ? forward : backward);
+    candidate[c] = 0, ws.decision.released[c] = 1;
+  }
+  return -1;
+}
+
 /// Whether all candidates together hold, where some depend on others and some follow loads: then they do.
 /// docs/theory/load-dependent.md, rule 3
 template <class T>
@@ -351,7 +368,11 @@ bool hold_together(Workspace<T>& ws) {
 template <class T>
 Verdict settle_coupled(Workspace<T>& ws, int located, double tolerance) {
   int *candidate = ws.decision.candidate, *released = ws.decision.released;
-  if (ws.geometry.redundant && hold_together(ws)) return {Settled::yes};
+  if (ws.geometry.redundant) {
+    const int jammed = release_driven(ws, tolerance);
+    if (jammed >= 0) return {Settled::jams, jammed};
+    if (hold_together(ws)) return {Settled::yes};
+  }
   for (int round = 0; round <= 4 * ws.sys.contacts + 4; ++round) {
     BoundedProblem<T> p{};
     CoupledProblem<T> q = pose_coupled(ws, p);

@@ -13,7 +13,7 @@ namespace clutchwork {
 template <class T>
 void impulses_for(T p11, T p12, T p22, T c1, T c2, T m1, T m2, T& j1, T& j2) {
   const T det = p11 * p22 - p12 * p12;
-  if (value(det) > 1e-20 * value(p11 * p22)) {
+  if (value(det) > 1e-14 * value(p11 * p22)) {
     j1 = (p22 * c1 - p12 * c2) / det, j2 = (p11 * c2 - p12 * c1) / det;
     return;
   }

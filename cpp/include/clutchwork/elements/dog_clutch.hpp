@@ -35,12 +35,16 @@ struct DogClutch : declared::DogClutch {
   static S off_centre(const Params<T>& p, const At<S>& at) {
     return at.state[angle] - S(pitch(p) * std::nearbyint(value(at.state[angle]) / pitch(p)));
   }
+  /// The same of a flank that is pressed, in the gap where it met the other until the teeth skip.
+  template <class T, class S>
+  static S pressed_by(const Params<T>& p, const At<S>& at) {
+    const S off = at.piece == ahead ? off_centre(p, at) : -off_centre(p, at);
+    return value(off) < -0.25 * pitch(p) ? off + S(pitch(p)) : off;
+  }
   /// How deep the flanks are pressed together [rad].
   template <class T, class S>
   static S depth(const Params<T>& p, const At<S>& at) {
-    if (at.piece == ahead) return off_centre(p, at) - S(p.gap / T(2));
-    if (at.piece == behind) return -off_centre(p, at) - S(p.gap / T(2));
-    return S(0);
+    return at.piece == ahead || at.piece == behind ? pressed_by(p, at) - S(p.gap / T(2)) : S(0);
   }
   /// Torque that pushes the flanks apart, never negative.
   template <class T, class S>
@@ -101,6 +105,8 @@ struct DogClutch : declared::DogClutch {
     } else {
       watch(at.piece == loose ? S(1) - abs(off_centre(p, at)) * T(2) / p.gap : depth(p, at) * T(2) / p.gap, meets);
       watch(at.state[sleeve] - reach, leaves);
+      // half a pitch from the middle the next gap is nearer
+      if (at.piece != loose) watch(S(1) - pressed_by(p, at) * T(2 / pitch(p)), slips);
     }
     return least + change;
   }
@@ -108,6 +114,7 @@ struct DogClutch : declared::DogClutch {
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
     if (who == turned) return at.piece;
     if (who == leaves) return apart;
+    if (who == slips && at.piece != blocked) return at.piece == ahead ? behind : ahead;
     if (who == slips) return fast;
     if (at.piece == blocked) return loose;
     if (at.piece == apart || at.piece == fast) return meet(p, at, state);

@@ -2,6 +2,7 @@
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/contacts/ratios.hpp>
+#include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/form.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -344,10 +345,11 @@ void move_followers_whole(const Ratios<T>& r, const Tied<S>& w, S* d) {
   }
 }
 
-/// Speeds y brought onto the ties at the point that was evaluated last, the momentum across them untouched.
+/// Speeds y brought onto the ties at the point that was evaluated last, the momentum across them untouched. A
+/// transmission that nothing can keep there, for what ties its speeds is prescribed; -1: none.
 /// docs/theory/varying-ratios.md (9)
 template <class Form, class T = typename Form::Scalar>
-void settle_ties(Form& form, T* y) {
+int settle_ties(Form& form, T* y) {
   Workspace<T>& ws = form.ws;
   const Ratios<T>& r = ws.ratios;
   const Tied<T>& w = r.plain;
@@ -371,6 +373,14 @@ void settle_ties(Form& form, T* y) {
     const T miss = w.ratio[a] * rate(2 * a + 1) - rate(2 * a);
     y[r.column[a]] += miss / share_of_follower(r, w, a, a);
   }
+  constexpr double most = 1e-6;
+  for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t) {
+    if (value(w.gram[t * r.ties + t]) != 0) continue;
+    const int a = r.tie[t];
+    const double first = value(rate(2 * a)), second = value(w.ratio[a] * rate(2 * a + 1));
+    if (abs(first - second) > 1e3 * slip_tolerance(ws) + most * (abs(first) + abs(second))) return a;
+  }
+  return -1;
 }
 
 /// Locked contacts that share a load pass it on otherwise than the carriers would alone: transmissions take the

@@ -100,6 +100,7 @@ class Phase : public Pace<typename Form::Scalar> {
     if constexpr (Form::full) {
       if (ws_.ratios.n > 0) prepare_ratios(form_);
       if (fresh) keep_ties(form_, step_, ws_.time, step_.y0());
+      if (ws_.ratios.jammed >= 0) return jam();
     }
     if constexpr (!Form::small) balance_massless(form_, step_);
     if constexpr (has_tangents<T>) {
@@ -204,6 +205,8 @@ class Phase : public Pace<typename Form::Scalar> {
       land(hit.s);
     } else if (misses_rest(hit)) {
       retake();
+    } else if (Form::full && hit.what == Hit::nothing && ws_.ratios.jammed >= 0) {
+      jam();
     } else if (write(hit.s)) {
       hit.what == Hit::nothing ? accept() : meet(hit);
     }
@@ -211,6 +214,13 @@ class Phase : public Pace<typename Form::Scalar> {
 
   void reject() {
     if (!shorten()) collapse();
+  }
+
+  /// A transmission whose speeds are prescribed otherwise than its ratio says.
+  void jam() {
+    ws_.detail.component = first_of(ws_, ws_.ratios.jammed);
+    ws_.ratios.jammed = -1;
+    leave(Status::jammed);
   }
 
   /// Whether the step must be repeated to end where a guard was hit, because its own estimate does not speak for that
@@ -337,6 +347,7 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (!law) pass_line(form_, *guard);
     look_on();
+    if (law && is_beyond(ws_)) return hand_over(Cause::other_event), true;
     if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(form_, hit.index));
     h_ = ws_.last_step;
     return true;
@@ -351,6 +362,7 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (moved) return false;
     look_on();
+    if (is_beyond(ws_)) return hand_over(Cause::other_event), true;
     h_ = ws_.last_step;
     return true;
   }
