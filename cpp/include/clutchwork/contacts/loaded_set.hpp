@@ -100,8 +100,8 @@ struct LoadedLimit {
     const T slope = bound.slope[line[row]];
     return (follower[f] == j ? T(-direction) : T(0)) - slope * share(load_of_member(f), j);
   }
-  /// How the motion in which the set gives way moves member i: positive where that slips backward. Its price tells so
-  /// alone where it is no load of others. docs/theory/load-dependent.md (14)
+  /// How the motion in which the set gives way moves member i, up to its sign: what is left of the prices without what
+  /// the torques do to loads. docs/theory/load-dependent.md (14)
   T motion_of(int i) const {
     T sum = T(0);
     for (int r = 0; r < set.rank; ++r) {
@@ -110,6 +110,13 @@ struct LoadedLimit {
       sum += set.column[i * set.rank + r] * own;
     }
     return sum;
+  }
+  /// Its sign: members with loads slip the way whose bound has a price, so that those of motion_of are positive where a
+  /// member slips backward.
+  int way_of_motion() const {
+    T work = T(0);
+    for (int f = 0; f < n_loads; ++f) work += price_of(follower[f]) * motion_of(follower[f]);
+    return value(work) < 0 ? -1 : 1;
   }
 };
 

@@ -409,7 +409,8 @@ void break_set(Workspace<T>& ws, int k, const T* carried) {
     outer_loads(ws, k, ws.loads.now, carried);
     LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
     solve_at_limit(limit);
-    return force([&](int i) { return limit.price_of(i); }, [&](int i) { return limit.motion_of(i); });
+    const T way = T(limit.way_of_motion());
+    return force([&](int i) { return limit.price_of(i); }, [&](int i) { return way * limit.motion_of(i); });
   }
   LimitLoad<T> limit = limit_of(ws, set);
   limit.solve();
