@@ -25,7 +25,9 @@ def coulomb(rng: Rng) -> cw.Coulomb:
 
 
 def sine(rng: Rng, size: float) -> cw.Sine:
-    return cw.Sine(amplitude=uniform(rng, 0.3, 1) * size, frequency=uniform(rng, 1, 8), offset=uniform(rng, -size, size))
+    return cw.Sine(
+        amplitude=uniform(rng, 0.3, 1) * size, frequency=uniform(rng, 1, 8), offset=uniform(rng, -size, size)
+    )
 
 
 def pressed(rng: Rng) -> dict[str, Any]:
@@ -92,7 +94,9 @@ def test_a_ratio_that_jumps_draws_its_energy_from_prescribed_speeds(seed):
     # both signs of a ratio, and a set whose ring goes on where the carrier is prescribed
     jumps = [(0.03, uniform(rng, 0.3, 2)), (0.03, uniform(rng, 0.3, 2)), (0.06, uniform(rng, 0.3, 2))]
     d.add(cw.VariableGear("gear", input=first, output=second, ratio=cw.Table(jumps)))
-    d.add(cw.Planetary("set", sun=b, carrier=d.housing if rng.random() < 0.3 else a, ring=c, ratio=uniform(rng, 1.5, 3)))
+    d.add(
+        cw.Planetary("set", sun=b, carrier=d.housing if rng.random() < 0.3 else a, ring=c, ratio=uniform(rng, 1.5, 3))
+    )
     d.add(cw.PrescribedSpeed("given", shaft=a, speed=uniform(rng, -5, 5)))
     energy = d.simulate(0.1, rtol=1e-10).energy
     assert abs(energy.residual) <= 1e-8 * energy.turnover, seed
@@ -116,10 +120,18 @@ def limited(rng: Rng) -> cw.Driveline:
     d.add(cw.Differential("df", carrier=b, left=c, right=a, bias=uniform(rng, 1.5, 5)))
     for shaft in (b, c):
         if rng.random() < 0.6:
-            d.add(cw.Brake(f"on_{shaft.name}", shaft=shaft, friction=coulomb(rng), gain=1.0, normal_force=uniform(rng, 0, 300)))
+            d.add(
+                cw.Brake(
+                    f"on_{shaft.name}", shaft=shaft, friction=coulomb(rng), gain=1.0, normal_force=uniform(rng, 0, 300)
+                )
+            )
     course = rng.integers(3)
     if course == 0:
-        d.add(cw.PrescribedSpeed("given", shaft=a, speed=cw.Sine(amplitude=uniform(rng, 1, 10), frequency=uniform(rng, 1, 4))))
+        d.add(
+            cw.PrescribedSpeed(
+                "given", shaft=a, speed=cw.Sine(amplitude=uniform(rng, 1, 10), frequency=uniform(rng, 1, 4))
+            )
+        )
     elif course == 1:
         d.add(cw.PrescribedAcceleration("given", shaft=a, acceleration=uniform(rng, -20, 20)))
     else:
@@ -179,7 +191,10 @@ def test_a_torque_that_jumps_takes_loads_along(seed):
 def test_impacts_beside_a_closed_stop_do_not_depend_on_the_method(seed):
     rng = np.random.default_rng(seed)
     d = cw.Driveline("row")
-    a, b, c = (d.shaft(name, inertia=uniform(rng, 0.1, 1), speed=speed) for name, speed in zip("abc", (59.91, 60, 60)))
+    a, b, c = (
+        d.shaft(name, inertia=uniform(rng, 0.1, 1), speed=speed)
+        for name, speed in zip("abc", (59.91, 60, 60), strict=True)
+    )
     d.add(cw.Backlash("ab", base=a, follower=b, gap=0.15, restitution=0.6))
     d.add(cw.Backlash("bc", base=b, follower=c, gap=0.5, restitution=0.2, initial_twist=-0.24, rest_speed=1e-3))
     d.add(cw.Torque("load", shaft=c, torque=cw.Sine(amplitude=1.0, frequency=20.0, offset=-2.4)))
@@ -195,7 +210,11 @@ def self_locking(rng: Rng) -> cw.Driveline:
     a = d.shaft("a", inertia=10 ** uniform(rng, -3, 0.5), speed=uniform(rng, -60, 60))
     b, c, e = (d.shaft(name, inertia=10 ** uniform(rng, -3, 0.5)) for name in "bce")
     loss = [[0.0, uniform(rng, 0.4, 0.8), uniform(rng, -0.6, 0.3), 0.0, 0.0]]
-    d.add(cw.LossyGear("lossy", input=a, output=b, ratio=float(rng.choice([-1, 1])) * uniform(rng, 1, 20), loss_table=loss))
+    d.add(
+        cw.LossyGear(
+            "lossy", input=a, output=b, ratio=float(rng.choice([-1, 1])) * uniform(rng, 1, 20), loss_table=loss
+        )
+    )
     d.add(cw.Gear("gear", input=b, output=c, ratio=uniform(rng, 0.5, 4)))
     d.add(cw.Clutch("across", base=a, follower=c, friction=coulomb(rng), gain=1.0, normal_force=sine(rng, 800)))
     d.add(cw.Brake("brake", shaft=b, friction=coulomb(rng), gain=1.0, normal_force=uniform(rng, 0, 500)))
