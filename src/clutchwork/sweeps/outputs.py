@@ -16,7 +16,7 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import instants
-from clutchwork.sweeps.parts import in_parts, squared_jerk_of
+from clutchwork.sweeps import parts
 
 if TYPE_CHECKING:
     from clutchwork.results.events import Event
@@ -132,8 +132,9 @@ class SquaredJerk:
         """Its value in a run; NaN where that did not reach its end."""
         if not run.finished:
             return float("nan")
-        there = run.at(in_parts(run.repeat(None).time))
-        return squared_jerk_of(there.time, there[self.signal])
+        times, begins = parts.in_parts(run.repeat(None).time)
+        there = run.at(times)
+        return parts.squared_jerk(there.time, there[self.signal], begins)
 
 
 @dataclass(frozen=True)

@@ -198,6 +198,8 @@ bool fill_row(Form& form, Step<Form>& step, double s, double s_end, Sink& sink) 
 template <class Form>
 Status emit_parts(Form& form, Step<Form>& step, double s_end, double end, Sink& sink) {
   const std::int64_t parts = s_end > 0 ? sink.steps : 1;
+  // of a step whose parts the time cannot tell apart there are none. docs/theory/gradients.md (15)
+  if (parts > 1 && end - step.t <= 1e-12 * (1 + abs(step.t))) return Status::running;
   for (std::int64_t k = 1; k <= parts; ++k) {
     const double t = k == parts ? end : step.t + s_end * double(k) / double(parts) * step.h;
     // as a grid with this instant has it, but for the bare steps
@@ -251,6 +253,23 @@ Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
     return Status::running;
   }
   return emit(form, step, 0.0, step.t, sink);
+}
+
+/// Whether accelerations or torques in the last row are others than in the row before it, by more than round-off.
+template <class T>
+bool row_jumps(const Workspace<T>& ws, const Sink& sink) {
+  if (sink.at < 2) return true;
+  const double *behind = sink.rows + ws.row.size * (sink.at - 1), *before = behind - ws.row.size;
+  auto jumps = [&](std::int64_t first, std::int64_t count) {
+    double size = 0, most = 0;
+    for (std::int64_t i = first; i < first + count; ++i) {
+      size = larger(size, larger(abs(before[i]), abs(behind[i])));
+      most = larger(most, abs(behind[i] - before[i]));
+    }
+    return most > 1e-9 * size;
+  };
+  return jumps(ws.row.acceleration, ws.sys.nodes) || jumps(ws.row.element_torque, ws.sys.elements) ||
+         jumps(ws.row.contact_torque, ws.sys.contacts);
 }
 
 /// Take the integrals over the step up to s into the state.

@@ -157,18 +157,20 @@ class Phase : public Pace<typename Form::Scalar> {
     export_state(form_, step_.y0());
     note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
-    const bool jumps = sink_.steps > 0 && ws_.time < t_end_ && any_jumps(ws_);
+    const bool jumps = any_jumps(ws_);
     if (pass_knot(form_, step_)) return hand_over(Cause::input);
     if constexpr (has_tangents<T>) {
       if (leave_event(form_, step_)) look_here();
     }
-    if (jumps) show_jump();
+    show_behind(jumps);
   }
 
-  /// The row behind a jump of a signal: in steps both sides have one.
-  void show_jump() {
+  /// In steps both sides of an instant have a row where a signal, a torque or an acceleration jumps.
+  void show_behind(bool jumps) {
+    if (sink_.steps == 0 || ws_.time >= t_end_) return;
     const Status shown = emit_start(form_, step_, sink_, true);
     if (shown != Status::running) return leave(shown);
+    if (!jumps && !row_jumps(ws_, sink_)) --sink_.at;
     look_here();
   }
 
@@ -337,6 +339,7 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (!law) pass_line(form_, *guard);
     look_on();
+    show_behind(false);
     if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(form_, hit.index));
     h_ = ws_.last_step;
     return true;
@@ -351,6 +354,7 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (moved) return false;
     look_on();
+    show_behind(false);
     h_ = ws_.last_step;
     return true;
   }

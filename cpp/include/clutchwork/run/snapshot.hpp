@@ -30,6 +30,22 @@ struct Snapshot {
   T *y, *d, *rate, *v, *dv;
 };
 
+/// Accelerations of speeds without inertia follow from no torque: they are those of the interpolant.
+template <class Form, class T = typename Form::Scalar>
+void see_massless(Form& form, Step<Form>& step, double s, T* d) {
+  if constexpr (!Form::small) {
+    const auto& mass = form.ws.rows.mass.first;
+    bool any = false;
+    for (int i = 0; i < form.nz(); ++i) any = any || mass[i] == mass[i + 1];
+    if (!any || step.h == 0) return;
+    T* slope = step.u();
+    interpolate_slope(form, step, s, slope);
+    for (int i = 0; i < form.nz(); ++i) {
+      if (mass[i] == mass[i + 1]) d[i] = slope[i];
+    }
+  }
+}
+
 /// State, torques of all directions and accelerations at s; output torques go to ws.out.torque.
 template <class Form, class T = typename Form::Scalar>
 Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
@@ -52,13 +68,8 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
   locked_torques(ws, ws.seen.carried, [&](int c, T x) { ws.out.torque[ne + c] += x; });
   if (sys.loads > 0) loads_of_all(ws, ws.out.torque, ws.loads.now);
   expand(form, shot.y, shot.v);
-  bool algebraic = false;
-  for (int i = 0; i < nv; ++i) algebraic = algebraic || sys.massless[i] != 0;
-  if (algebraic && step.h > 0) {
-    interpolate_slope(form, step, s, shot.d);
-  } else {
-    form.solve_mass(shot.d);
-  }
+  form.solve_mass(shot.d);
+  see_massless(form, step, s, shot.d);
   expand(form, shot.d, shot.dv, false);
   for (int i = 0; i < nv; ++i) {
     for (int p = 0; p < sys.prescribed; ++p)
