@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -291,6 +292,9 @@ def _output(one: Any) -> Output:
         return AtEnd(one)
     if callable(one):
         return Computed(one, getattr(one, "__name__", "function"))
+    if hasattr(one, "largest"):
+        # what studies tell apart is the whole of it
+        return Computed(partial(one.largest), one.name)
     if hasattr(one, "needs"):
         # a goal or limit of `calibrate`, which is above this
         rest = "; take cw.squared_jerk of the shaft, or cw.peak of its acceleration" if "jerk" in one.name else ""

@@ -1,4 +1,4 @@
-"""Rows that cut each step of the solver into equal parts, and the squared jerk that the polynomials through them give."""
+"""Rows that cut each step of the solver into equal parts, and the squared jerk of the polynomials through them."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ Places = NDArray[np.intp]
 
 # rows in every step of the solver, the last one at its end
 PARTS = 4
-# steps that have no rows inside, of a second or of the time; rows that are much closer are at one instant
-SHORT, SAME = 1e-12, 1e-13
+# steps that have no rows inside, of a second or of the time, as in the core
+SHORT = 1e-12
 
 
 def in_parts(times: Array) -> tuple[Array, Places]:
@@ -23,7 +23,7 @@ def in_parts(times: Array) -> tuple[Array, Places]:
     Those at events appear twice. Steps too short to be cut are left out.
     """
     begins, ends = times[:-1], times[1:]
-    long = ends - begins > SHORT * (1.0 + np.abs(begins))
+    long = ends - begins > SHORT * (1.0 + np.abs(ends))
     inner = begins[long, None] + np.arange(1, PARTS) / PARTS * (ends - begins)[long, None]
     places = np.flatnonzero(long) + (PARTS - 1) * np.arange(long.sum())
     return np.insert(times, np.repeat(np.flatnonzero(long) + 1, PARTS - 1), inner.ravel()), places
@@ -34,7 +34,7 @@ def steps_of(times: Array) -> Places:
 
     Parameters: times, of the rows that the core gives. A row behind a jump stands at the time of the row before.
     """
-    firsts = np.flatnonzero(np.r_[True, np.diff(times) <= SAME * (1.0 + np.abs(times[1:]))])[: len(times)]
+    firsts = np.flatnonzero(np.r_[True, times[1:] <= times[:-1]])[: len(times)]
     counts = (np.diff(np.r_[firsts, len(times)]) - 1) // PARTS
     within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     found: Places = np.repeat(firsts, counts) + PARTS * within
@@ -52,7 +52,7 @@ def squared_jerk(times: Array, acceleration: Array, begins: Places) -> float:
 
 @cache
 def rates() -> tuple[Array, Array]:
-    """Slopes over [0, 1] at Gauss points of the polynomials that are one at a row and zero at the others, and weights."""
+    """Slopes at Gauss points of [0, 1] of the polynomials that are one at a row and zero at others, and weights."""
     points, weights = np.polynomial.legendre.leggauss(PARTS)
     basis = np.linalg.inv(np.vander(np.arange(PARTS + 1) / PARTS, increasing=True))
     powers = np.arange(1, PARTS + 1)

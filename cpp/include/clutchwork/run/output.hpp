@@ -133,12 +133,11 @@ void fill_contacts(const Workspace<T>& ws, const Snapshot<T>& shot, R* row) {
   }
 }
 
-/// Torques of all directions, and work up to the share x of the fitted part of the step, of length h; x < 0: nothing is
-/// fitted.
+/// Torques of all directions, and work; `fitted`: with that since the start of the step.
 template <class T, class R>
-void fill_work(const Workspace<T>& ws, double x, double h, R* row) {
+void fill_work(const Workspace<T>& ws, bool fitted, R* row) {
   const int ne = int(ws.sys.elements), nd = ws.n_directions;
-  auto since = [&](int i) { return x < 0 ? T(0) : fitted_work(ws, i, x, h); };
+  auto since = [&](int i) { return fitted ? ws.out.since[i] : T(0); };
   for (int d = 0; d < nd; ++d) {
     const std::int64_t k = d < ne ? ws.row.element_torque + d : ws.row.contact_torque + d - ne;
     const std::int64_t w = d < ne ? ws.row.element_work + d : ws.row.contact_work + d - ne;
@@ -162,11 +161,12 @@ void fill_numbers(Form& form, Step<Form>& step, double s, double s_end, R* row) 
   const auto& sys = ws.sys;
   for (int n = 0; n < sys.nodes; ++n) ws.out.angle[n] = ws.angle[n];
   if (ws.options.angles && s > 0) angles_at(form, step, s, ws.out.angle);
+  const bool fitted = ws.options.work && s > 0;
+  if (fitted) work_until(form, step, s, s_end);
   const Snapshot<T> shot = take_snapshot(form, step, s);
   fill_nodes(ws, shot, row);
   for (int i = 0; i < sys.states; ++i) row[ws.row.state + i] = shown<R>(shot.y[form.nz() + i]);
-  const bool fitted = ws.options.work && s > 0;
-  fill_work(ws, fitted ? s / s_end : -1.0, s_end * step.h, row);
+  fill_work(ws, fitted, row);
   for (int i = 0; i < sys.supplies; ++i) {
     row[ws.row.supply_power + i] = shown<R>(supply_power(ws, i, shot.y + form.nz()));
   }
@@ -198,8 +198,10 @@ bool fill_row(Form& form, Step<Form>& step, double s, double s_end, Sink& sink) 
 template <class Form>
 Status emit_parts(Form& form, Step<Form>& step, double s_end, double end, Sink& sink) {
   const std::int64_t parts = s_end > 0 ? sink.steps : 1;
-  // of a step whose parts the time cannot tell apart there are none. docs/theory/gradients.md (15)
-  if (parts > 1 && end - step.t <= 1e-12 * (1 + abs(step.t))) return Status::running;
+  // a step whose parts the time cannot tell apart has none, and what comes behind it is where it begins
+  const double shortest = sink.steps > 1 ? 1e-12 * (1 + abs(end)) : 0.0;
+  if (parts > 1 && end - step.t <= shortest) return Status::running;
+  if (parts == 1 && sink.at > 0 && end - sink.times[sink.at - 1] <= shortest) end = sink.times[sink.at - 1];
   for (std::int64_t k = 1; k <= parts; ++k) {
     const double t = k == parts ? end : step.t + s_end * double(k) / double(parts) * step.h;
     // as a grid with this instant has it, but for the bare steps
@@ -277,15 +279,9 @@ template <class Form>
 void accumulate(Form& form, Step<Form>& step, double s) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
-  const int nd = ws.n_directions;
   if (ws.options.angles) angles_at(form, step, s, ws.angle);
   if (!ws.options.work) return;
-  for (int d = 0; d < nd; ++d) ws.work[d] += fitted_work(ws, d, 1.0, s * step.h);
-  for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_work[p] += fitted_work(ws, nd + p, 1.0, s * step.h);
-  const int first = nd + int(ws.sys.prescribed);
-  for (int i = 0; i < ws.sys.supplies; ++i) ws.supplied[i] += fitted_work(ws, first + i, 1.0, s * step.h);
-  const int last = first + int(ws.sys.supplies);
-  for (int m = 0; m < ws.sys.meters; ++m) ws.metered[m] += fitted_work(ws, last + m, 1.0, s * step.h);
+  for (int i = 0; i < fitted_powers(ws); ++i) work_of(ws, i) += fitted_work(ws, i, 1.0, s * step.h);
 }
 
 }  // namespace clutchwork
