@@ -53,7 +53,8 @@ def test_heat_of_a_cycle_of_a_saturating_law(seed: int, method: str) -> None:
         assert float(np.diff(run["c.heat"])[0]) == pytest.approx(wanted, rel=10.0 * rtol)
 
 
-@pytest.mark.parametrize("name", sets.ALL)
+# the naive sign jumps inside of steps
+@pytest.mark.parametrize("name", [name for name in sets.ALL if not name.startswith("naive_sign")])
 def test_heat_of_any_law_converges_at_any_instant(name: str) -> None:
     rng = np.random.default_rng([3072, list(sets.ALL).index(name)])
     law = sets.ALL[name]
