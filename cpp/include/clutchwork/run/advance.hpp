@@ -86,6 +86,7 @@ bool start(Workspace<T>& ws) {
   ws.time = ws.options.t_start;
   ws.statistics = {};
   ws.events.n = 0;
+  ws.out.skipped = false;
   ws.contact.failed = -1;
   ws.params_changed = false;
   take_initial(ws);

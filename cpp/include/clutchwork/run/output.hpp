@@ -198,10 +198,14 @@ bool fill_row(Form& form, Step<Form>& step, double s, double s_end, Sink& sink) 
 template <class Form>
 Status emit_parts(Form& form, Step<Form>& step, double s_end, double end, Sink& sink) {
   const std::int64_t parts = s_end > 0 ? sink.steps : 1;
-  // a step whose parts the time cannot tell apart has none, and what comes behind it is where it begins
-  const double shortest = sink.steps > 1 ? 1e-12 * (1 + abs(end)) : 0.0;
-  if (parts > 1 && end - step.t <= shortest) return Status::running;
-  if (parts == 1 && sink.at > 0 && end - sink.times[sink.at - 1] <= shortest) end = sink.times[sink.at - 1];
+  auto& out = form.ws.out;
+  if (sink.steps > 1) {
+    // a step whose parts the time cannot tell apart has none, and what starts behind it is where it begins
+    if (parts == 1 && out.skipped) end = out.shown;
+    if (parts > 1) out.skipped = end - step.t <= 1e-12 * (1 + abs(end));
+    if (parts > 1 && out.skipped) return Status::running;
+    out.shown = end;
+  }
   for (std::int64_t k = 1; k <= parts; ++k) {
     const double t = k == parts ? end : step.t + s_end * double(k) / double(parts) * step.h;
     // as a grid with this instant has it, but for the bare steps

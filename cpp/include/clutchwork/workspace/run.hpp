@@ -89,6 +89,8 @@ struct Output {
   T* since = nullptr;                     ///< work of each of them since the start of the step
   int is_rough = -1;                      ///< whether the cubics miss much inside of the step; -1: not known
   T *whole = nullptr, *halves = nullptr;  ///< work of each branch over a step and its halves
+  double shown = 0;                       ///< [s] last row in a step
+  bool skipped = false;                   ///< the last step was too short for rows
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
