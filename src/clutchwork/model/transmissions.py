@@ -87,9 +87,10 @@ def start_rows(model: Mechanism, made: Kinematics) -> Sequence[tuple[Any, Row]]:
 
 
 def start_grips(model: Mechanism, made: Kinematics) -> Iterator[tuple[str, Row]]:
-    """Slips that are zero at the start unless speeds say otherwise, by name: of transmissions that can slip and are locked.
+    """Slips that are zero at the start unless speeds say otherwise, by name.
 
-    And of gearboxes in gear, and of stops that touch what follows from one of the first, such as a cam.
+    Those of gearboxes in gear, of transmissions that can slip and are locked, and of stops that touch what follows from
+    one, such as a cam.
     """
     for name, base, follower in model.grips:
         yield name, made.over(model.slip(base, follower))

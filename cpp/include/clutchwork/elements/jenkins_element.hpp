@@ -104,8 +104,8 @@ struct JenkinsElement : declared::JenkinsElement {
  private:
   static constexpr double after = 1e-4;  // [s]
 
-  /// A piece, and where it slides whether it goes on: the spring would grow faster than the limit, however slowly. Where
-  /// the limit follows a speed, its guard tells.
+  /// A piece, and where it slides whether it goes on: the spring would grow faster than the limit, however slowly.
+  /// Where the limit follows a speed, its guard tells.
   template <class T>
   static int kept(const Params<T>& p, const At<T>& at, int piece) {
     if (mode(piece) == sticks || follows_speed(p)) return piece;

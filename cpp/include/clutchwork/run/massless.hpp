@@ -89,7 +89,7 @@ double imbalance(Form& form, Step<Form>& step, bool& moved) {
 }
 
 /// Speeds without inertia to where their torques balance, from the present ones on: Newton over the pieces of their
-/// elements, with shorter steps where a whole one misses. True where they have jumped. docs/theory/reduction.md (11)
+/// elements, with shorter steps where a whole one misses. True where they have jumped. docs/theory/reduction.md (9)
 template <class Form>
 bool balance_massless(Form& form, Step<Form>& step) {
   constexpr int least = 8, most = 64, halvings = 30;
@@ -126,7 +126,7 @@ bool balance_massless(Form& form, Step<Form>& step) {
 }
 
 /// Rates of change of the speeds without inertia along the motion, of which d has the others and those of the states:
-/// their balance at (t, y) holds on. docs/theory/reduction.md (12)
+/// their balance at (t, y) holds on. docs/theory/reduction.md (9)
 template <class Form, class T = typename Form::Scalar>
 void change_massless(Form& form, double t, const T* y, T* d, T* b, T* dt) {
   Workspace<T>& ws = form.ws;
