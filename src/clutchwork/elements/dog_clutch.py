@@ -16,7 +16,7 @@ from clutchwork.elements.bases.heating import Heating
         State("angle", "rad", "angle of follower - base", span=1e-7),
         State("sleeve", "1", "position of the sleeve, 0 out, 1 in"),
     ),
-    hooks=("margin", "cross", "turns", "heat"),
+    hooks=("margin", "cross", "turns", "settle", "heat"),
 )
 class DogClutch(Heating):
     """Teeth that mesh only when tooth faces gap and the slip is below `speed`; then they hold any torque.
@@ -45,7 +45,7 @@ class DogClutch(Heating):
     reversed: bool = flag("a negative command closes it", default=False)
     command: SignalLike = signal("1", "wanted position of the sleeve, 0 out, 1 in")
     initial_angle: float = option("rad", "angle at the start, 0 in the middle of a gap", default=0.0)
-    engaged: bool = option("1", "in mesh at the start", default=False, flag=True)
+    engaged: bool = option("1", "in mesh at the start, at any slip", default=False, flag=True)
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""

@@ -118,17 +118,28 @@ struct DogClutch : declared::DogClutch {
     if (who == slips) return fast;
     if (at.piece == blocked) return loose;
     if (at.piece == apart || at.piece == fast) return meet(p, at, state);
-    if (at.piece == loose) return value(off_centre(p, at)) > 0 ? ahead : behind;
+    if (at.piece == loose) return flank(p, at);
     return loose;
   }
   template <class T>
   static bool turns(const Params<T>&, int) {
     return false;
   }
+  /// A sleeve that is in at the start is in mesh, whatever the slip.
+  template <class T>
+  static int settle(const Params<T>& p, const At<T>& at) {
+    if (at.piece != apart || value(at.state[sleeve]) <= value(p.reach) + 1e-9) return at.piece;
+    return abs(value(off_centre(p, at))) * 2 <= value(p.gap) ? loose : flank(p, at);
+  }
 
  private:
   enum Who : int { meets, leaves, slips };
 
+  /// The flank that the teeth are on, or next to.
+  template <class T>
+  static int flank(const Params<T>& p, const At<T>& at) {
+    return value(off_centre(p, at)) > 0 ? ahead : behind;
+  }
   /// The sleeve at the tips of the teeth: held back, in mesh, or on a tooth. Pointed teeth find the middle of a gap.
   template <class T>
   static int meet(const Params<T>& p, const At<T>& at, T* state) {

@@ -10,6 +10,7 @@
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/massless.hpp>
 #include <clutchwork/run/moving.hpp>
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/pace.hpp>
@@ -102,7 +103,9 @@ class Phase : public Pace<typename Form::Scalar> {
       if (fresh) keep_ties(form_, step_, ws_.time, step_.y0());
       if (ws_.ratios.jammed >= 0) return jam();
     }
-    if constexpr (!Form::small) balance_massless(form_, step_);
+    if constexpr (!Form::small) {
+      if (balance_massless(form_, step_) && event && ws_.sys.contacts > 0) return decide_again();
+    }
     if constexpr (has_tangents<T>) {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
     }
@@ -137,6 +140,14 @@ class Phase : public Pace<typename Form::Scalar> {
     over_ = true;
   }
 
+  /// Speeds without inertia have jumped to their balance: the modes were decided with other torques.
+  void decide_again() {
+    export_state(form_, step_.y0());
+    for (int c = 0; c < ws_.sys.contacts; ++c) ws_.happened.mode[c] = ws_.contact.mode[c];
+    ws_.happened.contact = -1;
+    over_ = true;
+  }
+
   // -------------------------------------------------------------------------------------------------- room for a step
 
   /// Whether the phase goes on: no knot that changes the modes, not at the end, room and budget left.
@@ -158,12 +169,12 @@ class Phase : public Pace<typename Form::Scalar> {
     export_state(form_, step_.y0());
     note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
-    const bool jumps = sink_.steps > 0 && ws_.time < t_end_ && any_jumps(ws_);
-    if (pass_knot(form_, step_)) return hand_over(Cause::input);
+    const bool jumps = (!Form::small || sink_.steps > 0) && any_jumps(ws_);
+    if (pass_knot(form_, step_, jumps)) return hand_over(Cause::input);
     if constexpr (has_tangents<T>) {
       if (leave_event(form_, step_)) look_here();
     }
-    if (jumps) show_jump();
+    if (jumps && sink_.steps > 0 && ws_.time < t_end_) show_jump();
   }
 
   /// The row behind a jump of a signal: in steps both sides have one.

@@ -5,6 +5,7 @@
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/massless.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Everything at one point of a step.
@@ -61,6 +62,9 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
     interpolate_slope(form, step, s, shot.d);
   } else {
     form.solve_mass(shot.d);
+    if constexpr (!Form::small) {
+      if (algebraic) change_massless(form, t, shot.y, shot.d, step.k(6), step.k(7));
+    }
   }
   expand(form, shot.d, shot.dv, false);
   for (int i = 0; i < nv; ++i) {
