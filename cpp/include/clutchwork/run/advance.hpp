@@ -124,6 +124,7 @@ bool start(Workspace<T>& ws) {
   refresh_loads(ws);
   ws.happened.cause = Cause::initial;
   ws.happened.contact = -1;
+  if constexpr (has_tangents<T>) ws.moved.here_time = ws.time;
   ws.started = true;
   return true;
 }
