@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from clutchwork.base.regular import read_regular
+from clutchwork.base.writing import replaced
 
 MOST_BYTES = 256_000_000
 # whatever is the same in all archives of the same content
@@ -17,7 +18,7 @@ EPOCH = (1980, 1, 1, 0, 0, 0)
 
 def write(path: str | Path, parts: Mapping[str, bytes]) -> None:
     """Write an archive."""
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+    with replaced(Path(path)) as new, zipfile.ZipFile(new, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in parts.items():
             archive.writestr(zipfile.ZipInfo(name, EPOCH), data, zipfile.ZIP_DEFLATED)
 

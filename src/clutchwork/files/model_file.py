@@ -36,9 +36,10 @@ from pathlib import Path
 from typing import Any
 
 from clutchwork.base.errors import ModelError, ModelFileError, Problem, nearest
-from clutchwork.base.paths import fitting, made
+from clutchwork.base.paths import fitting
 from clutchwork.base.regular import read_regular, reason
 from clutchwork.base.shown import listed, shortened, shown
+from clutchwork.base.writing import put
 from clutchwork.declare.node import Domain
 from clutchwork.declare.speech import words_of_files
 from clutchwork.files.lines import Lines
@@ -155,7 +156,7 @@ def save(model: Model, path: str | Path) -> None:
     else:
         problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename the file")
         raise ModelError([problem], str(path))
-    made(path).write_text(text, encoding="utf-8")
+    put(path, text)
 
 
 def to_dict(model: Model, *, folder: str | Path | None = None, embed: bool = False) -> dict[str, Any]:
