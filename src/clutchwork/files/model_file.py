@@ -44,6 +44,7 @@ from clutchwork.declare.node import Domain
 from clutchwork.declare.speech import words_of_files
 from clutchwork.files.lines import Lines
 from clutchwork.files.reader import FORMAT, Reader
+from clutchwork.files.toml_text import parsed
 from clutchwork.files.writer import Writer, toml
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
@@ -99,9 +100,7 @@ def _parsed(path: Path, text: str) -> Any:
     try:
         if path.suffix.lower() == ".json":
             return json.loads(text, object_pairs_hook=_once, parse_constant=_no_constant)
-        import tomllib
-
-        return tomllib.loads(text)
+        return parsed(text)
     except ValueError as error:
         fault = f"is not valid {path.suffix[1:].upper()}: {shortened(str(error))}"
         raise ModelError([Problem("file", "", fault, remedy=_fix(str(error)))], str(path)) from None
