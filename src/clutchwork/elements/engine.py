@@ -64,7 +64,7 @@ class Engine(Component):
         "1", "throttles of the columns of a torque map, from 0", rising="strictly", at_least=0.0, default=None
     )
     torques: Sequence[Sequence[float]] | None = numbers(
-        "N m", "torque map, a row over the throttles for each speed, instead of both curves", default=None
+        "N m", "torque map, a row over the throttles for each speed, instead of both curves", default=None, rows=True
     )
     lag: float = param("s", "time constant of the throttle, 0: it acts at once", default=0.0, at_least=0.0)
     idle_speed: float | None = param(
