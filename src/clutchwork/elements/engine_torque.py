@@ -54,7 +54,10 @@ class EngineTorque(Component):
         "1", "grid of throttles, from 0", rising="strictly", at_least=0.0, example=(0.0, 1.0)
     )
     torques: Sequence[Sequence[float]] = numbers(
-        "N m", "torque, a row over the throttles for each speed", example=((-0.5, 4.0), (-0.6, 6.0), (-1.0, 5.0))
+        "N m",
+        "torque, a row over the throttles for each speed",
+        example=((-0.5, 4.0), (-0.6, 6.0), (-1.0, 5.0)),
+        rows=True,
     )
     deficit: Sequence[float] = numbers(
         "N m", "torque that full boost adds at full throttle, one for each speed", example=(0.0, 1.0, 2.0)

@@ -113,7 +113,7 @@ def _fields(cls: Any) -> tuple[tuple[str, Any, Spec, type | None], ...]:
 def _plain(spec: Spec) -> type | None:
     if spec.what == "port":
         return None if spec.domain else Node
-    return float if spec.what in NUMBERS else None
+    return float if spec.what in NUMBERS and not (spec.choices or spec.flag) else None
 
 
 def _choice_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
@@ -137,7 +137,7 @@ def _choices(cls: Any) -> Inputs:
 
 def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if spec.choices:
-        if value not in spec.choices:
+        if not isinstance(value, str) or value not in spec.choices:
             message = "is an unknown choice" + near(value, spec.choices)
             yield at.problem(message, value=shown(value), remedy=f"choose one of {', '.join(spec.choices)}")
     elif not spec.flag:

@@ -179,7 +179,7 @@ template <class T>
 void jump(Workspace<T>& ws) {
   if (ws.ratios.n == 0) return prescribed_jump(ws);
   {
-    const BesideRatios<T> beside(ws, true);
+    const BesideRatios<T> beside(ws, Written::before);
     prescribed_jump(ws);
   }
   jump_ratios(ws, slip_tolerance(ws));

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from clutchwork.declare import Component, Node, Signal, family, port
+from typing import ClassVar
+
+from clutchwork.declare import Component, Found, Node, Signal, family, port
+from clutchwork.declare.node import is_reference
+from clutchwork.declare.schema import specs
 from clutchwork.signals.constant import Constant
 
 
@@ -18,8 +22,21 @@ class MotionError(ValueError):
 class Motion(Component):
     """A motion that is given, whatever torque it takes."""
 
+    # whether its speed is an integral, which begins with that of the shaft wherever a run does
+    integrates: ClassVar[bool] = False
+
     shaft: Node = port("shaft whose motion is given")
     base: Node | None = port("member that takes the reaction and that the motion is measured from", default=None)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        given = ((item.name, getattr(self, item.name)) for item, _ in specs(type(self), "signal"))
+        remedy = "give a number or a signal, or join them by a gear"
+        return [
+            (name, "follows another part, and a motion is given over time", remedy)
+            for name, value in given
+            if is_reference(value)
+        ]
 
     def speed_signal(self) -> Signal:
         """The speed that the shaft is given, over time; `MotionError` where it has none."""
