@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.gradients.functional import Functional
-from clutchwork.gradients.instants import BEND, add_shift
+from clutchwork.gradients.instants import BEND, JUMP, add_shift
 from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.signals import add_signal
 from clutchwork.gradients.steps import Steps
@@ -23,7 +23,7 @@ def add_jerk(primal: Primal, signal: str, acceleration: Array, into: Functional)
     inside = 2.0 * np.einsum("nij,nj->ni", steps.squared_slope, _varying(acceleration))
     add_signal(primal, signal, steps.rows.ravel(), inside.ravel(), into)
     before, behind = (side[1:-1] for side in _limits(steps, acceleration))
-    smooth = ~steps.jumps[1:]
+    smooth = ~steps.jumps[1:] | (_rise(steps, acceleration) <= JUMP)
     # what moves an instant makes both limits differ at a fixed time: it need not be known
     share = np.where(smooth, before + behind, 0.0)[:, None]
     add_signal(primal, signal, steps.rows[1:].ravel(), (share * steps.left[1:]).ravel(), into)
@@ -47,6 +47,14 @@ def _limits(steps: Steps, acceleration: Array) -> tuple[Array, Array]:
     before = np.r_[0.0, np.einsum("ni,ni->n", steps.right_slope, varying)]
     behind = np.r_[np.einsum("ni,ni->n", steps.left_slope, varying), 0.0]
     return before, behind
+
+
+def _rise(steps: Steps, acceleration: Array) -> Array:
+    """How much it jumps between two steps, of its size beside that."""
+    before, behind = (np.einsum("ni,ni->n", side, acceleration) for side in (steps.right, steps.left))
+    size = np.abs(acceleration).max(axis=1)
+    found: Array = np.abs(behind[1:] - before[:-1]) / np.maximum(np.maximum(size[1:], size[:-1]), 1e-300)
+    return found
 
 
 def _varying(acceleration: Array) -> Array:
