@@ -64,22 +64,42 @@ def around(scaled: Scaled, y: Array) -> Around | None:
     block = Block([row for row in scaled.rows if row.limit >= 0])
     goal = Block([row for row in scaled.rows if row.limit < 0])
     cuts, best, least = list[_Cut](), y, here
-    for one in (y, *_neighbours(y, own)):
+
+    def look(one: Array) -> None:
+        nonlocal best, least
         point = scaled.point(one)
         if not point.is_fine:
-            continue
+            return
         other = scaled.lifted(one, point)
         if scaled.goal(other) < least and _holds(scaled, other, block):
             best, least = other, scaled.goal(other)
         if not point.note:
             cuts.append(_cut(scaled, other, y, block, goal))
-    cuts, walls = _apart(cuts, scaled.values(y, block))
-    if not cuts:
+
+    for one in (y, *_neighbours(y, own)):
+        look(one)
+    room, size = scaled.values(y, block), measure(here)
+    kept, walls = _apart(cuts, room)
+    left = _left(scaled, y, block, kept, walls)
+    # where they leave a way down the next neighbour is on it, and brings the gradient that they lack
+    for _ in range(own):
+        if not kept or _size(left) <= OPTIMAL * size or least < here - OPTIMAL * RADIUS * size:
+            break
+        ahead = y.copy()
+        ahead[:own] = np.clip(y[:own] + RADIUS * left / _size(left), 0.0, 1.0)
+        look(ahead)
+        kept, walls = _apart(cuts, room)
+        left = _left(scaled, y, block, kept, walls)
+    if not kept:
         return None
-    joined = tuple(np.concatenate([getattr(cut, name) for cut in cuts]) for name in _Cut._fields[:4])
-    residual = _left(scaled, y, block, cuts, walls) / measure(here)
+    joined = tuple(np.concatenate([getattr(cut, name) for cut in kept]) for name in _Cut._fields[:4])
     # no model says more than what is true at the point: the goal is not convex
-    return Around(residual, best, least, (np.minimum(joined[0], here), joined[1]), (joined[2], joined[3]), walls)
+    goals = np.minimum(joined[0], here), joined[1]
+    return Around(_size(left) / size, best, least, goals, (joined[2], joined[3]), walls)
+
+
+def _size(left: Array) -> float:
+    return float(np.max(np.abs(left), initial=0.0))
 
 
 def _apart(cuts: list[_Cut], room: Array) -> tuple[list[_Cut], Array]:
@@ -95,9 +115,8 @@ def _apart(cuts: list[_Cut], room: Array) -> tuple[list[_Cut], Array]:
     slopes = [np.array([cut.limit_slopes[row] for cut in kept]) for row in np.flatnonzero(broken)]
     walls = [one[int(np.argmax(np.sum(one**2, axis=1)))] for one in slopes if len(one)]
     sizes = [float(np.linalg.norm(one)) for one in walls]
-    return kept, np.array([one / size for one, size in zip(walls, sizes, strict=True) if size > 0.0]).reshape(
-        -1, cuts[0].goal_slopes.shape[1]
-    )
+    made = [one / size for one, size in zip(walls, sizes, strict=True) if size > 0.0]
+    return kept, np.array(made).reshape(-1, cuts[0].goal_slopes.shape[1])
 
 
 def is_optimal(found: Around | None, goal: float) -> bool:
@@ -161,9 +180,11 @@ def _cut(scaled: Scaled, other: Array, y: Array, block: Block, goal: Block) -> _
     return _Cut(values + slopes @ step, slopes, limits + by @ step, by, limits, largest)
 
 
-def _left(scaled: Scaled, y: Array, block: Block, cuts: list[_Cut], walls: Array) -> float:
-    """Size of the least convex combination of gradients of the goal, beside limits and bounds that are active."""
+def _left(scaled: Scaled, y: Array, block: Block, cuts: list[_Cut], walls: Array) -> Array:
+    """The way down that gradients leave: against their least convex combination, beside active limits and bounds."""
     own = len(scaled.width)
+    if not cuts:
+        return np.zeros(own)
     matrix, ends = scaled.linear
     goal = np.concatenate([cut.goal_slopes[cut.largest] for cut in cuts])
     near = block.equal | (scaled.values(y, block) <= CLOSE)
@@ -178,7 +199,8 @@ def _left(scaled: Scaled, y: Array, block: Block, cuts: list[_Cut], walls: Array
     target = np.append(np.zeros(own), whole)
     factors, _ = need("scipy.optimize", "calibrate", "calibrate").nnls(normals, target, maxiter=100 * normals.shape[1])
     share = float(np.sum(factors[: len(goal)])) or 1.0
-    return float(np.max(np.abs((normals @ factors)[:own]), initial=0.0)) / share
+    made: Array = (normals @ factors)[:own] / share
+    return made
 
 
 def _stepped(scaled: Scaled, y: Array, found: Around) -> Array:
