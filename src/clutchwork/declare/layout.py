@@ -115,6 +115,7 @@ FIELDS = (
     ("shared_scale", "f8", ("shared",), "a shared state as an input is offset + scale * state"),
     ("shared_offset", "f8", ("shared",), "offset of that"),
     ("prescribed_input", "i4", ("prescribed",), "signal that gives the prescribed speed"),
+    ("prescribed_sums", "i4", ("prescribed",), "1: an integral, which begins where a run does"),
     (
         "input_refs",
         "i4",

@@ -10,6 +10,7 @@
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/massless.hpp>
 #include <clutchwork/run/processes.hpp>
 #include <clutchwork/run/settle.hpp>
 #include <clutchwork/run/snapshot.hpp>
@@ -52,7 +53,7 @@ bool is_beyond(Workspace<T>& ws) {
 
 /// After a knot: right limits of the signals; true when the modes must be decided again. docs/theory/events.md, rule 1
 template <class Form>
-bool pass_knot(Form& form, Step<Form>& step) {
+bool pass_knot(Form& form, Step<Form>& step, bool jumps) {
   auto& ws = form.ws;
   keep_prescribed(ws);
   keep_ratios(ws);
@@ -62,6 +63,9 @@ bool pass_knot(Form& form, Step<Form>& step) {
   for (int p = 0; p < ws.sys.prescribed; ++p)
     decide = decide || value(ws.in.prescribed[p] - ws.in.prescribed_before[p]) != 0;
   if (decide) return true;
+  if constexpr (!Form::small) {
+    if (jumps && balance_massless(form, step)) export_state(form, step.y0());
+  }
   look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
   for (int a = 0; a < ws.held.n; ++a) {
     if (is_rigid(ws, ws.held.contact[a])) return true;
@@ -81,7 +85,9 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   // a state that starts to slide does so the way the contact slips, however small the slip
   if (who == turned) {
     heading = -heading;
-  } else if (b.law >= 0 && law_runs_on(b, who)) {
+  } else if (b.law < 0) {
+    heading = value(rate_of(ws, b.direction)) < 0 ? backward : forward;
+  } else if (law_runs_on(b, who)) {
     heading = value(state[b.state + who]) < 0 ? backward : forward;
   }
   ws.piece[b.direction] = b.piece;

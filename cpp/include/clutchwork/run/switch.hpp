@@ -141,6 +141,7 @@ Status decide(Workspace<T>& ws, bool at_start) {
     ws.loads.jammed = -1;
     if (c < 0 || !stop_jammed(ws, c)) return status;
     ws.happened.cause = Cause::jam, ws.happened.contact = c;
+    ws.contact.impulse[c] = at_start;
     status = settle(ws, -1);
   }
   if (status == Status::running && stops_short(ws, located)) {
