@@ -53,11 +53,13 @@ class DogClutch(Heating):
 
     def initial_states(self) -> tuple[float, ...]:
         """Angle [rad] and place of the sleeve at the start."""
-        return (self.initial_angle, 1.0 if self.engaged else 0.0)
+        # in mesh it is counted from the middle of the gap
+        angle = remainder(self.initial_angle, tau / self.teeth) if self.engaged else self.initial_angle
+        return (angle, 1.0 if self.engaged else 0.0)
 
     def stored(self, states: Sequence[float], torque: float) -> float:
         """Energy of the flank that is pressed [J]; none where there is no torque, whatever the angle."""
-        depth = max(abs(remainder(states[0], tau / self.teeth)) - self.gap / 2, 0.0)
+        depth = max(abs(states[0]) - self.gap / 2, 0.0)
         return 0.5 * self.stiffness * depth**2 if torque else 0.0
 
 

@@ -80,10 +80,10 @@ class ElectricMotor(Heating):
         "N m", "abs(torque) of the columns of the map", units=("N",), rising="strictly", at_least=0.0, default=None
     )
     losses: Sequence[Sequence[float]] | None = numbers(
-        "W", "map of losses, a row over the torques for each speed", at_least=0.0, default=None
+        "W", "map of losses, a row over the torques for each speed", at_least=0.0, default=None, rows=True
     )
     efficiencies: Sequence[Sequence[float]] | None = numbers(
-        "1", "map of efficiencies, a row over the torques for each speed", above=0.0, default=None
+        "1", "map of efficiencies, a row over the torques for each speed", above=0.0, default=None, rows=True
     )
     derating: Points | None = curve(
         "K",

@@ -66,6 +66,7 @@ class MotorTorque(Heating):
         "map of losses [W] or efficiencies, a row over the torques for each speed",
         at_least=0.0,
         example=((0.0, 1.0), (1.0, 3.0), (2.0, 4.0)),
+        rows=True,
     )
     map_of: str = choice("what the map holds", choices=("losses", "efficiencies"), default="losses")
     no_load_loss: float = param("W", "constant loss", default=0.0, at_least=0.0)

@@ -108,6 +108,7 @@ bool start(Workspace<T>& ws) {
   ws.time = ws.options.t_start;
   ws.statistics = {};
   ws.events.n = 0;
+  ws.out.skipped = false;
   ws.contact.failed = -1;
   ws.params_changed = false;
   take_initial(ws);
@@ -124,6 +125,7 @@ bool start(Workspace<T>& ws) {
   refresh_loads(ws);
   ws.happened.cause = Cause::initial;
   ws.happened.contact = -1;
+  if constexpr (has_tangents<T>) ws.moved.here_time = ws.time;
   ws.started = true;
   return true;
 }

@@ -101,6 +101,7 @@ class Phase : public Pace<typename Form::Scalar> {
     if constexpr (Form::full) {
       if (ws_.ratios.n > 0) prepare_ratios(form_);
       if (fresh) keep_ties(form_, step_, ws_.time, step_.y0());
+      if (ws_.ratios.jammed >= 0) return jam();
     }
     if constexpr (!Form::small) {
       if (balance_massless(form_, step_) && event && may_decide_again()) return decide_again();
@@ -179,13 +180,15 @@ class Phase : public Pace<typename Form::Scalar> {
         look_here();
       }
     }
-    if (jumps && sink_.steps > 0 && ws_.time < t_end_) show_jump();
+    show_behind(jumps);
   }
 
-  /// The row behind a jump of a signal: in steps both sides have one.
-  void show_jump() {
+  /// In steps both sides of an instant have a row where a signal, a torque or an acceleration jumps.
+  void show_behind(bool jumps) {
+    if (sink_.steps == 0 || ws_.time >= t_end_) return;
     const Status shown = emit_start(form_, step_, sink_, true);
     if (shown != Status::running) return leave(shown);
+    if (!jumps && !row_jumps(ws_, sink_)) --sink_.at;
     look_here();
   }
 
@@ -221,6 +224,8 @@ class Phase : public Pace<typename Form::Scalar> {
       land(hit.s);
     } else if (misses_rest(hit)) {
       retake();
+    } else if (Form::full && hit.what == Hit::nothing && ws_.ratios.jammed >= 0) {
+      jam();
     } else if (write(hit.s)) {
       hit.what == Hit::nothing ? accept() : meet(hit);
     }
@@ -228,6 +233,13 @@ class Phase : public Pace<typename Form::Scalar> {
 
   void reject() {
     if (!shorten()) collapse();
+  }
+
+  /// A transmission whose speeds are prescribed otherwise than its ratio says.
+  void jam() {
+    ws_.detail.component = first_of(ws_, ws_.ratios.jammed);
+    ws_.ratios.jammed = -1;
+    leave(Status::jammed);
   }
 
   /// Whether the step must be repeated to end where a guard was hit, because its own estimate does not speak for that
@@ -354,6 +366,8 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (!law) pass_line(form_, *guard);
     look_on();
+    if (law && is_beyond(ws_)) return hand_over(Cause::other_event), true;
+    show_behind(false);
     if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(form_, hit.index));
     h_ = ws_.last_step;
     return true;
@@ -368,6 +382,8 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (moved) return false;
     look_on();
+    if (is_beyond(ws_)) return hand_over(Cause::other_event), true;
+    show_behind(false);
     h_ = ws_.last_step;
     return true;
   }

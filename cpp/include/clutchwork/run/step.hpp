@@ -12,14 +12,14 @@
 /// What one step needs besides its integrator: both ends, its length, its errors.
 namespace clutchwork {
 
-/// Speeds at y brought onto the ties of transmissions, closed stops on them to their ends.
-/// docs/theory/varying-ratios.md (9)
+/// Speeds at y brought onto the ties of transmissions, closed stops on them to their ends; ratios.jammed tells whether
+/// that can be. docs/theory/varying-ratios.md (9)
 template <class T>
 void keep_ties(FullForm<T>& form, Step<FullForm<T>>& step, Real<T> t, T* y) {
   Workspace<T>& ws = form.ws;
   if (ws.ratios.n == 0) return;
   evaluate(form, t, y, step.slope());
-  settle_ties(form, y);
+  ws.ratios.jammed = settle_ties(form, y);
   stay_at_ends(ws, y + form.nz());
 }
 
