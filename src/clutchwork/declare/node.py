@@ -294,6 +294,10 @@ class Component(Element):
         """Gears by the contacts that are closed in them, of a gearbox."""
         return None
 
+    def grips(self) -> Iterable[tuple[str, Node, Node]]:
+        """Parts that are closed at the start, each with the two shafts that then turn together."""
+        return ()
+
     def part(self, name: str) -> Element | ThermalNode | Node:
         """A part by its name within this component; KeyError when there is none."""
         named = {part.name: part for part in self.parts()}

@@ -26,6 +26,9 @@ from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.engine_torque import EngineTorque
 from clutchwork.laws.coulomb import Coulomb
 
+# speeds [rad/s] above the stall speed over which a ripple comes in that makes the burning part negative
+RIPPLE_BAND = 1.0
+
 
 @component(Role.COMPOSITE)
 class Engine(Component):
@@ -33,8 +36,10 @@ class Engine(Component):
 
     Use it for any engine that drives a driveline. Its torque is `motoring + u (full_load - motoring)`, where u follows
     the throttle with `lag`; an idle control with a projected integral raises it, a limiter lowers it. Boost builds in
-    `boost_lag`, the burning part may ripple over the crank angle. Nothing burns below `stall_speed`, and at rest the
-    motoring torque holds up to its value there. Tables are held beyond their ends.
+    `boost_lag`, the burning part may ripple over the crank angle. Nothing burns below `stall_speed` or backward: an
+    engine that stands burns if that is 0, and has to be started if it is above. At rest the motoring torque holds up to
+    its value there. A ripple that makes the burning part negative comes in over 1 rad/s above `stall_speed`. Tables are
+    held beyond their ends.
 
     Source of the curves: Simscape Driveline, Generic Engine; VehicleInterfaces.Engines.
     """
@@ -182,6 +187,8 @@ class Engine(Component):
     def _grids(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...], tuple[float, ...]]:
         """Speeds, throttles, torques, and what boost adds."""
         borders = [0.0, self.stall_speed]
+        if sum(map(abs, self.amplitudes or ())) > 1.0:
+            borders.append(self.stall_speed + RIPPLE_BAND)
         if self.max_speed is not None and not self.cut:
             borders += [self.max_speed - self.limit_band, self.max_speed]
         if self.torques is not None:

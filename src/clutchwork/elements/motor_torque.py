@@ -94,6 +94,9 @@ class MotorTorque(Heating):
         for name, values in (("motoring", self.motoring), ("generating", self.generating)):
             if len(values) != rows:
                 found.append((name, f"has {len(values)} values for {rows} speeds", "give one for each speed"))
+        if self.generating[0] > self.motoring[0]:
+            fault = f"starts at {self.generating[0]:g} N m, above motoring with {self.motoring[0]:g} N m"
+            found.append(("generating", fault, "give at rest no more than it drives with: there it could not stand"))
         if len(self.map) != rows or any(len(row) != columns for row in self.map):
             found.append(("map", f"must have {rows} rows of {columns} numbers", "give a row for each speed"))
         return found

@@ -64,6 +64,9 @@ def add_command(subparsers: Any) -> None:
     fit.add_argument("--bounds", metavar="NAME=LOW:HIGH,...", help="narrower bounds; a side may be empty")
     fit.add_argument("--rest", type=float, metavar="SLIP", help="abs(slip) below which a sample counts as at rest")
     fit.add_argument("--confidence", type=float, default=0.95, help="confidence of the intervals, default 0.95")
+    fit.add_argument(
+        "--loss", default="linear", help="linear, soft_l1, huber or cauchy: how samples that are off count"
+    )
     fit.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "fit"), help="default: out/fit")
     shell.add_json(fit)
 
@@ -85,6 +88,7 @@ def fit_command(asked: argparse.Namespace) -> int:
         bounds=_bounds(asked.bounds),
         rest=asked.rest,
         confidence=asked.confidence,
+        loss=asked.loss,
     )
     data = result.data() | {"friction": law_data(result.law)}
     files = list(_write(result, data, asked.out))

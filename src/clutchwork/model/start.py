@@ -110,11 +110,11 @@ def initial_speeds(
         elif abs(left.get(KNOWN, ZERO)) > slack:
             problems.append(_problem(model, used, node, row, left[KNOWN]))
     problems += _follow_ratios(model, made, inputs, echelon, used, slack)
-    for component, tie in start_grips(model, made):
+    for name, tie in start_grips(model, made):
         row = _row(tie, inputs, ZERO)
         if echelon.rest(row).keys() - {KNOWN}:
             echelon.add(row)
-            used[path_of(component)] = row
+            used[name] = row
     for node in rest:
         # all speeds are known: those that nobody gave follow
         if len(used) == len(made.independent):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from clutchwork.declare import Component, Found, Node, Signal, family, port
 from clutchwork.declare.node import is_reference
 from clutchwork.declare.schema import specs
@@ -20,6 +22,9 @@ class MotionError(ValueError):
 @family
 class Motion(Component):
     """A motion that is given, whatever torque it takes."""
+
+    # whether its speed is an integral, which begins with that of the shaft wherever a run does
+    integrates: ClassVar[bool] = False
 
     shaft: Node = port("shaft whose motion is given")
     base: Node | None = port("member that takes the reaction and that the motion is measured from", default=None)
