@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.fit import FitResult, UndeterminedError, fit_law
+from clutchwork.fit import FitError, FitResult, UndeterminedError, fit_law
 from clutchwork.fit.sliding import coefficients
 from support import rig_data
 
@@ -158,7 +158,9 @@ def test_noise_of_the_slip_above_rest_is_recognised() -> None:
     assert "the noise of the slip turned the sign of" in result.notes
     assert 0.06 < result.rest < 0.2
     assert result["kinetic"].value == pytest.approx(law.kinetic, rel=0.02)
-    given = fit_law(law, data.time, noisy, data.torque, data.load, free=["kinetic"], rest=1e-3)
+    with pytest.raises(FitError, match=r"leave out `rest`, or give 0\.0"):
+        fit_law(law, data.time, noisy, data.torque, data.load, free=["kinetic"], rest=1e-3)
+    given = fit_law(law, data.time, noisy, data.torque, data.load, free=["kinetic"], rest=0.05)
     assert "give `rest` above the noise" in given.notes
 
 

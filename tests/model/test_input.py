@@ -273,7 +273,7 @@ def test_thermal_nodes_shafts_and_contacts_are_found_by_identity():
 def test_parts_of_elements_are_found():
     d = cw.Driveline("parts")
     engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)
-    disk = d.add(cw.DiskClutch("c", base=load, follower=engine, radius=0.1, pressure=1e5, wear_rate=1e-12))
+    disk = d.add(cw.DiskClutch("c", base=load, follower=engine, radius=0.1, area=1e-3, pressure=1e5, wear_rate=1e-12))
     spring = cw.DiaphragmSpring("s", force=[(0.0, 5e3), (4e-3, 2e3), (8e-3, 0.0)], travel=0.0, wear=disk.part("wear"))
     d.add(spring)
     assert d.check() == []

@@ -149,9 +149,12 @@ def flag(doc: str, *, default: bool = MISSING) -> Any:  # type: ignore[assignmen
     return _field(Spec("param", "1", doc, flag=True), default)
 
 
-def choice(doc: str, *, choices: tuple[str, ...], default: str = MISSING) -> Any:  # type: ignore[assignment]
-    """One of several words in Python, a `Word` of the C++ `Params`, whose enum the build writes from the words."""
-    return _field(Spec("param", "1", doc, choices=choices), default)
+def choice(doc: str, *, choices: tuple[str, ...], default: str | None = MISSING) -> Any:  # type: ignore[assignment]
+    """One of several words in Python, a `Word` of the C++ `Params`, whose enum the build writes from the words.
+
+    A composite may have one with default None.
+    """
+    return _field(Spec("param", "1", doc, default is None, choices=choices), default)
 
 
 def curve(

@@ -95,7 +95,9 @@ class Engine(Component):
     initial_throttle: float = option("1", "throttle that has come through at the start", default=0.0, at_least=0.0)
     initial_idle: float = option("1", "integral of the idle control at the start", default=0.0, at_least=0.0)
     initial_boost: float = option("1", "share of the full boost at the start", default=0.0, at_least=0.0)
-    initial_crank: float = option("rad", "crank angle at the start", default=0.0)
+    initial_crank: float | None = option(
+        "rad", "crank angle at the start, by default that of shaft less base", default=None
+    )
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""

@@ -22,6 +22,7 @@ from clutchwork.declare import (
     signal,
 )
 from clutchwork.elements.bases.grids import shape_problems
+from clutchwork.elements.bases.ratios import angle_of
 
 STATES = (
     State("opening", "1", "throttle that has come through"),
@@ -86,7 +87,9 @@ class EngineTorque(Component):
     initial_opening: float = option("1", "throttle that has come through at the start", default=0.0, at_least=0.0)
     initial_idle: float = option("1", "integral of the idle control at the start", default=0.0, at_least=0.0)
     initial_boost: float = option("1", "boost at the start", default=0.0, at_least=0.0)
-    initial_crank: float = option("rad", "crank angle at the start", default=0.0)
+    initial_crank: float | None = option(
+        "rad", "crank angle at the start, by default that of shaft less base", default=None
+    )
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
@@ -115,5 +118,8 @@ class EngineTorque(Component):
 
     def initial_states(self) -> tuple[float, ...]:
         """Their values at the start."""
-        starts = (self.initial_opening, self.initial_idle, self.initial_boost, self.initial_crank)
+        crank = self.initial_crank
+        if crank is None:
+            crank = angle_of(self.shaft) - angle_of(self.base)
+        starts = (self.initial_opening, self.initial_idle, self.initial_boost, crank)
         return tuple(float(start) for start, used in zip(starts, self._used(), strict=True) if used)

@@ -63,7 +63,7 @@ class Sliding:
             largest = float(np.max(np.abs(measured.slip)))
             fault = f"never exceeds {self.rest:g} rad/s, below which a sample counts as at rest"
             raise FitError("slip", fault, f"lower `rest`; the largest slip is {largest:g} rad/s")
-        self.breaks = break_aways(measured, self.slides)
+        self.breaks = break_aways(measured, self.slides, noisy=len(self.noisy) > 0)
 
     @property
     def equations(self) -> NDArray[np.bool_]:
@@ -123,33 +123,30 @@ def noisy(measured: Measurement) -> Array:
     return found[: known[-1] + 1] if len(known) else found[:0]
 
 
-def break_aways(measured: Measurement, slides: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def break_aways(measured: Measurement, slides: NDArray[np.bool_], *, noisy: bool = False) -> NDArray[np.bool_]:
     """The last samples at rest before it slides off under the torque.
 
     Their coefficient is, up to the noise, at least the one just after, else the peak fell between two samples and is
-    not known.
+    not known. Where the slip is noisy the first samples that slide count as at rest: the peak is before them, and what
+    slides slowly is at rest now and then without a zero of the slip.
     """
     found = np.zeros(len(slides), dtype=bool)
-    last = np.flatnonzero(~slides[:-1] & slides[1:])
-    loaded = (measured.load[last] > 0.0) & (measured.load[last + 1] > 0.0)
-    first = last[loaded] + 1
-    along = np.sign(measured.slip[first])
-    last = np.array(
-        [_peak(measured, slides, *pair) for pair in zip(first.tolist(), along.tolist(), strict=True)], dtype=int
-    )
-    before = along * measured.torque[last] / measured.load[last]
-    after = along * measured.torque[first] / measured.load[first]
-    found[last[(before > 0.0) & (before >= after - DOUBT * noise(measured.torque) / measured.load[last])]] = True
+    doubt = DOUBT * noise(measured.torque)
+    for first in np.flatnonzero(~slides[:-1] & slides[1:]) + 1:
+        apart = np.flatnonzero(slides[:first] | (measured.load[:first] <= 0.0))
+        rests = slice(int(apart[-1]) + 1 if len(apart) else 0, int(first))
+        along = np.sign(measured.slip[first])
+        if rests.start == rests.stop or measured.load[first] <= 0.0:
+            continue
+        if noisy and np.all(along * measured.slip[rests] > 0.0):
+            continue
+        share = along * measured.torque[rests] / measured.load[rests]
+        after = along * measured.torque[first] / measured.load[first]
+        place = int(np.argmax(share))
+        place = place if share[place] - share[-1] > doubt / measured.load[first - 1] else len(share) - 1
+        at = rests.start + place
+        found[at] = share[place] > 0.0 and share[place] >= after - doubt / measured.load[at]
     return found
-
-
-def _peak(measured: Measurement, slides: NDArray[np.bool_], first: int, along: float) -> int:
-    """The sample at rest, before one that slides, with the largest coefficient since the slip has its sign."""
-    rests = ~slides[:first] & (measured.load[:first] > 0.0)
-    apart = np.flatnonzero(~rests | (along * measured.slip[:first] <= 0.0))
-    begin = int(apart[-1]) if len(apart) else 0
-    begin += not rests[begin]
-    return begin + int(np.argmax(along * measured.torque[begin:first] / measured.load[begin:first]))
 
 
 def noise(values: Array) -> float:

@@ -68,7 +68,8 @@ def unit_problem(value: Any, spec: Spec, at: At) -> Problem:
 
 def is_right(value: Any, spec: Spec) -> bool:
     """Whether a plain number needs no further look, as almost all do."""
-    return type(value) is float and isfinite(value) and spec.allows(value) and not spec.whole
+    sound = type(value) is float and isfinite(value) and spec.allows(value) and not spec.whole
+    return sound and not (spec.presses and value < 0.0)
 
 
 def as_float(value: Real) -> float:
@@ -101,13 +102,13 @@ def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield at.problem("must be a list of numbers", value=shown(value), remedy=f"write [x, y, ...]: {spec.doc}")
         return
     # numbers are in rows of their own
-    wrong = next((n for n, row in enumerate(value) if _is_row(row) is not spec.rows), None)
+    rows = [row if _is_row(row) else [row] for row in value]
+    wrong = next((n for n, row in enumerate(value) if not has_unit(row) and _is_row(row) is not spec.rows), None)
     if wrong is not None:
         place = At(at.path, f"{at.quantity}, number {wrong + 1}", at.unit)
         message, remedy = ("row of numbers", "[[x, y, ...], ...]") if spec.rows else ("number", "[x, y, ...]")
         yield place.problem(f"must be a {message}", value=shown(value[wrong]), remedy=f"write {remedy}: {spec.doc}")
         return
-    rows = value if spec.rows else [value]
     if len({len(row) for row in rows}) > 1:
         lengths = listed(len(row) for row in rows)
         yield at.problem("has rows of different lengths", value=lengths, remedy="give every row as many numbers")

@@ -104,7 +104,7 @@ class Phase : public Pace<typename Form::Scalar> {
       if (ws_.ratios.jammed >= 0) return jam();
     }
     if constexpr (!Form::small) {
-      if (balance_massless(form_, step_) && event && ws_.sys.contacts > 0) return decide_again();
+      if (balance_massless(form_, step_) && event && may_decide_again()) return decide_again();
     }
     if constexpr (has_tangents<T>) {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
@@ -140,8 +140,11 @@ class Phase : public Pace<typename Form::Scalar> {
     over_ = true;
   }
 
-  /// Speeds without inertia have jumped to their balance: the modes were decided with other torques.
+  /// Speeds without inertia have jumped to their balance: the modes were decided with other torques. Once at an
+  /// instant.
+  bool may_decide_again() const { return ws_.sys.contacts > 0 && ws_.guard.balanced_at != ws_.time; }
   void decide_again() {
+    ws_.guard.balanced_at = ws_.time;
     export_state(form_, step_.y0());
     for (int c = 0; c < ws_.sys.contacts; ++c) ws_.happened.mode[c] = ws_.contact.mode[c];
     ws_.happened.contact = -1;
@@ -172,7 +175,10 @@ class Phase : public Pace<typename Form::Scalar> {
     const bool jumps = (!Form::small || sink_.steps > 0) && any_jumps(ws_);
     if (pass_knot(form_, step_, jumps)) return hand_over(Cause::input);
     if constexpr (has_tangents<T>) {
-      if (leave_event(form_, step_)) look_here();
+      if (leave_event(form_, step_)) {
+        if constexpr (!Form::small) balance_massless(form_, step_);
+        look_here();
+      }
     }
     show_behind(jumps);
   }

@@ -54,6 +54,7 @@ struct Guards {
   int reversals = 0;     ///< of slips that chatter
   int strained = 0;      ///< explicit steps in a row at the limit of their stability
   std::int64_t reversals_since = 0;
+  double balanced_at = -infinity;  ///< [s] where speeds without inertia have jumped last, with a decision
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {

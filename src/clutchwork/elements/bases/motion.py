@@ -7,6 +7,7 @@ from typing import ClassVar
 from clutchwork.declare import Component, Found, Node, Signal, family, port
 from clutchwork.declare.node import is_reference
 from clutchwork.declare.schema import specs
+from clutchwork.elements.bases.ratios import angle_of
 from clutchwork.signals.constant import Constant
 
 
@@ -48,8 +49,9 @@ class Motion(Component):
 
     def _started(self) -> tuple[float, float]:
         """Angle and speed from the base at the start, as shaft and base say."""
-        angle, speed = (self.base.angle, self.base.speed or 0.0) if self.base else (0.0, 0.0)
-        return self.shaft.angle - angle, (speed if self.shaft.speed is None else self.shaft.speed) - speed
+        base = (self.base.speed or 0.0) if self.base else 0.0
+        speed = base if self.shaft.speed is None else self.shaft.speed
+        return angle_of(self.shaft) - angle_of(self.base), speed - base
 
     def _unit(self, rotation: str) -> str:
         """A unit of the shaft, or of a mass."""
