@@ -27,7 +27,7 @@ class Peaks:
         self.planes[0] = -np.sum(self.planes[1:], axis=0) / count
         self.heights = rng.uniform(0.5, 1.0, count)
         self.width, self.worst, self.rows = np.ones(self.own), False, list[Any]()
-        self.linear = np.zeros((0, self.own)), np.zeros(0)
+        self.linear, self.evaluator = (np.zeros((0, self.own)), np.zeros(0)), SimpleNamespace(runs=0)
         # the least one as a linear program
         found = linprog(
             np.append(np.zeros(self.own), 1.0), np.column_stack([self.planes, -np.ones(count)]), -self.heights,
@@ -43,6 +43,15 @@ class Peaks:
 
     def point(self, y: Any) -> Any:
         return SimpleNamespace(is_fine=True, note="", x=y)
+
+    def tried(self, y: Any) -> Any:
+        return self.point(y)
+
+    def goal_at(self, found: Any, y: Any) -> float:
+        return self.goal(y) if found.is_fine else np.inf
+
+    def values_at(self, found: Any, y: Any, block: Any) -> Any:
+        return self.values(found.x * 0.0 + y, block)
 
     def lifted(self, y: Any, found: Any) -> Any:
         return y.copy() if found.is_fine else y
