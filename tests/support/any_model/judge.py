@@ -1,0 +1,67 @@
+"""All that is wrong with a model: its rows, how it ends, how it follows its tolerance, and its twins."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+
+import clutchwork as cw
+from support.any_model import rows
+from support.any_model.elements import declared
+from support.any_model.model import driveline
+from support.any_model.rows import Fault
+from support.any_model.values import Plain
+
+# how a run may end early where there is a cause, by what must be in the model
+CAUSES = {"jammed": ("prescribed",), "out_of_table": ("",), "fault": ("",), "chatter": ("",)}
+
+
+def run(made: Plain, **options: Any) -> Any:
+    """A run of a model with other options than its own."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return driveline(made).simulate(**options)
+
+
+def faults(made: Plain, seed: int, depth: int = 2) -> list[Fault]:
+    """What is wrong with a model.
+
+    Parameters: seed, of what is chosen at random; depth, 0 its rows, 1 its tolerances too, 2 its twins too.
+    """
+    try:
+        base = run(made)
+    except (cw.Interrupted, KeyboardInterrupt):
+        raise
+    except cw.ClutchworkError as error:
+        return [Fault("raises", type(error).__name__, str(error)[:300])]
+    except Exception as error:  # noqa: BLE001, an error of another sort is a finding
+        return [Fault("raises", type(error).__name__, str(error)[:300])]
+    found = [*ending(made, base), *rows.faults(base)]
+    if depth and base.status == "done":
+        from support.any_model import twins
+
+        found += twins.faults(made, base, seed, depth)
+    return found
+
+
+def ending(made: Plain, base: Any) -> list[Fault]:
+    """A run that ends early without a cause."""
+    if base.status == "done":
+        return []
+    if explodes(base):
+        return []
+    kinds = [one["type"] for one in made["element"]]
+    roles = " ".join(kinds) + " " + " ".join(getattr(declared(kind), "kind", "") for kind in kinds)
+    if any(word in roles for word in CAUSES.get(base.status, ())):
+        return []
+    return [Fault("status", base.status, base.message[:300])]
+
+
+def explodes(base: Any) -> bool:
+    """Whether speeds grow without bound, as those of a torque that rises with the square of the speed do."""
+    speed = base.rows[:, base.wiring.columns["speed"]]
+    if len(speed) < 2:
+        return False
+    return bool(np.abs(speed[-1]).max(initial=0.0) > max(1e4, 100.0 * np.abs(speed[0]).max(initial=0.0)))
