@@ -153,7 +153,10 @@ def balance(seen: Seen) -> Iterator[Fault]:
         rank = int(np.sum(basis[1] > 1e-12 * max(basis[1].max(initial=0.0), 1e-300)))
         taken = basis[0][:, :rank]
         left = left - (left @ taken) @ taken.T
-    bad = np.abs(left) - BALANCE * (seen.terms + 1e-3 * seen.terms.max(axis=0, initial=0.0) + 1e-6 * seen.terms.max(initial=0.0)) - 1e-9
+    # a ratio that varies follows an angle, which rows give to the tolerance
+    varies = any("ratio" in branch.component.hooks for branch in seen.wiring.elements)
+    share, floor = (max(1e-5, 10.0 * seen.run.options.rtol), 1e-5) if varies else (BALANCE, 1e-6)
+    bad = np.abs(left) - share * seen.terms - (1e-3 * share + 1e-6 * floor) * seen.terms.max(initial=0.0) - 1e-9
     for number, node in enumerate(seen.wiring.nodes):
         if bad[:, number].max(initial=0.0) > 0.0:
             at = _worst(bad[:, number])
@@ -180,7 +183,7 @@ def sticking(seen: Seen) -> Iterator[Fault]:
         scale = max([seen.fastest[node] * abs(branch.direction[node]) for node in nodes], default=1.0)
         locked, slip = mode[:, number] == LOCKED, rate[:, number]
         tolerance = max(SPEED * scale, float(getattr(branch.component, "tolerance", 0.0) or 0.0), getattr(branch.component.friction, "band", 0.0) or 0.0, 1e-7)
-        creeping = np.where(locked, np.abs(slip), 0.0) - SPEED * scale
+        creeping = np.where(locked, np.abs(slip), 0.0) - SPEED * scale - (1e-7 if is_stop(branch.component) else 0.0)
         # what passes a stop or is held by a tolerance may keep a little of its slip
         if creeping.max(initial=0.0) > 0.0:
             at = _worst(creeping)
