@@ -39,10 +39,13 @@ def faults(made: Plain, seed: int, depth: int = 2) -> list[Fault]:
     except Exception as error:  # noqa: BLE001, an error of another sort is a finding
         return [Fault("raises", type(error).__name__, str(error)[:300])]
     found = [*ending(made, base), *rows.faults(base)]
-    if depth and base.status == "done":
+    if depth and base.status == "done" and not explodes(base):
         from support.any_model import twins
 
-        found += twins.faults(made, base, seed, depth)
+        try:
+            found += twins.faults(made, base, seed, depth)
+        except cw.ClutchworkError as error:
+            found.append(Fault("raises", f"{type(error).__name__} in a twin", str(error)[:300]))
     return found
 
 

@@ -49,7 +49,7 @@ def run(made: Plain, **options: Any) -> Any:
 def grid(made: Plain) -> list[float]:
     """Instants of the comparison."""
     begin, end = made["simulation"].get("t_start", 0.0), made["simulation"]["t_end"]
-    return [float(t) for t in begin + (end - begin) * np.linspace(0.037, 1.0, GRID)]
+    return [*(float(t) for t in begin + (end - begin) * np.linspace(0.037, 0.97, GRID - 1)), end]
 
 
 def apart(one: Any, other: Any, names: list[str] | None = None, sign: float = 1.0) -> tuple[float, str]:
@@ -98,7 +98,7 @@ def _compared(name: str, made: Plain, tight: Any, noise: float, times: list[floa
     if other is None or refused(other):
         return
     late = other["simulation"].get("t_start", 0.0) - made["simulation"].get("t_start", 0.0)
-    found = run(other, times=[t + late for t in times], **{**TIGHT, **({"method": other["simulation"]["method"]} if "method" in other["simulation"] else {})})
+    found = run(other, times=[min(t + late, other["simulation"]["t_end"]) for t in times], **{**TIGHT, **({"method": other["simulation"]["method"]} if "method" in other["simulation"] else {})})
     if found.status != "done":
         yield Fault("twin status", f"{name} {found.status}", found.message[:200])
         return
@@ -110,19 +110,17 @@ def _compared(name: str, made: Plain, tight: Any, noise: float, times: list[floa
 
 def _same(made: Plain, base: Any, times: list[float], rng: Rng) -> Iterator[Fault]:
     """What must be the same to the last bit: other output, no work, saved and loaded, continued."""
-    options = {key: value for key, value in made["simulation"].items() if key not in ("t_end", "max_steps")}
     again = base.at(times)
     asked = run(made, times=times)
     if not np.array_equal(again.rows, asked.rows):
         yield Fault("bits", "of a grid", f"{np.abs(again.rows - asked.rows).max():.3g}")
     less = run(made, times=times, work=False, angles=False)
-    speed = base.wiring.columns["speed"]
-    if less.status != "done" or not np.array_equal(again.rows[:, speed], less.rows[:, speed]):
-        yield Fault("bits", "without work and angles", f"{less.status} {apart(again, less)[1]}")
+    missed, whose = apart(again, less) if less.status == "done" else (np.inf, less.message)
+    if missed > max(COARSE, 1e3 * base.options.rtol):
+        yield Fault("bits", "without work and angles", f"{missed:.1e} apart: {whose}")
     with TemporaryDirectory() as folder:
         yield from _saved(made, base, Path(folder), times, again)
     yield from _continued(made, base, rng)
-    del options
 
 
 def _saved(made: Plain, base: Any, folder: Path, times: list[float], again: Any) -> Iterator[Fault]:
@@ -279,6 +277,10 @@ def scaled_signal(value: Plain, factor: float) -> Plain:
 
 def scaled(made: Plain, rng: Rng) -> Plain | None:
     """All that has a mass in its unit times the power of a factor: inertias, torques, stiffnesses, heat."""
+    # a dog clutch of a gearbox has a stiffness of its own
+    boxes = [element for element in driveline(made).elements if element.kind == "transmission"]
+    if any(getattr(part, "kind", "") in ("dog_clutch", "synchroniser") for box in boxes for part in box.parts()):
+        return None
     factor = float(rng.choice([3.7, 0.21, 11.0]))
     other = dict(made)
     other["shaft"] = [node | {"inertia": factor * node["inertia"]} for node in made["shaft"]]
@@ -370,7 +372,7 @@ def _odd(key: str, value: Any, odd: tuple[str, ...]) -> Any:
 SWAPPED = {"clutch": (), "damper": (), "torque_limiter": (), "wet_drag": (), "cone_clutch": (), "spring": ("initial_twist",)}
 SWAPPED |= {"spring_damper": ("initial_twist",), "backlash": ("initial_twist",), "elastic_backlash": ("initial_twist",), "torque_sensor": ()}
 SWAPPED |= {"nonlinear_spring": ("torque", "initial_twist"), "displacement": ("initial_position",), "jenkins_element": ("initial_twist", "limit_x")}
-SWAPPED |= {"dog_clutch": ("initial_angle",), "torsional_damper": ("torque", "initial_twist"), "flexible_shaft": (), "plate_contact": ()}
+SWAPPED |= {"dog_clutch": ("initial_angle",), "torsional_damper": ("torque", "initial_twist"), "plate_contact": ()}
 
 
 def swapped(made: Plain, rng: Rng) -> Plain | None:
@@ -387,6 +389,9 @@ def swapped(made: Plain, rng: Rng) -> Plain | None:
 
 def later(made: Plain, rng: Rng) -> Plain | None:
     """Everything later: signals and the start."""
+    # what moves by an acceleration has moved from 0 s on
+    if any(one["type"] in ("prescribed_acceleration", "prescribed_position") for one in made["element"]):
+        return None
     by = float(rng.choice([0.25, 1.5]))
     other = copy.deepcopy(made)
     for one in other["element"]:
