@@ -64,7 +64,7 @@ class Seen:
         """The largest speed of each node over the run, at least a little."""
         own: Array = np.abs(self.speed).max(axis=0, initial=0.0)
         # round-off of the others reaches those at rest
-        return own + 1e-6 * own.max(initial=0.0) + 1e-6
+        return own + 1e-5 * own.max(initial=0.0) + 1e-4
 
     @cached_property
     def elements(self) -> Array:
@@ -273,7 +273,7 @@ def ratios(seen: Seen) -> Iterator[Fault]:
         branch = seen.wiring.elements[numbers[0]]
         powers = rate[:, numbers] * torque[:, numbers]
         size = np.abs(seen.speed[:, None, :] * seen.elements.T[None, numbers] * torque[:, numbers, None]).sum(axis=(1, 2))
-        bad = np.abs(powers.sum(axis=1)) - max(1e-5, 30.0 * seen.run.options.rtol) * (size + 1e-3 * size.max(initial=0.0)) - 1e-7
+        bad = np.abs(powers.sum(axis=1)) - max(1e-5, 100.0 * seen.run.options.rtol) * (size + 1e-3 * size.max(initial=0.0)) - 1e-7
         bad = bad - 1e-9 * np.abs(rate * torque).max(initial=0.0)
         if bad.max(initial=0.0) > 0.0:
             at = _worst(bad)
@@ -407,6 +407,7 @@ def smooth(seen: Seen) -> Iterator[Fault]:
     if any("chatters" in getattr(b.component.friction, "hooks", ()) for b in seen.wiring.contacts):
         return
     step = np.diff(seen.time)
+    rest = max(1.0, seen.run.options.rtol / 1e-6)
     for part, rate, name in (("speed", "acceleration", "speeds"), ("angle", "speed", "angles")):
         value, slope = seen.part(part), seen.part(rate)
         for number, node in enumerate(seen.wiring.nodes):
@@ -419,7 +420,7 @@ def smooth(seen: Seen) -> Iterator[Fault]:
             around = np.convolve(spread, np.ones(5), mode="same") + spread
             slack = step * around + 1e-4 * np.abs(np.diff(y)) + max(1e-6, 100 * seen.run.options.rtol) * (np.abs(y).max(initial=0.0) + 1e-9)
             missed = np.abs(np.diff(y) - 0.5 * step * (dy[1:] + dy[:-1])) - slack
-            missed = missed - 1e-12 * np.abs(value).max(initial=0.0)
+            missed = missed - 1e-7 * rest * np.abs(value).max(initial=0.0)
             missed[step == 0.0] = 0.0
             if missed.max(initial=0.0) > 0.0:
                 at = _worst(missed)

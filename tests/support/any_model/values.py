@@ -93,6 +93,8 @@ def number(rng: Rng, spec: Spec, name: str) -> Any:
         return str(rng.choice(spec.choices))
     if spec.flag:
         return bool(rng.random() < 0.4)
+    if name == "tolerance":
+        return 0.0 if rng.random() < 0.3 else log(rng, 1e-5, 0.1)
     for _ in range(50):
         if spec.at_least == 0.0 and spec.what != "signal" and rng.random() < 0.15:
             return 0.0
