@@ -65,7 +65,7 @@ def campaign(first: int, count: int, jobs: int, depth: int) -> Iterator[list[Fou
 
 def smaller(seed: int, key: str, depth: int, seconds: float) -> str:
     """The model of a seed made smaller while it fails in the same way, as TOML."""
-    fails = lambda made: any(fault.key == key for fault in judge.faults(made, seed, depth))  # noqa: E731
+    fails = lambda made: any(fault.key == key for fault in judge.faults(made, seed, depth, key))  # noqa: E731
     return shrink.toml(shrink.shrunk(model.model(seed), fails, seconds))
 
 

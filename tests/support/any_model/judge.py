@@ -25,10 +25,11 @@ def run(made: Plain, **options: Any) -> Any:
         return driveline(made).simulate(**options)
 
 
-def faults(made: Plain, seed: int, depth: int = 2) -> list[Fault]:
+def faults(made: Plain, seed: int, depth: int = 2, only: str = "") -> list[Fault]:
     """What is wrong with a model.
 
-    Parameters: seed, of what is chosen at random; depth, 0 its rows, 1 its tolerances too, 2 its twins too.
+    Parameters: seed, of what is chosen at random; depth, 0 its rows, 1 its tolerances too, 2 its twins too; only, the kind of fault
+    that is looked for, which may leave out others.
     """
     try:
         base = run(made)
@@ -43,7 +44,7 @@ def faults(made: Plain, seed: int, depth: int = 2) -> list[Fault]:
         from support.any_model import twins
 
         try:
-            found += twins.faults(made, base, seed, depth)
+            found += twins.faults(made, base, seed, depth, only)
         except cw.ClutchworkError as error:
             found.append(Fault("raises", f"{type(error).__name__} in a twin", str(error)[:300]))
     return found
