@@ -155,7 +155,7 @@ def balance(seen: Seen) -> Iterator[Fault]:
         left = left - (left @ taken) @ taken.T
     # a ratio that varies follows an angle, which rows give to the tolerance
     varies = any("ratio" in branch.component.hooks for branch in seen.wiring.elements)
-    share, floor = (max(1e-5, 10.0 * seen.run.options.rtol), 1e-5) if varies else (BALANCE, 1e-6)
+    share, floor = (max(1e-5, 10.0 * seen.run.options.rtol), 1e-5) if varies else (max(BALANCE, 10.0 * seen.run.options.rtol), 1e-6)
     bad = np.abs(left) - share * seen.terms - (1e-3 * share + 1e-6 * floor) * seen.terms.max(initial=0.0) - 1e-9
     for number, node in enumerate(seen.wiring.nodes):
         if bad[:, number].max(initial=0.0) > 0.0:

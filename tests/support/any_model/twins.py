@@ -409,7 +409,8 @@ def later(made: Plain, rng: Rng) -> Plain | None:
         return None
     by = float(rng.choice([0.25, 1.5]))
     other = copy.deepcopy(made)
-    for one in other["element"]:
+    laws = [one["friction"] for one in other["element"] if isinstance(one.get("friction"), dict)]
+    for one in (*other["element"], *laws):
         for key, value in one.items():
             if isinstance(value, dict) and value.get("type") in REGISTRY[Role.SIGNAL]:
                 one[key] = _delayed(value, by)
