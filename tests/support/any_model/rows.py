@@ -183,7 +183,7 @@ def sticking(seen: Seen) -> Iterator[Fault]:
         scale = max([seen.fastest[node] * abs(branch.direction[node]) for node in nodes], default=1.0)
         locked, slip = mode[:, number] == LOCKED, rate[:, number]
         tolerance = max(SPEED * scale, float(getattr(branch.component, "tolerance", 0.0) or 0.0), getattr(branch.component.friction, "band", 0.0) or 0.0, 1e-7)
-        creeping = np.where(locked, np.abs(slip), 0.0) - SPEED * scale - (1e-7 if is_stop(branch.component) else 0.0)
+        creeping = np.where(locked, np.abs(slip), 0.0) - SPEED * scale - (1e-7 if is_stop(branch.component) else 1e-9)
         # what passes a stop or is held by a tolerance may keep a little of its slip
         if creeping.max(initial=0.0) > 0.0:
             at = _worst(creeping)
@@ -194,7 +194,7 @@ def sticking(seen: Seen) -> Iterator[Fault]:
         over = np.where(locked, beyond, 0.0)
         # what a fault has shut holds all
         shut = getattr(branch.component, "fault", "none") == "cannot_unlock"
-        if not shut and not is_stop(branch.component) and over.max(initial=0.0) > 1e-9 + 1e-12 * size:
+        if not shut and not is_stop(branch.component) and over.max(initial=0.0) > 1e-7 + 1e-8 * size:
             at = _worst(over)
             words = f"{branch.name} holds {torque[at, number]:.6g} of {capacity[at, number]:.6g} N m at {seen.time[at]:.9g} s, {int((over > 0).sum())} rows"
             yield Fault("capacity", of, words)
@@ -225,7 +225,7 @@ def drives(seen: Seen) -> Iterator[Fault]:
         power = np.where(mode[:, number] == LOCKED, 0.0, rate[:, number] * torque[:, number])
         nodes = [node for node in branch.direction if node != HOUSING]
         scale = max([seen.fastest[node] * abs(branch.direction[node]) for node in nodes], default=1.0)
-        size = np.abs(torque[:, number]) * (SPEED * scale + 1e-7) + 1e-9 + 1e-9 * np.abs(power).max(initial=0.0)
+        size = np.abs(torque[:, number]) * (SPEED * scale + 1e-7) + 1e-7 + 1e-7 * np.abs(power).max(initial=0.0)
         yield from _gives(seen, branch, power, size)
     rate, torque = seen.speed @ seen.elements, seen.part("element_torque")
     groups: dict[str, list[int]] = {}

@@ -246,7 +246,7 @@ SIZES = {
     "damper": ("damping",), "torque_limiter": ("torque",), "bearing_friction": ("torque",), "wet_drag": ("peak",),
     "torque": ("torque",), "linear_torque": ("nominal_torque",), "quadratic_torque": ("nominal_torque",),
     "resisting_torque": ("torque",), "eddy_current_brake": ("nominal_torque",), "band_brake": ("force",),
-    "elastic_backlash": ("stiffness", "damping"), "elastic_gap": ("stiffness", "damping"), "jenkins_element": ("stiffness", "limit"),
+    "elastic_backlash": ("stiffness", "damping"), "elastic_gap": ("stiffness", "damping"), "jenkins_element": ("stiffness", "limit", "speed_friction"),
     "nonlinear_spring": ("torque", "damping"), "disk_brake": ("normal_force", "pressure"), "grade": ("weight",),
     "rolling_resistance": ("weight",), "sprag_clutch": ("holding", "drag"), "speed_torque": ("torque",), "belt_contact": ("tension", "mass_per_length"),
 }  # fmt: skip
