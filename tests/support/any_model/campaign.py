@@ -1,6 +1,6 @@
 """Very many random models: what fails by kind, with the smallest seed of each, and that model made smaller.
 
-    PYTHONPATH=tests python -m support.any_model.campaign --models 20000 --seed 0 --jobs 2 --shrink
+PYTHONPATH=tests python -m support.any_model.campaign --models 20000 --seed 0 --jobs 2 --shrink
 """
 
 from __future__ import annotations
@@ -44,7 +44,9 @@ def examined(seed: int, depth: int) -> list[Found]:
         found = [("hangs", f"more than {PATIENCE} s")]
     finally:
         signal.alarm(0)
-    found += [(f"check raises {text.split(':')[0]} {made['element'][-1]['type']}", text) for text, made in model.CRASHES]
+    found += [
+        (f"check raises {text.split(':')[0]} {made['element'][-1]['type']}", text) for text, made in model.CRASHES
+    ]
     return [(seed, key, words) for key, words in found]
 
 
@@ -90,7 +92,9 @@ def main() -> None:
         if given.out:
             with Path(given.out).open("a", encoding="utf-8") as file:
                 file.writelines(json.dumps(one) + "\n" for one in found)
-    print(f"{given.models} models in {time.monotonic() - began:.0f} s, {len(broken)} with findings of {len(kinds)} kinds")
+    print(
+        f"{given.models} models in {time.monotonic() - began:.0f} s, {len(broken)} with findings of {len(kinds)} kinds"
+    )
     for key, cases in sorted(kinds.items(), key=lambda item: -len(item[1])):
         seed, words = min(cases)
         print(f"{len({s for s, _ in cases}):6d}  {key}\n        seed {seed}: {words}")

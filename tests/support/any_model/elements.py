@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
+from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.gearbox.store import names as catalogue_names
 from support.any_model import values
 from support.any_model.values import Plain, Rng, log
@@ -76,7 +76,9 @@ def thermal_ports(rng: Rng, cls: type, places: list[str]) -> Plain | None:
     return found
 
 
-def drawn(rng: Rng, name: str, of: str, nodes: Mapping[str, list[str]], t_end: float, sources: Mapping[str, list[Any]]) -> Plain | None:
+def drawn(
+    rng: Rng, name: str, of: str, nodes: Mapping[str, list[str]], t_end: float, sources: Mapping[str, list[Any]]
+) -> Plain | None:
     """An element of a kind; None where there are too few nodes. Whether it makes sense is for the checks.
 
     Parameters: nodes, names by domain; sources, what may drive a signal, by its unit.
@@ -170,7 +172,9 @@ def _engine(rng: Rng) -> Plain:
         count = int(rng.integers(1, 3))
         made |= {"orders": [0.5, 2.0][:count], "amplitudes": [log(rng, 0.05, 2.0) for _ in range(count)]}
     made |= {"naturally_aspirated": None, "orders": made.get("orders"), "amplitudes": made.get("amplitudes")}
-    return made | {name: made.get(name) for name in ("phases", "speeds", "throttles", "torques", "full_load", "motoring")}
+    return made | {
+        name: made.get(name) for name in ("phases", "speeds", "throttles", "torques", "full_load", "motoring")
+    }
 
 
 def _motor(rng: Rng) -> Plain:
@@ -179,8 +183,17 @@ def _motor(rng: Rng) -> Plain:
     if rng.random() < 0.3:
         made["losses"] = [[10.0, 20.0], [30.0, 60.0]]
         made |= {"speeds": [0.0, speed], "torques": [0.0, top]}
-    nothing = ("efficiencies", "losses", "speeds", "torques", "thermal_mass", "derating", "initial_temperature", "cooling")
-    return {name: None for name in nothing} | made
+    nothing = (
+        "efficiencies",
+        "losses",
+        "speeds",
+        "torques",
+        "thermal_mass",
+        "derating",
+        "initial_temperature",
+        "cooling",
+    )
+    return dict.fromkeys(nothing) | made
 
 
 def _ring(rng: Rng) -> Plain:
@@ -206,7 +219,11 @@ def _stop(rng: Rng) -> Plain:
 def _flexible(rng: Rng) -> Plain:
     made: Plain = {"stiffness": log(rng, 100.0, 3e4), "inertia": log(rng, 1e-3, 0.2)}
     made |= {"length": None, "outer_diameter": None, "inner_diameter": None}
-    how = {"modes": int(rng.integers(1, 4)), "segments": None} if rng.random() < 0.4 else {"segments": int(rng.integers(1, 5)), "modes": None}
+    how = (
+        {"modes": int(rng.integers(1, 4)), "segments": None}
+        if rng.random() < 0.4
+        else {"segments": int(rng.integers(1, 5)), "modes": None}
+    )
     return made | how | ({"damping_time": log(rng, 1e-5, 1e-3)} if rng.random() < 0.7 else {})
 
 
@@ -225,12 +242,20 @@ def _converter(rng: Rng) -> Plain:
 
 def _dog(rng: Rng) -> Plain:
     teeth = int(rng.integers(3, 40))
-    return {"teeth": teeth, "gap": float(f"{6.28 / teeth * rng.uniform(0.05, 0.9):.3g}"), "stiffness": log(rng, 100.0, 1e5)}
+    return {
+        "teeth": teeth,
+        "gap": float(f"{6.28 / teeth * rng.uniform(0.05, 0.9):.3g}"),
+        "stiffness": log(rng, 100.0, 1e5),
+    }
 
 
 def _synchroniser(rng: Rng) -> Plain:
     teeth = int(rng.integers(6, 50))
-    made = {"teeth": teeth, "gap": float(f"{6.28 / teeth * rng.uniform(0.05, 0.9):.3g}"), "stiffness": log(rng, 100.0, 1e5)}
+    made = {
+        "teeth": teeth,
+        "gap": float(f"{6.28 / teeth * rng.uniform(0.05, 0.9):.3g}"),
+        "stiffness": log(rng, 100.0, 1e5),
+    }
     return made | {"radius": log(rng, 0.03, 0.1), "half_angle": log(rng, 0.1, 1.0), "force": log(rng, 10.0, 2000.0)}
 
 
@@ -243,7 +268,7 @@ def _gearbox(rng: Rng) -> Plain:
     made: Plain = {"gearbox": name, "torque": log(rng, 50.0, 800.0), "inertia": log(rng, 1e-3, 0.1)}
     if box is not None and rng.random() < 0.8:
         made["gear"] = str(rng.choice(list(box.gears)))
-    return made | {name: None for name in ("inertias", "shift", "drag", "speeds", "efficiencies")}
+    return made | dict.fromkeys(("inertias", "shift", "drag", "speeds", "efficiencies"))
 
 
 @cache
@@ -263,6 +288,13 @@ def _shoes(rng: Rng) -> Plain:
     return {"radius": 0.15, "hinge": log(rng, 0.08, 0.14), "arm": log(rng, 0.1, 0.3)}
 
 
+def _profile(rng: Rng) -> Plain:
+    """The example of a cam, higher or lower: its curvature follows."""
+    factor, known = log(rng, 0.3, 3.0), {item.name: spec.example for item, spec in specs(declared("cam_profile"))}
+    lift = [[x, factor * y] for x, y in known["lift"]]
+    return {"lift": lift, "curvature": [factor * y for y in known["curvature"]]}
+
+
 def _screw(rng: Rng) -> Plain:
     return {"lead": log(rng, 1e-3, 0.1), "radius": log(rng, 0.005, 0.1), "friction_coefficient": log(rng, 0.02, 0.3)}
 
@@ -271,7 +303,10 @@ def _jenkins(rng: Rng) -> Plain:
     """A constant limit, or one over the twist."""
     top = log(rng, 0.2, 50.0)
     flat = rng.random() < 0.5
-    return {"limit": [[0.0, top]] if flat else [[-0.1, 1.5 * top], [-0.05, top], [0.05, top], [0.1, 1.5 * top]], "stiffness": log(rng, 50.0, 5000.0)}
+    return {
+        "limit": [[0.0, top]] if flat else [[-0.1, 1.5 * top], [-0.05, top], [0.05, top], [0.1, 1.5 * top]],
+        "stiffness": log(rng, 50.0, 5000.0),
+    }
 
 
 # fields whose values depend on each other; None: left out
@@ -281,7 +316,11 @@ RECIPES: dict[str, Callable[[Rng], Plain]] = {
     "mesh": _mesh,
     "rack_mesh": lambda rng: _mesh(rng) | {"radius": log(rng, 0.01, 0.2)},
     "lossy_gear": lambda rng: _lossy_gear(rng) | {"teeth_input": None, "teeth_output": None},
-    "chain": lambda rng: {"teeth_input": int(rng.integers(12, 40)), "teeth_output": int(rng.integers(12, 60)), **_losses(rng)},
+    "chain": lambda rng: {
+        "teeth_input": int(rng.integers(12, 40)),
+        "teeth_output": int(rng.integers(12, 60)),
+        **_losses(rng),
+    },
     "rack_pinion": _rack,
     "planetary": _set(ratio=(1.3, 4.0)),
     "double_planetary": _set(ratio=(1.3, 4.0)),
@@ -305,6 +344,7 @@ RECIPES: dict[str, Callable[[Rng], Plain]] = {
     "tyre": _wheel,
     "double_shoe_brake": _shoes,
     "leadscrew": _screw,
+    "cam_profile": _profile,
     "jenkins_element": _jenkins,
     # a factor below zero would make it drive
     "wet_drag": lambda rng: {"scale": log(rng, 0.1, 3.0) if rng.random() < 0.5 else None},

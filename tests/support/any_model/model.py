@@ -83,7 +83,9 @@ def _bodies(rng: Rng, seed: int) -> Plain:
     for number in range(int(rng.choice([0, 0, 1, 2]))):
         made["mass"].append({"name": f"m{number}", "mass": log(rng, 0.3, 500.0)} | _moving(rng, 20.0))
     if rng.random() < 0.3:
-        made["thermal"].append({"name": "plates", "capacity": log(rng, 10.0, 3000.0), "temperature": log(rng, 270.0, 420.0)})
+        made["thermal"].append(
+            {"name": "plates", "capacity": log(rng, 10.0, 3000.0), "temperature": log(rng, 270.0, 420.0)}
+        )
         made["ambient"].append({"name": "air", "temperature": log(rng, 270.0, 320.0)})
     return made
 
@@ -113,8 +115,15 @@ def _add(rng: Rng, made: Plain, name: str, kind: str, nodes: dict[str, list[str]
 
 def _without_speeds(rng: Rng, trial: Plain, one: Plain) -> Plain | None:
     """The same where a node at the element starts as the others say."""
-    ends = set(one.values()) if all(isinstance(v, str | int | float) for v in one.values()) else {v for v in one.values() if isinstance(v, str)}
-    kinds = {kind: [n | ({} if n["name"] not in ends else {"speed": None}) for n in trial[kind]] for kind in ("shaft", "mass")}
+    ends = (
+        set(one.values())
+        if all(isinstance(v, str | int | float) for v in one.values())
+        else {v for v in one.values() if isinstance(v, str)}
+    )
+    kinds = {
+        kind: [n | ({} if n["name"] not in ends else {"speed": None}) for n in trial[kind]]
+        for kind in ("shaft", "mass")
+    }
     free = {kind: [{k: v for k, v in n.items() if v is not None} for n in some] for kind, some in kinds.items()}
     return trial | free
 
@@ -136,7 +145,9 @@ def _light(rng: Rng, made: Plain) -> None:
         trial = {**made, "shaft": [{**n, "inertia": 0.0} if n["name"] == one["name"] else n for n in made["shaft"]]}
         text = refused(trial)
         if text and "speed" in text:
-            trial["shaft"] = [{k: v for k, v in n.items() if k != "speed" or n["name"] != one["name"]} for n in trial["shaft"]]
+            trial["shaft"] = [
+                {k: v for k, v in n.items() if k != "speed" or n["name"] != one["name"]} for n in trial["shaft"]
+            ]
             text = refused(trial)
         if not text:
             made.update(trial)

@@ -155,7 +155,11 @@ def balance(seen: Seen) -> Iterator[Fault]:
         left = left - (left @ taken) @ taken.T
     # a ratio that varies follows an angle, which rows give to the tolerance
     varies = any("ratio" in branch.component.hooks for branch in seen.wiring.elements)
-    share, floor = (max(1e-5, 10.0 * seen.run.options.rtol), 1e-5) if varies else (max(BALANCE, 10.0 * seen.run.options.rtol), 1e-6)
+    share, floor = (
+        (max(1e-5, 10.0 * seen.run.options.rtol), 1e-5)
+        if varies
+        else (max(BALANCE, 10.0 * seen.run.options.rtol), 1e-6)
+    )
     bad = np.abs(left) - share * seen.terms - (1e-3 * share + 1e-6 * floor) * seen.terms.max(initial=0.0) - 1e-9
     for number, node in enumerate(seen.wiring.nodes):
         if bad[:, number].max(initial=0.0) > 0.0:
@@ -169,7 +173,11 @@ def balance(seen: Seen) -> Iterator[Fault]:
 def _at(seen: Seen, number: int) -> str:
     """Kinds of what acts along a ratio that is not a gear at a node, which are those that may be out of balance."""
     branches = [*seen.wiring.elements, *seen.wiring.contacts]
-    there = {seen.kind(b) for b in branches if number in b.direction and (b.component.work == Work(0) or "bound" in b.component.hooks)}
+    there = {
+        seen.kind(b)
+        for b in branches
+        if number in b.direction and (b.component.work == Work(0) or "bound" in b.component.hooks)
+    }
     return "+".join(sorted(there))
 
 
@@ -182,12 +190,21 @@ def sticking(seen: Seen) -> Iterator[Fault]:
         nodes = [node for node in branch.direction if node != HOUSING]
         scale = max([seen.fastest[node] * abs(branch.direction[node]) for node in nodes], default=1.0)
         locked, slip = mode[:, number] == LOCKED, rate[:, number]
-        tolerance = max(SPEED * scale, float(getattr(branch.component, "tolerance", 0.0) or 0.0), getattr(branch.component.friction, "band", 0.0) or 0.0, 1e-7)
+        tolerance = max(
+            SPEED * scale,
+            float(getattr(branch.component, "tolerance", 0.0) or 0.0),
+            getattr(branch.component.friction, "band", 0.0) or 0.0,
+            1e-7,
+        )
         creeping = np.where(locked, np.abs(slip), 0.0) - SPEED * scale - (1e-7 if is_stop(branch.component) else 1e-9)
         # what passes a stop or is held by a tolerance may keep a little of its slip
         if creeping.max(initial=0.0) > 0.0:
             at = _worst(creeping)
-            yield Fault("creeps", of, f"{branch.name} locked with slip {slip[at]:.3g} of {scale:.3g} at {seen.time[at]:.9g} s, {int((creeping > 0).sum())} rows")
+            yield Fault(
+                "creeps",
+                of,
+                f"{branch.name} locked with slip {slip[at]:.3g} of {scale:.3g} at {seen.time[at]:.9g} s, {int((creeping > 0).sum())} rows",
+            )
         size = float(np.abs(torque[:, number]).max(initial=0.0))
         held = capacity[:, number] * (1.0 + CAPACITY)
         beyond = np.maximum(-torque[:, number] - held, torque[:, number] - np.maximum(held, _ahead(branch.component)))
@@ -204,7 +221,11 @@ def sticking(seen: Seen) -> Iterator[Fault]:
             wrong = np.where(mode[:, number] == sign, -sign * slip, 0.0) - tolerance
             if wrong.max(initial=0.0) > 0.0 and not is_stop(branch.component):
                 at = _worst(wrong)
-                yield Fault("mode", of, f"{branch.name} is {word} with slip {slip[at]:.3g} at {seen.time[at]:.9g} s, {int((wrong > 0).sum())} rows")
+                yield Fault(
+                    "mode",
+                    of,
+                    f"{branch.name} is {word} with slip {slip[at]:.3g} at {seen.time[at]:.9g} s, {int((wrong > 0).sum())} rows",
+                )
         still = np.where(mode[:, number] == OPEN, np.abs(torque[:, number]), 0.0)
         if still.max(initial=0.0) > 1e-9:
             yield Fault("open", of, f"{branch.name} is open with {still.max():.3g} N m")
@@ -233,7 +254,12 @@ def drives(seen: Seen) -> Iterator[Fault]:
         groups.setdefault(branch.component.name, []).append(number)
     for numbers in groups.values():
         branch = seen.wiring.elements[numbers[0]]
-        if branch.component.work != Work.LOSS or branch.component.states and branch.component.kind in BRISTLES or branch.hidden:
+        if (
+            branch.component.work != Work.LOSS
+            or (branch.component.states
+            and branch.component.kind in BRISTLES)
+            or branch.hidden
+        ):
             continue
         if branch.component.kind in WINDY:
             continue
@@ -251,7 +277,11 @@ def _gives(seen: Seen, branch: Branch, power: Array, slack: Array) -> Iterator[F
     bad = power - slack
     if bad.max(initial=0.0) > 0.0:
         at = _worst(bad)
-        yield Fault("drives", seen.kind(branch), f"{branch.name} gives {power[at]:.3g} W at {seen.time[at]:.9g} s, {int((bad > 0).sum())} rows")
+        yield Fault(
+            "drives",
+            seen.kind(branch),
+            f"{branch.name} gives {power[at]:.3g} W at {seen.time[at]:.9g} s, {int((bad > 0).sum())} rows",
+        )
 
 
 def ratios(seen: Seen) -> Iterator[Fault]:
@@ -263,7 +293,11 @@ def ratios(seen: Seen) -> Iterator[Fault]:
             bad = np.abs(terms.sum(axis=0)) - 1e-8 * (size + 1e-3 * size.max(initial=0.0)) - 1e-9
             if bad.max(initial=0.0) > 0.0:
                 at = _worst(bad)
-                yield Fault("ratio", name, f"{row.name}: {name} miss by {terms.sum(axis=0)[at]:.3g} of {size[at]:.3g} at {seen.time[at]:.9g} s, {int((bad > 0).sum())} rows")
+                yield Fault(
+                    "ratio",
+                    name,
+                    f"{row.name}: {name} miss by {terms.sum(axis=0)[at]:.3g} of {size[at]:.3g} at {seen.time[at]:.9g} s, {int((bad > 0).sum())} rows",
+                )
     rate, torque = seen.speed @ seen.elements, seen.part("element_torque")
     groups: dict[str, list[int]] = {}
     for number, branch in enumerate(seen.wiring.elements):
@@ -272,12 +306,22 @@ def ratios(seen: Seen) -> Iterator[Fault]:
     for numbers in groups.values():
         branch = seen.wiring.elements[numbers[0]]
         powers = rate[:, numbers] * torque[:, numbers]
-        size = np.abs(seen.speed[:, None, :] * seen.elements.T[None, numbers] * torque[:, numbers, None]).sum(axis=(1, 2))
-        bad = np.abs(powers.sum(axis=1)) - max(1e-5, 100.0 * seen.run.options.rtol) * (size + 1e-3 * size.max(initial=0.0)) - 1e-7
+        size = np.abs(seen.speed[:, None, :] * seen.elements.T[None, numbers] * torque[:, numbers, None]).sum(
+            axis=(1, 2)
+        )
+        bad = (
+            np.abs(powers.sum(axis=1))
+            - max(1e-5, 100.0 * seen.run.options.rtol) * (size + 1e-3 * size.max(initial=0.0))
+            - 1e-7
+        )
         bad = bad - 1e-9 * np.abs(rate * torque).max(initial=0.0)
         if bad.max(initial=0.0) > 0.0:
             at = _worst(bad)
-            yield Fault("passes", seen.kind(branch), f"{branch.component.name} keeps {powers.sum(axis=1)[at]:.3g} of {size[at]:.3g} W at {seen.time[at]:.9g} s, {int((bad > 0).sum())} rows")
+            yield Fault(
+                "passes",
+                seen.kind(branch),
+                f"{branch.component.name} keeps {powers.sum(axis=1)[at]:.3g} of {size[at]:.3g} W at {seen.time[at]:.9g} s, {int((bad > 0).sum())} rows",
+            )
 
 
 def motions(seen: Seen) -> Iterator[Fault]:
@@ -295,10 +339,18 @@ def motions(seen: Seen) -> Iterator[Fault]:
             continue
         wanted = np.array([sides(signal, t) for t in seen.time])
         nearest = np.clip(given, wanted.min(axis=1), wanted.max(axis=1))
-        missed = np.abs(given - nearest) - 1e-7 * (np.abs(wanted).max(axis=1) + 1e-3 * np.abs(wanted).max(initial=0.0)) - 1e-9
+        missed = (
+            np.abs(given - nearest)
+            - 1e-7 * (np.abs(wanted).max(axis=1) + 1e-3 * np.abs(wanted).max(initial=0.0))
+            - 1e-9
+        )
         if missed.max(initial=0.0) > 0.0:
             at = _worst(missed)
-            yield Fault("motion", whole.kind, f"{whole.name}: {what} {given[at]:.6g} for {wanted[at]} at {seen.time[at]:.9g} s, {int((missed > 0).sum())} rows")
+            yield Fault(
+                "motion",
+                whole.kind,
+                f"{whole.name}: {what} {given[at]:.6g} for {wanted[at]} at {seen.time[at]:.9g} s, {int((missed > 0).sum())} rows",
+            )
 
 
 def sides(signal: Any, time: float) -> tuple[float, float]:
@@ -328,7 +380,9 @@ def energies(seen: Seen) -> Iterator[Fault]:
     found = run.energy
     kinetic = 0.5 * (seen.inertia * seen.speed**2).sum(axis=1)
     # work goes back and forth: what passes counts, not what is left of it
-    works = [np.abs(np.diff(seen.part(name), axis=0)).sum() for name in ("element_work", "contact_work", "prescribed_work")]
+    works = [
+        np.abs(np.diff(seen.part(name), axis=0)).sum() for name in ("element_work", "contact_work", "prescribed_work")
+    ]
     size = max(found.turnover, float(kinetic.max(initial=0.0)), *works, 1e-6)
     if abs(found.residual) > max(ENERGY, 100 * run.options.rtol) * size:
         yield Fault("energy", _suspects(seen), f"residual {found.residual:.3g} of {size:.3g} J")
@@ -348,7 +402,12 @@ def heats(seen: Seen) -> Iterator[Fault]:
         if component.work != Work.STORE | Work.LOSS or branch.number:
             continue
         places = [index for *_, index in branch.states]
-        stored = np.array([component.stored(row, t) for row, t in zip(states[:, places].tolist(), torque[:, number].tolist(), strict=True)])
+        stored = np.array(
+            [
+                component.stored(row, t)
+                for row, t in zip(states[:, places].tolist(), torque[:, number].tolist(), strict=True)
+            ]
+        )
         lost = -work[:, number] - stored
         size = np.abs(np.diff(work[:, number])).sum() + np.abs(stored).max(initial=0.0)
         fall = float((np.maximum.accumulate(lost) - lost).max(initial=0.0))
@@ -370,9 +429,15 @@ def laws(seen: Seen) -> Iterator[Fault]:
                 wanted = wanted - spring
                 twist = spring / passive.stiffness - angle[:, number]
                 drift = float(np.ptp(twist))
-                slack = 1e-3 * max(1e-6, float(np.ptp(angle[:, number]))) + 100 * seen.run.options.rtol * float(np.abs(angle[:, number]).max(initial=0.0))
+                slack = 1e-3 * max(1e-6, float(np.ptp(angle[:, number]))) + 100 * seen.run.options.rtol * float(
+                    np.abs(angle[:, number]).max(initial=0.0)
+                )
                 if drift > slack:
-                    yield Fault("twist", name, f"{branch.name}: twist leaves that of its ends by {drift:.3g} of {np.ptp(angle[:, number]):.3g} rad")
+                    yield Fault(
+                        "twist",
+                        name,
+                        f"{branch.name}: twist leaves that of its ends by {drift:.3g} of {np.ptp(angle[:, number]):.3g} rad",
+                    )
         elif isinstance(branch.component, cw.Torque) and isinstance(branch.component.torque, cw.Signal | float | int):
             both = np.array([sides(branch.component.torque, t) for t in seen.time])
             nearest = np.argmin(np.abs(torque[:, [number]] - both), axis=1)
@@ -381,7 +446,11 @@ def laws(seen: Seen) -> Iterator[Fault]:
             bad = np.abs(torque[:, number] - wanted) - 1e-7 * (np.abs(wanted) + np.abs(wanted).max(initial=0.0)) - 1e-9
             if bad.max(initial=0.0) > 0.0:
                 at = _worst(bad)
-                yield Fault("law", name, f"{branch.name}: {torque[at, number]:.6g} for {wanted[at]:.6g} N m at {seen.time[at]:.9g} s, {int((bad > 0).sum())} rows")
+                yield Fault(
+                    "law",
+                    name,
+                    f"{branch.name}: {torque[at, number]:.6g} for {wanted[at]:.6g} N m at {seen.time[at]:.9g} s, {int((bad > 0).sum())} rows",
+                )
 
 
 def steady(seen: Seen) -> Iterator[Fault]:
@@ -397,7 +466,11 @@ def steady(seen: Seen) -> Iterator[Fault]:
         changed = np.abs(np.diff(seen.speed[:, number])[pairs])
         for at in pairs[changed > 1e-7 * seen.fastest[number] + 1e-9]:
             if not any(abs(t - seen.time[at]) <= 1e-12 * max(1.0, t) for t in seen.jumps):
-                yield Fault("speed jumps", "", f"{node.name} from {seen.speed[at, number]:.6g} to {seen.speed[at + 1, number]:.6g} at {seen.time[at]:.9g} s without an impulse")
+                yield Fault(
+                    "speed jumps",
+                    "",
+                    f"{node.name} from {seen.speed[at, number]:.6g} to {seen.speed[at + 1, number]:.6g} at {seen.time[at]:.9g} s without an impulse",
+                )
                 break
 
 
@@ -418,13 +491,21 @@ def smooth(seen: Seen) -> Iterator[Fault]:
             spread = near[1] - near[0]
             # the slope in between may leave that of both ends by as much as it changes nearby
             around = np.convolve(spread, np.ones(5), mode="same") + spread
-            slack = step * around + 1e-4 * np.abs(np.diff(y)) + max(1e-6, 100 * seen.run.options.rtol) * (np.abs(y).max(initial=0.0) + 1e-9)
+            slack = (
+                step * around
+                + 1e-4 * np.abs(np.diff(y))
+                + max(1e-6, 100 * seen.run.options.rtol) * (np.abs(y).max(initial=0.0) + 1e-9)
+            )
             missed = np.abs(np.diff(y) - 0.5 * step * (dy[1:] + dy[:-1])) - slack
             missed = missed - 1e-7 * rest * np.abs(value).max(initial=0.0)
             missed[step == 0.0] = 0.0
             if missed.max(initial=0.0) > 0.0:
                 at = _worst(missed)
-                yield Fault("integral", name, f"{node.name}: {name} change by {np.diff(y)[at]:.6g} for {0.5 * (step * (dy[1:] + dy[:-1]))[at]:.6g} at {seen.time[at]:.9g} s, {int((missed > 0).sum())} rows")
+                yield Fault(
+                    "integral",
+                    name,
+                    f"{node.name}: {name} change by {np.diff(y)[at]:.6g} for {0.5 * (step * (dy[1:] + dy[:-1]))[at]:.6g} at {seen.time[at]:.9g} s, {int((missed > 0).sum())} rows",
+                )
 
 
 def events(seen: Seen) -> Iterator[Fault]:
@@ -437,12 +518,36 @@ def events(seen: Seen) -> Iterator[Fault]:
             yield Fault("event order", "", f"{event.element} at {event.time:.9g} s after {last:.9g} s")
         last = event.time
         known = state.get(event.element)
-        if event.element not in rolls and known is not None and known != event.before and not {known, event.before} & {"open"} and event.before != event.after:
-            yield Fault("event chain", seen.kinds.get(event.element, ""), f"{event.element} was {known}, is {event.before} at {event.time:.9g} s")
+        if (
+            event.element not in rolls
+            and known is not None
+            and known != event.before
+            and not {known, event.before} & {"open"}
+            and event.before != event.after
+        ):
+            yield Fault(
+                "event chain",
+                seen.kinds.get(event.element, ""),
+                f"{event.element} was {known}, is {event.before} at {event.time:.9g} s",
+            )
         state[event.element] = event.after
 
 
-CHECKS: tuple[Check, ...] = (finite, times, balance, sticking, drives, ratios, motions, energies, heats, laws, steady, smooth, events)
+CHECKS: tuple[Check, ...] = (
+    finite,
+    times,
+    balance,
+    sticking,
+    drives,
+    ratios,
+    motions,
+    energies,
+    heats,
+    laws,
+    steady,
+    smooth,
+    events,
+)
 
 
 def faults(run: Any) -> list[Fault]:

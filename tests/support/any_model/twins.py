@@ -72,7 +72,9 @@ def apart(one: Any, other: Any, names: list[str] | None = None, sign: float = 1.
 def faults(made: Plain, base: Any, seed: int, depth: int, only: str = "") -> Iterator[Fault]:
     """What twins of a model say; `only`: the kind of fault that is looked for."""
     rng, times = np.random.default_rng([seed, 74]), grid(made)
-    alone = next((name for name in TWINS if only in (f"twin {name}", *(f"twin status {name} {s}" for s in STATUSES))), "")
+    alone = next(
+        (name for name in TWINS if only in (f"twin {name}", *(f"twin status {name} {s}" for s in STATUSES))), ""
+    )
     coarse = base.at(times)
     tight, tighter = (run(made, times=times, **options) for options in (TIGHT, TIGHTER))
     if tight.status != "done" or tighter.status != "done":
@@ -85,7 +87,9 @@ def faults(made: Plain, base: Any, seed: int, depth: int, only: str = "") -> Ite
     if missed > max(COARSE, 1e3 * base.options.rtol, NOISE * noise):
         yield Fault("tolerance", "", f"rtol {base.options.rtol:g} and 1e-9 are {missed:.1e} apart: {whose}")
     if alone:
-        yield from _compared(alone, made, tight, noise, times, np.random.default_rng([seed, 75, list(TWINS).index(alone)]))
+        yield from _compared(
+            alone, made, tight, noise, times, np.random.default_rng([seed, 75, list(TWINS).index(alone)])
+        )
         return
     yield from _same(made, base, times, rng)
     if depth < 2:
@@ -104,7 +108,11 @@ def _compared(name: str, made: Plain, tight: Any, noise: float, times: list[floa
     if other is None or refused(other):
         return
     late = other["simulation"].get("t_start", 0.0) - made["simulation"].get("t_start", 0.0)
-    found = run(other, times=[min(t + late, other["simulation"]["t_end"]) for t in times], **{**TIGHT, **({"method": other["simulation"]["method"]} if "method" in other["simulation"] else {})})
+    found = run(
+        other,
+        times=[min(t + late, other["simulation"]["t_end"]) for t in times],
+        **{**TIGHT, **({"method": other["simulation"]["method"]} if "method" in other["simulation"] else {})},
+    )
     if found.status != "done":
         yield Fault("twin status", f"{name} {found.status}", found.message[:200])
         return
@@ -169,7 +177,11 @@ def _continued(made: Plain, base: Any, rng: Rng) -> Iterator[Fault]:
             continue
         if exact and not np.array_equal(goes_on.rows[-1], steps.rows[-1]):
             missed = np.abs(goes_on.rows[-1][speed] - end[speed]).max(initial=0.0)
-            yield Fault("bits", "after a state at a step", f"at {at!r} s: speeds differ by {missed:.3g}, rows in {int((goes_on.rows[-1] != steps.rows[-1]).sum())} numbers")
+            yield Fault(
+                "bits",
+                "after a state at a step",
+                f"at {at!r} s: speeds differ by {missed:.3g}, rows in {int((goes_on.rows[-1] != steps.rows[-1]).sum())} numbers",
+            )
         error, whose = apart(_last(steps), _last(goes_on))
         if error > max(COARSE, 1e4 * base.options.rtol):
             yield Fault("state", "other motion", f"at {at!r} s {error:.1e} apart: {whose}")
@@ -215,7 +227,9 @@ def split_inertia(made: Plain, rng: Rng) -> Plain | None:
     chosen = heavy[int(rng.integers(len(heavy)))]
     share, turned = float(rng.uniform(0.1, 0.9)), float(rng.choice([1.0, -1.0]))
     other = {"name": "half", "inertia": share * chosen["inertia"]} | _angle(chosen, turned)
-    shafts = [node | {"inertia": node["inertia"] - other["inertia"]} if node is chosen else node for node in made["shaft"]]
+    shafts = [
+        node | {"inertia": node["inertia"] - other["inertia"]} if node is chosen else node for node in made["shaft"]
+    ]
     joint: Plain = {"name": "joint", "type": "gear", "input": chosen["name"], "output": "half", "ratio": turned}
     if turned > 0.0 and rng.random() < 0.5:
         joint = {"name": "joint", "type": "torque_sensor", "base": chosen["name"], "follower": "half"}
@@ -228,7 +242,10 @@ def rigid_joint(made: Plain, rng: Rng) -> Plain | None:
     chosen = made["shaft"][int(rng.integers(len(made["shaft"])))]
     joint = {"name": "joint", "type": "gear", "input": chosen["name"], "output": "beside", "ratio": 1.0}
     moved = [_moved(one, chosen["name"], "beside", rng) for one in made["element"]]
-    return made | {"shaft": [*made["shaft"], {"name": "beside", "inertia": 0.0} | _angle(chosen, 1.0)], "element": [*moved, joint]}
+    return made | {
+        "shaft": [*made["shaft"], {"name": "beside", "inertia": 0.0} | _angle(chosen, 1.0)],
+        "element": [*moved, joint],
+    }
 
 
 def _angle(node: Plain, ratio: float) -> Plain:
@@ -261,7 +278,10 @@ def split_element(made: Plain, rng: Rng) -> Plain | None:
     place, share = able[int(rng.integers(len(able)))], float(rng.uniform(0.1, 0.9))
     whole = made["element"][place]
     cut = SIZES[whole["type"]]
-    parts = [{key: _times(whole["type"], key, value, part) if key in cut else value for key, value in whole.items()} for part in (share, 1.0 - share)]
+    parts = [
+        {key: _times(whole["type"], key, value, part) if key in cut else value for key, value in whole.items()}
+        for part in (share, 1.0 - share)
+    ]
     parts[1]["name"] += " twin"
     if any(value is None for part in parts for value in part.values()):
         return None
@@ -313,9 +333,19 @@ def _scaled_element(one: Plain, made: Plain, factor: float) -> Plain | None:
     units = _units(one, made)
     for item, spec in specs(cls):
         value = found.get(item.name, MISSING)
-        if value is MISSING and item.default not in (MISSING, None) and isinstance(item.default, int | float) and not isinstance(item.default, bool):
+        if (
+            value is MISSING
+            and item.default not in (MISSING, None)
+            and isinstance(item.default, int | float)
+            and not isinstance(item.default, bool)
+        ):
             value = item.default
-        power = parse(units.get(item.name, spec.unit) or "1").powers[0] if spec.unit not in ("*",) and spec.what not in ("port", "thermal", "law", "text", "data", "named", "elements") else 0
+        power = (
+            parse(units.get(item.name, spec.unit) or "1").powers[0]
+            if spec.unit not in ("*",)
+            and spec.what not in ("port", "thermal", "law", "text", "data", "named", "elements")
+            else 0
+        )
         if item.name in ROWS and value is not MISSING:
             found[item.name] = [[x * factor if k in ROWS[item.name] else x for k, x in enumerate(row)] for row in value]
         elif power and value is not MISSING and not isinstance(value, str):
@@ -339,24 +369,33 @@ def _sized(value: Any, spec: Spec, factor: float) -> Any:
 
 
 # fields that change sign with all motion, of the kinds that have a mirror image; a curve changes on both axes
-ODD: dict[str, tuple[str, ...]] = {kind: () for kind in (
-    "clutch", "brake", "damper", "torque_limiter", "bearing_friction", "wet_drag", "backlash", "disk_brake", "cone_clutch",
-    "gear", "bevel_gear", "planetary", "double_planetary", "compound_planetary", "open_differential", "ravigneaux",
-    "rolling_wheel", "torque_sensor", "motion_sensor", "variable_gear", "variable_ratio", "lossy_gear", "mesh", "worm_gear",
-    "lossy_planetary", "rack_pinion", "rack_mesh", "leadscrew", "flexible_shaft", "centrifugal_clutch", "fluid_coupling",
-    "rolling_contact", "eddy_current_brake", "retarder", "resisting_torque", "electric_motor", "pressure_actuator",
-    "pressure_valve", "clutch_actuator", "diaphragm_spring", "ratio_actuator", "conduction", "oil_flow", "thermal_plate",
-    "rolling_resistance", "universal_joint", "plate_contact", "jenkins_element", "torsional_damper", "double_shoe_brake_no",
-)}  # fmt: skip
-ODD |= {"torque": ("torque",), "spring": ("initial_twist",), "spring_damper": ("initial_twist",), "backlash": ("initial_twist",)}
-ODD |= {"elastic_backlash": ("initial_twist",), "nonlinear_spring": ("torque", "initial_twist"), "speed_torque": ("torque",)}
-ODD |= {"prescribed_speed": ("speed",), "prescribed_acceleration": ("acceleration",), "prescribed_position": ("position",)}
+ODD: dict[str, tuple[str, ...]] = dict.fromkeys(("clutch", "brake", "damper", "torque_limiter", "bearing_friction", "wet_drag", "backlash", "disk_brake", "cone_clutch", "gear", "bevel_gear", "planetary", "double_planetary", "compound_planetary", "open_differential", "ravigneaux", "rolling_wheel", "torque_sensor", "motion_sensor", "variable_gear", "variable_ratio", "lossy_gear", "mesh", "worm_gear", "lossy_planetary", "rack_pinion", "rack_mesh", "leadscrew", "flexible_shaft", "centrifugal_clutch", "fluid_coupling", "rolling_contact", "eddy_current_brake", "retarder", "resisting_torque", "electric_motor", "pressure_actuator", "pressure_valve", "clutch_actuator", "diaphragm_spring", "ratio_actuator", "conduction", "oil_flow", "thermal_plate", "rolling_resistance", "universal_joint", "plate_contact", "jenkins_element", "torsional_damper", "double_shoe_brake_no"), ())  # fmt: skip
+ODD |= {
+    "torque": ("torque",),
+    "spring": ("initial_twist",),
+    "spring_damper": ("initial_twist",),
+    "backlash": ("initial_twist",),
+}
+ODD |= {
+    "elastic_backlash": ("initial_twist",),
+    "nonlinear_spring": ("torque", "initial_twist"),
+    "speed_torque": ("torque",),
+}
+ODD |= {
+    "prescribed_speed": ("speed",),
+    "prescribed_acceleration": ("acceleration",),
+    "prescribed_position": ("position",),
+}
 ODD |= {"universal_joint": ("phase",)}
-ODD |= {"displacement": ("initial_position",), "jenkins_element": ("initial_twist", "limit_x"), "torsional_damper": ("initial_twist", "torque")}
+ODD |= {
+    "displacement": ("initial_position",),
+    "jenkins_element": ("initial_twist", "limit_x"),
+    "torsional_damper": ("initial_twist", "torque"),
+}
 ODD |= {"electric_motor": ("command", "initial_request"), "dog_clutch": ("initial_angle",)}
 
 
-def mirrored(made: Plain, rng: Rng) -> Plain | None:  # noqa: ARG001, twins are called alike
+def mirrored(made: Plain, rng: Rng) -> Plain | None:
     """All motion the other way."""
     if any(one["type"] not in ODD or any(one.get(key) for key in ("reversed", "differs")) for one in made["element"]):
         return None
@@ -364,8 +403,13 @@ def mirrored(made: Plain, rng: Rng) -> Plain | None:  # noqa: ARG001, twins are 
         return None
     other = dict(made)
     for kind in ("shaft", "mass"):
-        other[kind] = [{key: -value if key in ("speed", "angle", "position") else value for key, value in node.items()} for node in made[kind]]
-    other["element"] = [{key: _odd(key, value, ODD[one["type"]]) for key, value in one.items()} for one in made["element"]]
+        other[kind] = [
+            {key: -value if key in ("speed", "angle", "position") else value for key, value in node.items()}
+            for node in made[kind]
+        ]
+    other["element"] = [
+        {key: _odd(key, value, ODD[one["type"]]) for key, value in one.items()} for one in made["element"]
+    ]
     return other
 
 
@@ -380,9 +424,25 @@ def _odd(key: str, value: Any, odd: tuple[str, ...]) -> Any:
 
 
 # fields that change sign where base and follower are swapped
-SWAPPED = {"clutch": (), "damper": (), "torque_limiter": (), "wet_drag": (), "cone_clutch": (), "spring": ("initial_twist",)}
-SWAPPED |= {"spring_damper": ("initial_twist",), "backlash": ("initial_twist",), "elastic_backlash": ("initial_twist",), "torque_sensor": ()}
-SWAPPED |= {"nonlinear_spring": ("torque", "initial_twist"), "displacement": ("initial_position",), "jenkins_element": ("initial_twist", "limit_x")}
+SWAPPED = {
+    "clutch": (),
+    "damper": (),
+    "torque_limiter": (),
+    "wet_drag": (),
+    "cone_clutch": (),
+    "spring": ("initial_twist",),
+}
+SWAPPED |= {
+    "spring_damper": ("initial_twist",),
+    "backlash": ("initial_twist",),
+    "elastic_backlash": ("initial_twist",),
+    "torque_sensor": (),
+}
+SWAPPED |= {
+    "nonlinear_spring": ("torque", "initial_twist"),
+    "displacement": ("initial_position",),
+    "jenkins_element": ("initial_twist", "limit_x"),
+}
 SWAPPED |= {"dog_clutch": ("initial_angle",), "torsional_damper": ("torque", "initial_twist"), "plate_contact": ()}
 
 
@@ -391,7 +451,12 @@ def swapped(made: Plain, rng: Rng) -> Plain | None:
     found, some = [], False
     for one in made["element"]:
         # centrifugal friction is that of the base
-        if one["type"] in SWAPPED and {"base", "follower"} <= one.keys() - {"friction_speed"} and "friction_speed" not in one and rng.random() < 0.7:
+        if (
+            one["type"] in SWAPPED
+            and {"base", "follower"} <= one.keys() - {"friction_speed"}
+            and "friction_speed" not in one
+            and rng.random() < 0.7
+        ):
             some = True
             turned = {key: _odd(key, value, SWAPPED[one["type"]]) for key, value in one.items()}
             one = turned | {"base": one["follower"], "follower": one["base"]}

@@ -115,7 +115,10 @@ def curve(rng: Rng, spec: Spec) -> list[list[float]]:
         wide, high = (log(rng, 0.4, 2.5) for _ in "xy")
         if spec.unit_x in ("rad", "K") or spec.unit in ("K",):
             wide = 1.0
-        return [[x * wide, y * high * (float(rng.uniform(0.7, 1.3)) if rng.random() < 0.3 else 1.0)] for x, y in spec.example]
+        return [
+            [x * wide, y * high * (float(rng.uniform(0.7, 1.3)) if rng.random() < 0.3 else 1.0)]
+            for x, y in spec.example
+        ]
     low, high = SIZES.get(spec.unit_x, (0.1, 10.0))
     count = int(rng.integers(1, 6))
     span = log(rng, low, high)
@@ -136,8 +139,10 @@ def numbers(rng: Rng, spec: Spec, name: str, factors: dict[str, float]) -> Any:
         return [float(x) for x in found] if spec.rising else [signed(rng, spec) * x for x in found]
     factor = 1.0 if spec.unit in ("1", "K", "m/rad2") else factors.setdefault(spec.unit, log(rng, 0.3, 3.0))
     steady = spec.unit in ("1", "m/rad2") or spec.rising
+
     def one(x: float) -> float:
         return float(f"{x * factor * (1.0 if steady or rng.random() < 0.5 else rng.uniform(0.8, 1.2)):.4g}")
+
     return [[one(x) for x in row] if hasattr(row, "__len__") else one(row) for row in spec.example]
 
 
@@ -175,12 +180,29 @@ def signal(rng: Rng, spec: Spec, name: str, t_end: float, kind: str = "") -> Any
     if kind == "step":
         return {"type": kind, "height": level() * _swing(rng, both), "start": early(), "offset": level()}
     if kind == "ramp":
-        return {"type": kind, "height": level() * _swing(rng, both), "start": early(), "offset": level(), "duration": log(rng, 0.02, 1.0) * t_end}
+        return {
+            "type": kind,
+            "height": level() * _swing(rng, both),
+            "start": early(),
+            "offset": level(),
+            "duration": log(rng, 0.02, 1.0) * t_end,
+        }
     if kind == "pulse":
         period = log(rng, 0.05, 1.0) * t_end
-        return {"type": kind, "height": level() * _swing(rng, both), "period": period, "width": float(f"{period * rng.uniform(0.1, 0.9):.4g}"), "start": early() if rng.random() < 0.5 else 0.0, "offset": level()}
+        return {
+            "type": kind,
+            "height": level() * _swing(rng, both),
+            "period": period,
+            "width": float(f"{period * rng.uniform(0.1, 0.9):.4g}"),
+            "start": early() if rng.random() < 0.5 else 0.0,
+            "offset": level(),
+        }
     if kind == "sine":
-        made = {"type": kind, "amplitude": abs(scale) * float(f"{rng.uniform(0.1, 1.0):.3g}"), "frequency": log(rng, 0.5, 10.0) / (2 * t_end)}
+        made = {
+            "type": kind,
+            "amplitude": abs(scale) * float(f"{rng.uniform(0.1, 1.0):.3g}"),
+            "frequency": log(rng, 0.5, 10.0) / (2 * t_end),
+        }
         made["offset"] = scale if not both else level() * _swing(rng, both)
         made |= {"phase": float(f"{rng.uniform(0, 6.28):.3g}")} if rng.random() < 0.5 else {}
         made |= {"start": early()} if rng.random() < 0.2 else {}
@@ -222,5 +244,9 @@ def chosen(rng: Rng, cls: type, given: Mapping[str, Any]) -> list[tuple[Field[An
         for item, spec in specs(cls)
         if spec.what not in ("port", "thermal")
         and item.name not in given
-        and (item.name in wanted if spec.what in ("signal", "alternative") else item.default is MISSING or rng.random() < share)
+        and (
+            item.name in wanted
+            if spec.what in ("signal", "alternative")
+            else item.default is MISSING or rng.random() < share
+        )
     ]
