@@ -24,7 +24,7 @@ PATIENCE = 60
 Found = tuple[int, str, str]
 
 
-class TooSlow(Exception):
+class TooSlowError(Exception):
     """A model takes too long."""
 
 
@@ -32,7 +32,7 @@ def examined(seed: int, depth: int) -> list[Found]:
     """What is wrong with the model of a seed: (seed, kind, words)."""
 
     def late(*_: Any) -> None:
-        raise TooSlow
+        raise TooSlowError
 
     signal.signal(signal.SIGALRM, late)
     signal.alarm(PATIENCE)
@@ -40,7 +40,7 @@ def examined(seed: int, depth: int) -> list[Found]:
     try:
         made = model.model(seed)
         found = [(fault.key, fault.words) for fault in judge.faults(made, seed, depth)]
-    except (TooSlow, KeyboardInterrupt, cw.Interrupted):
+    except (TooSlowError, KeyboardInterrupt, cw.Interrupted):
         found = [("hangs", f"more than {PATIENCE} s")]
     finally:
         signal.alarm(0)

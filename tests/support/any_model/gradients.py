@@ -22,7 +22,7 @@ import clutchwork as cw
 from clutchwork.gradients.exact import Exact
 from clutchwork.gradients.stencils import weights
 from support import by_differences, free_numbers, gradient_cases
-from support.any_model import judge, model
+from support.any_model import agree, judge, model
 from support.by_differences import TIGHT
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ def checked(made: model.Plain, seed: int, count: int) -> Tally:
     """Derivatives of a model by some of its numbers."""
     tally, rng = Tally(), np.random.default_rng([seed, 76])
     t_end = made["simulation"]["t_end"]
-    run = judge.run(made, rtol=1e-8, atol=1e-10, t_start=0.0)
+    run = agree.run(made, rtol=1e-8, atol=1e-10, t_start=0.0)
     if run.status != "done" or judge.explodes(run):
         return tally
     wanted = gradient_cases.outputs(run, rng)
@@ -76,10 +76,10 @@ def _pair(tally: Tally, system: cw.System, t_end: float, one: Any, output: Any, 
     tight = Exact(replace(function.task, options=function.task.options.changed(TIGHT)))
     for width in WIDTHS:
         step = min(width * size, one.reach / 8)
-        slopes = [_slope(tight, function.x0, step, places) for places in SIDES.values()]
-        apart = abs(slopes[0] - slopes[1]) * size / scale if None not in slopes else np.inf
-        if apart < best:
-            best, slope = apart, 0.5 * (slopes[0] + slopes[1])
+        left, right = (_slope(tight, function.x0, step, places) for places in SIDES.values())
+        # of what a bound forbids, or an event that is not there, none is known
+        if abs(left - right) * size / scale < best:
+            best, slope = abs(left - right) * size / scale, 0.5 * (left + right)
     # both sides apart: a kink, an event in between, or too steep for these widths
     if not best < 0.1 * ALLOWED:
         tally.doubtful += 1
@@ -94,12 +94,12 @@ def _pair(tally: Tally, system: cw.System, t_end: float, one: Any, output: Any, 
         tally.wrong.append(words)
 
 
-def _slope(runs: Exact, x0: Array, step: float, places: tuple[int, ...]) -> float | None:
+def _slope(runs: Exact, x0: Array, step: float, places: tuple[int, ...]) -> float:
     points = x0[None] + step * np.array(places)[:, None]
     try:
         return float((weights(places, len(places)) @ runs.values(points))[0] / step)
     except cw.ModelError:
-        return None
+        return np.nan
 
 
 def campaign(first: int, models: int, count: int) -> Iterator[tuple[int, Tally]]:

@@ -2,37 +2,28 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
 import numpy as np
 
 import clutchwork as cw
-from support.any_model import rows
+from support.any_model import agree, rows
 from support.any_model.elements import declared
-from support.any_model.model import driveline
-from support.any_model.rows import Fault
+from support.any_model.seen import Fault
 from support.any_model.values import Plain
 
 # how a run may end early where there is a cause, by what must be in the model
 CAUSES = {"jammed": ("prescribed",), "out_of_table": ("",), "fault": ("",), "chatter": ("",)}
 
 
-def run(made: Plain, **options: Any) -> Any:
-    """A run of a model with other options than its own."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return driveline(made).simulate(**options)
-
-
 def faults(made: Plain, seed: int, depth: int = 2, only: str = "") -> list[Fault]:
     """What is wrong with a model.
 
-    Parameters: seed, of what is chosen at random; depth, 0 its rows, 1 its tolerances too, 2 its twins too; only, the kind of fault
-    that is looked for, which may leave out others.
+    Parameters: seed, of what is chosen at random; depth, 0 its rows, 1 its tolerances too, 2 its twins too; only, the
+    kind of fault that is looked for, which may leave out others.
     """
     try:
-        base = run(made)
+        base = agree.run(made)
     except (cw.Interrupted, KeyboardInterrupt):
         raise
     except cw.ClutchworkError as error:
@@ -41,10 +32,8 @@ def faults(made: Plain, seed: int, depth: int = 2, only: str = "") -> list[Fault
         return [Fault("raises", type(error).__name__, str(error)[:300])]
     found = [*ending(made, base), *rows.faults(base)]
     if depth and base.status == "done" and not explodes(base):
-        from support.any_model import twins
-
         try:
-            found += twins.faults(made, base, seed, depth, only)
+            found += agree.faults(made, base, seed, depth, only)
         except cw.ClutchworkError as error:
             found.append(Fault("raises", f"{type(error).__name__} in a twin", str(error)[:300]))
     return found

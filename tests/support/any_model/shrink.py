@@ -41,31 +41,24 @@ def _fails(fails: Callable[[Plain], bool], made: Plain) -> bool:
 
 def _smaller(made: Plain) -> Iterator[Plain]:
     """Models with a little less."""
-    for place in range(len(made["element"]) - 1, -1, -1):
-        yield _without(made, place)
-    for kind in NODES:
-        for place in range(len(made[kind])):
+    for kind in ("element", *NODES):
+        for place in reversed(range(len(made[kind]))):
             yield {**made, kind: made[kind][:place] + made[kind][place + 1 :]}
-    for place, one in enumerate(made["element"]):
-        for smaller in _simpler(one):
-            yield {**made, "element": [*made["element"][:place], smaller, *made["element"][place + 1 :]]}
-    for kind in ("shaft", "mass"):
+    for kind, simpler in (("element", _simpler), ("shaft", _body), ("mass", _body)):
         for place, one in enumerate(made[kind]):
-            for key in ("speed", "angle"):
-                if key in one:
-                    less = {name: value for name, value in one.items() if name != key}
-                    yield {**made, kind: [*made[kind][:place], less, *made[kind][place + 1 :]]}
-            size = "inertia" if kind == "shaft" else "mass"
-            for value in (1.0, 0.0):
-                if one[size] not in (0.0, 1.0):
-                    yield {**made, kind: [*made[kind][:place], {**one, size: value}, *made[kind][place + 1 :]]}
-    for key in made["simulation"]:
-        if key not in ("t_end", "max_steps"):
-            yield {**made, "simulation": {k: v for k, v in made["simulation"].items() if k != key}}
+            for other in simpler(one):
+                yield {**made, kind: [*made[kind][:place], other, *made[kind][place + 1 :]]}
+    for key in made["simulation"].keys() - {"t_end", "max_steps"}:
+        yield {**made, "simulation": {k: v for k, v in made["simulation"].items() if k != key}}
 
 
-def _without(made: Plain, place: int) -> Plain:
-    return {**made, "element": made["element"][:place] + made["element"][place + 1 :]}
+def _body(one: Plain) -> Iterator[Plain]:
+    """A shaft or mass without its start, or with a rounder inertia."""
+    for key in one.keys() & {"speed", "angle"}:
+        yield {name: value for name, value in one.items() if name != key}
+    (size,) = one.keys() & {"inertia", "mass"}
+    if one[size] not in (0.0, 1.0):
+        yield from ({**one, size: value} for value in (1.0, 0.0))
 
 
 def _simpler(one: Plain) -> Iterator[Plain]:

@@ -1,4 +1,4 @@
-"""Random values for declared fields, as a model file holds them: the size follows from the unit, or from the example."""
+"""Random values for declared fields, as a model file holds them: their size is that of the unit or of the example."""
 
 from __future__ import annotations
 
