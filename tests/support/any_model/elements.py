@@ -303,7 +303,9 @@ def _jenkins(rng: Rng) -> Plain:
     """A constant limit, or one over the twist."""
     top = log(rng, 0.2, 50.0)
     flat = rng.random() < 0.5
+    # a speed that jumps makes energy out of nothing where its friction slides
     return {
+        "speed": log(rng, 0.1, 30.0) if rng.random() < 0.3 else None,
         "limit": [[0.0, top]] if flat else [[-0.1, 1.5 * top], [-0.05, top], [0.05, top], [0.1, 1.5 * top]],
         "stiffness": log(rng, 50.0, 5000.0),
     }

@@ -83,7 +83,7 @@ def size(rng: Rng, spec: Spec, name: str) -> float:
 
 def signed(rng: Rng, spec: Spec) -> float:
     """A sign that the bounds allow."""
-    below = all(bound is None or bound < 0.0 for bound in (spec.above, spec.at_least))
+    below = spec.unit != "K" and all(bound is None or bound < 0.0 for bound in (spec.above, spec.at_least))
     return -1.0 if below and rng.random() < 0.5 else 1.0
 
 
@@ -174,7 +174,7 @@ def signal(rng: Rng, spec: Spec, name: str, t_end: float, kind: str = "") -> Any
     kind = kind or str(rng.choice(SIGNALS))
     early = lambda: float(f"{t_end * rng.uniform(0.0, 0.9):.4g}")  # noqa: E731
     level = lambda: float(f"{scale * (0.0 if rng.random() < 0.2 else rng.uniform(0.2, 1.5)):.4g}")  # noqa: E731
-    both = spec.above is None and spec.at_least is None
+    both = spec.above is None and spec.at_least is None and spec.unit != "K"
     if kind == "constant":
         return {"type": kind, "value": scale}
     if kind == "step":
