@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base import shell
+from clutchwork.base.writing import put, replaced
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Law
@@ -198,10 +199,7 @@ def _write(result: FitResult, data: dict[str, Any], folder: Path) -> Iterator[Pa
     """Results, samples and, last, the picture, which needs a package more."""
     import numpy as np
 
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / "fit.json"
-    path.write_text(shell.as_json(data) + "\n", encoding="utf-8")
-    yield path
+    yield put(folder / "fit.json", shell.as_json(data) + "\n")
     path, samples = folder / "samples.csv", result.samples
     force, speed = ("N", "m/s") if samples.translation else ("N m", "rad/s")
     head = f"time [s],slip [{speed}],load [{force}],measured [{force}],fitted [{force}],equation"
@@ -209,7 +207,8 @@ def _write(result: FitResult, data: dict[str, Any], folder: Path) -> Iterator[Pa
     if samples.temperature is not None:
         head, columns = f"{head},temperature [K]", [*columns, samples.temperature]
     table = np.column_stack(columns)
-    np.savetxt(path, table, delimiter=",", header=head, comments="", fmt="%.10g")
+    with replaced(path) as new:
+        np.savetxt(new, table, delimiter=",", header=head, comments="", fmt="%.10g")
     yield path
     result.plot(folder / "fit.png")
     yield folder / "fit.png"
