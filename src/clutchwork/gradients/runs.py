@@ -17,7 +17,6 @@ from clutchwork.gradients.chart import Slopes
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
 from clutchwork.gradients.plain import Plain
-from clutchwork.gradients.pressing import at_rest
 from clutchwork.gradients.primal import Knots, Primal
 from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import Steps
@@ -100,8 +99,7 @@ class Runs:
             run = self.plain.runs([system], [], grid=False, steps=True)[0]
             self._refuse_stopped(run.status, run.detail)
             steps, events = Steps.of_parts(run.times).inside(), run.events[:, 0]
-        notes = tuple(at_rest(chart, words, slopes, [one.name for one in self.task.parameters], self.wanted.t_end))
-        return self._with_grid(Point(x, system, slopes, moving, steps, events, np.zeros(0), notes))
+        return self._with_grid(Point(x, system, slopes, moving, steps, events, np.zeros(0), ()))
 
     def forward(self, point: Point) -> Run:
         """A run with derivatives by all numbers."""
