@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -173,6 +173,11 @@ class Exact:
     def lines(self, point: Point) -> tuple[Run, list[Line]]:
         """A run, and what is asked of it with derivatives as they are."""
         run, outputs = self._run(point, len(self.task.labels)), self.task.outputs
+        rows_at = partial(self.runs.plain.rows_at, point.system, range(run.primal.rows.shape[1]))
+        steps, _ = self.runs.plain.refined(run.primal.steps, run.primal.rows, run.primal.forms, rows_at)
+        if steps is not run.primal.steps:
+            grid = np.unique(np.concatenate([self.runs.wanted.grid, steps.times.ravel()]))
+            run = self._run(point._replace(steps=steps, grid=grid), len(self.task.labels))
         return run, lines(run, outputs, self.task.labels, self._asked, self._sizes(point.x))
 
     def _run(self, point: Point, results: int) -> Run:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -14,6 +14,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE
 from clutchwork.gradients import extremes, jerk
 from clutchwork.gradients.measures import number_of
+from clutchwork.gradients.refined import refined
 from clutchwork.gradients.steps import Steps
 from clutchwork.sweeps.batch import Wanted
 from clutchwork.sweeps.columns import all_needed, moved
@@ -46,6 +47,7 @@ class Plain:
     wanted: Wanted
     options: Mapping[str, float]
     threads: int
+    may_bend: bool = False  # whether signals may bend inside of steps
 
     def runs(self, systems: Sequence[bytes], columns: Sequence[int], *, grid: bool, steps: bool) -> list[Run]:
         """One run for each of the bytes; numbers of a row that are kept, at the instants and in the steps."""
@@ -58,10 +60,15 @@ class Plain:
         events = _events(first[3], len(systems))
         return [Run(int(status[n]), _detail(detail[n]), rows[n], *parts[n], events[n]) for n in range(len(systems))]
 
-    def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int) -> Any:
+    def rows_at(self, system: bytes, columns: Sequence[int], times: Array) -> Array:
+        """Numbers of the rows of one run at instants."""
+        found: Array = self._call([system], columns, 0, times)[2][0]
+        return found
+
+    def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int, instants: Array | None = None) -> Any:
         count = len(systems)
         choice = np.arange(count, dtype=np.int64).reshape(-1, 1)
-        times = np.zeros(0) if parts else self.wanted.grid
+        times = np.zeros(0) if parts else self.wanted.grid if instants is None else instants
         threads = min(self.threads, max(1, count // 2))
         options, kept = list(self.options.items()), np.array(columns, dtype=np.int64)
         found = core().sweep(
@@ -88,23 +95,45 @@ class Plain:
         columns = all_needed(form for some in forms for form in some.values())
         places = {column: place for place, column in enumerate(columns)}
         runs = self.runs(systems, columns, grid=self.on_grid, steps=self.in_steps)
-        return np.array(
-            [
-                self._of(run, {name: moved(form, places) for name, form in own.items()})
-                for run, own in zip(runs, forms, strict=True)
-            ]
-        )
+        found = list[list[float]]()
+        for system, run, own in zip(systems, runs, forms, strict=True):
+            there = {name: moved(form, places) for name, form in own.items()}
+            found.append(self._of(run, there, partial(self.rows_at, system, columns)))
+        return np.array(found)
 
-    def _of(self, run: Run, forms: Mapping[str, Form]) -> list[float]:
+    def refined(
+        self, steps: Steps, rows: Array, forms: Mapping[str, Form], rows_at: Callable[[Array], Array]
+    ) -> tuple[Steps, Array]:
+        """Steps and their rows, split where signals of extremes bend inside of them.
+
+        Parameters: rows_at, rows of the same run at any instants.
+        """
+        ones = [one for one in self.wanted.outputs.values() if isinstance(one, Extreme)]
+        if not ones or not self.may_bend or not len(steps):
+            return steps, rows
+
+        def on(steps: Steps) -> tuple[Steps, Array]:
+            grid = np.unique(steps.times)
+            return steps.on(grid), rows_at(grid)
+
+        def values(steps: Steps, rows: Array) -> list[Array]:
+            return [np.asarray(forms[one.signal](rows), dtype=float)[steps.rows] for one in ones]
+
+        made = refined(steps, ones, values(steps, rows), lambda steps: values(*on(steps)))
+        return (steps, rows) if made is None else on(made)
+
+    def _of(self, run: Run, forms: Mapping[str, Form], rows_at: Callable[[Array], Array]) -> list[float]:
         found = list[float]()
-        steps = Steps.of_parts(run.times)
+        steps, rows = Steps.of_parts(run.times), run.rows
         reached = run.status == DONE
+        if reached:
+            steps, rows = self.refined(steps, rows, forms, rows_at)
         for one in self.wanted.outputs.values():
             if isinstance(one, When):
                 number = number_of(run.events, one, self.wanted.contacts)
                 found.append(float(run.events[number, 0]) if number >= 0 else np.nan)
             elif isinstance(one, IN_STEPS):
-                inside = np.asarray(forms[one.signal](run.rows), dtype=float)[steps.rows]
+                inside = np.asarray(forms[one.signal](rows), dtype=float)[steps.rows]
                 found.append(_in_steps(one, steps, inside) if reached else np.nan)
             else:
                 found += self._on_grid(one, run.grid, forms, reached)

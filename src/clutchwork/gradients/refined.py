@@ -1,0 +1,114 @@
+"""Steps in which a signal bends without an event: contacts of a dependent set of which one reaches its capacity.
+
+Polynomials miss such bends, so that steps are split at them. docs/theory/gradients.md (17)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.polynomial.polynomial import polyval
+from numpy.typing import NDArray
+
+from clutchwork.gradients.extremes import reaching
+from clutchwork.gradients.steps import Steps
+from clutchwork.sweeps.outputs import Extreme
+from clutchwork.sweeps.parts import PARTS
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+
+Array = NDArray[np.float64]
+# values of each extreme's signal in the rows of steps
+Values = Callable[[Steps], Sequence[Array]]
+
+# the last coefficient of a polynomial that misses a bend, of the largest size of the signal
+ROUGH = 1e-6
+# a step is first cut into so many parts, then where polynomials of its neighbours meet; so often at most
+CUTS, ROUNDS = 8, 6
+# shortest parts, of a step
+SHORTEST = 1e-3
+
+
+def may_bend(system: System) -> bool:
+    """Whether contacts may share a load that the motion does not decide: their slips depend on each other."""
+    arrays, ends = system.arrays, system.arrays["contact_rate_end"]
+    rates = np.zeros((len(ends), len(arrays["initial_speed"])))
+    row = np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
+    rates[row, arrays["contact_rate_column"]] = arrays["contact_rate_value"]
+    return bool(np.linalg.matrix_rank(rates) < len(rates)) if rates.size else False
+
+
+def refined(steps: Steps, ones: Sequence[Extreme], first: Sequence[Array], values: Values) -> Steps | None:
+    """The steps split where signals bend near their extremes; None where they do not.
+
+    Parameters: first, values in the rows of these steps.
+    """
+    made, known = steps, first
+    for _ in range(ROUNDS):
+        cuts = dict[int, set[float]]()
+        for one, own in zip(ones, known, strict=True):
+            for step in _rough(one, made, own):
+                cuts.setdefault(step, set()).update(_places(made, own, step))
+        cuts = {step: places for step, places in cuts.items() if places}
+        if not cuts:
+            break
+        made = split(made, cuts)
+        known = values(made)
+    return None if made is steps else made
+
+
+def _rough(one: Extreme, steps: Steps, values: Array) -> Iterator[int]:
+    """Steps that reach the extreme with a polynomial that misses a bend."""
+    last = np.abs(np.einsum("ni,ni->n", steps.basis[:, PARTS], values))
+    size = float(np.abs(values).max(initial=0.0))
+    for step in reaching(one, steps, values).tolist():
+        if last[step] > ROUGH * size:
+            yield step
+
+
+def _places(steps: Steps, values: Array, step: int) -> Iterator[float]:
+    """Where a step is to be cut: where the polynomials of its neighbours meet in it, else into equal parts."""
+    meeting = _meeting(steps, values, step)
+    if meeting is None:
+        yield from np.arange(1, CUTS) / CUTS
+    elif SHORTEST < meeting < 1.0 - SHORTEST:
+        yield meeting
+
+
+def _meeting(steps: Steps, values: Array, step: int) -> float | None:
+    """The place in a step at which the polynomials before and behind it meet; None where they do not."""
+    if not 0 < step < len(steps) - 1:
+        return None
+    before, behind = (steps.basis[near] @ values[near] for near in (step - 1, step + 1))
+    longer = [float(steps.length[step] / steps.length[near]) for near in (step - 1, step + 1)]
+    # neighbours that are longer are other steps, which have nothing to do with it
+    if min(longer) < 0.5 or max(longer) > 2.0:
+        return None
+
+    def apart(place: Array) -> Array:
+        found: Array = polyval(1.0 + place * longer[0], before) - polyval((place - 1.0) * longer[1], behind)
+        return found
+
+    low, high = 0.0, 1.0
+    if apart(np.array(low)) * apart(np.array(high)) > 0.0:
+        return None
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        below = apart(np.array(low)) * apart(np.array(middle)) <= 0.0
+        low, high = (low, middle) if below else (middle, high)
+    return 0.5 * (low + high)
+
+
+def split(steps: Steps, cuts: Mapping[int, set[float]]) -> Steps:
+    """The same steps where some are cut at places in them."""
+    begins, lengths = list[float](), list[float]()
+    for step, (begin, length) in enumerate(zip(steps.begin.tolist(), steps.length.tolist(), strict=True)):
+        places = [0.0, *sorted(cuts.get(step, ())), 1.0]
+        begins += [begin + place * length for place in places[:-1]]
+        lengths += (np.diff(places) * length).tolist()
+    rows = np.zeros((len(begins), PARTS + 1), dtype=np.intp)
+    shares = np.broadcast_to(np.arange(PARTS + 1) / PARTS, rows.shape)
+    return Steps(np.array(begins), np.array(lengths), shares, rows).inside()
