@@ -1,6 +1,6 @@
 """Steps in which a signal bends without an event: contacts of a dependent set of which one reaches its capacity.
 
-Polynomials miss such bends, so that steps are split at them. docs/theory/gradients.md (17)
+Polynomials miss such bends, so that steps are split at them. docs/theory/gradients.md (18)
 """
 
 from __future__ import annotations
