@@ -30,6 +30,8 @@ class Doubt(NamedTuple):
     why: str
     lines: Mask
     numbers: Mask
+    # what a number does on one side is the same wherever the others are on that side
+    one_way: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,6 +134,6 @@ class Doubts:
         names = [one.name for one in self.runs.task.parameters]
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for time, why, numbers in unpressed(chart, words, self.point.slopes, names, begin, end):
-            yield Doubt(why, self._up_to(time), numbers)
+            yield Doubt(why, self._up_to(time), numbers, one_way=True)
         for why, numbers in at_rest(chart, words, self.point.slopes):
             yield Doubt(why, np.ones(len(self.lines), dtype=bool), numbers)

@@ -18,7 +18,7 @@ from clutchwork.gradients.grazing import noted, together
 from clutchwork.gradients.lines import Line, lines, without_derivatives
 from clutchwork.gradients.measures import Asked, measures
 from clutchwork.gradients.runs import Point, Run, Runs
-from clutchwork.gradients.settled import NEARER, STEP, Settling
+from clutchwork.gradients.settled import NEARER, STEP, Beside, Settling
 from clutchwork.gradients.task import Found, Task
 from clutchwork.results.gradient import NoGradient
 from clutchwork.sweeps.outputs import Integral
@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 
 # variants of one call without derivatives
 MOST_AT_ONCE = 256
+# directions that a run carries at the cost of one
+AT_ONCE = 8
 # a run is followed back from so many numbers on, and from so many more for each result
 FOLLOWED_FROM, FOLLOWED_FOR_EACH = 12, 4
 
@@ -130,13 +132,16 @@ class Exact:
         NoGradient where the run stops early.
         """
         try:
-            return self._settled(x, *self._known(x))
+            known, beside = self._known(x), self._beside
         except Bends as bends:
-            return self._settled(x, *self._known_without(x, bends.numbers))
+            known, beside = self._known_without(x, bends.numbers), self._beside_alone
+        return self._settled(x, beside, *known)
 
-    def _settled(self, x: Array, known: list[Line], doubts: list[Doubt], notes: tuple[str, ...]) -> Found:
+    def _settled(
+        self, x: Array, beside: Beside, known: list[Line], doubts: list[Doubt], notes: tuple[str, ...]
+    ) -> Found:
         settling = Settling.of(self.task, x, self._sizes(x), known, doubts)
-        settling.settle(self._beside)
+        settling.settle(beside)
         matrix = settling.matrix()
         return Found(np.array([one.value for one in known]), matrix, notes, tuple(settling.problems(matrix)))
 
@@ -158,7 +163,7 @@ class Exact:
             rest = self._with(x, np.flatnonzero(kept).tolist())
             found, doubts, notes = rest._known(x[kept])  # noqa: SLF001, its own kind
         all_ = np.ones(len(found), dtype=bool)
-        doubts = [Doubt(one.why, one.lines, spread(one.numbers, kept, fill=False)) for one in doubts]
+        doubts = [one._replace(numbers=spread(one.numbers, kept, fill=False), one_way=False) for one in doubts]
         doubts += [Doubt(why, all_, np.arange(len(x)) == number) for number, why in bent.items()]
         nan = float("nan")
         whole = [one._replace(left=spread(one.left, kept, nan), right=spread(one.right, kept, nan)) for one in found]
@@ -195,10 +200,22 @@ class Exact:
         return list(Doubts(self.runs, point, run, found, self._sizes(point.x)).found())
 
     def _beside(self, x: Array, number: int | None) -> list[Line] | None:
-        """Lines of a run beside a point, by one number alone where it is given; None where there is no run."""
+        """Lines of a run beside the point, by one number alone where it is given; None where there is no run."""
+        if number is not None and len(x) > AT_ONCE:
+            return self._beside_alone(x, number)
         try:
-            if number is None:
-                return self.lines(self.runs.point(x))[1]
+            found = self.lines(self.runs.point(x))[1]
+        except (ModelError, NoGradient):
+            return None
+        if number is None:
+            return found
+        return [one._replace(left=one.left[[number]], right=one.right[[number]]) for one in found]
+
+    def _beside_alone(self, x: Array, number: int | None) -> list[Line] | None:
+        """The same by one number in a driveline of its own, which knows no kink but those nearer than it is looked."""
+        if number is None:
+            return None
+        try:
             alone = self._with(x, [number], NEARER * STEP)
             return alone.lines(alone.runs.point(x[[number]]))[1]
         except (ModelError, NoGradient):

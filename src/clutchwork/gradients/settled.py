@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import field
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
+from clutchwork.gradients.bends import spread
 from clutchwork.gradients.doubts import Doubt
 from clutchwork.gradients.lines import Line
 from clutchwork.gradients.task import Task
@@ -45,24 +47,33 @@ class Settling:
     lines: Sequence[Line]
     both: dict[str, Array]  # left and right
     why: NDArray[np.object_] = field(repr=False)  # of each derivative: why it is in doubt
+    one_way: Mask  # numbers that are in doubt for kinks alone that do not depend on the others
 
     @classmethod
     def of(cls, task: Task, x: Array, sizes: Array, lines: Sequence[Line], doubts: Sequence[Doubt]) -> Settling:
         """Those of a run."""
-        why = np.full((len(lines), len(x)), "", dtype=object)
+        why, one_way = np.full((len(lines), len(x)), "", dtype=object), np.ones(len(x), dtype=bool)
         for doubt in reversed(doubts):
             why[np.ix_(doubt.lines, doubt.numbers)] = doubt.why
+            one_way &= doubt.one_way | ~doubt.numbers
         why[[bool(line.none) for line in lines]] = ""
-        return cls(task, x, sizes, lines, {side: _taken(lines, side, why.shape) for side in SIDES}, why)
+        return cls(task, x, sizes, lines, {side: _taken(lines, side, why.shape) for side in SIDES}, why, one_way)
 
     # ------------------------------------------------------------------------------------------------------- beside it
 
     def settle(self, beside: Beside) -> None:
         """Find what is in doubt from runs beside the point."""
-        if np.count_nonzero(np.any(self.why != "", axis=0)) >= TOGETHER:
+        others = ~self.one_way
+        if len(numbers := self._open(self.one_way)) and not self._settle(numbers, lambda x: beside(x, None)):
+            others[:] = True
+        if len(self._open(others)) >= TOGETHER:
             self.why[self._alike_together(beside)] = ""
-        for number in np.flatnonzero(np.any(self.why != "", axis=0)).tolist():
-            self._settle_one(number, beside)
+        for number in self._open(others).tolist():
+            self._settle(np.array([number]), partial(_alone, beside, number, len(self.x)))
+
+    def _open(self, among: Mask) -> NDArray[np.intp]:
+        """Numbers with derivatives in doubt."""
+        return np.flatnonzero(np.any(self.why != "", axis=0) & among)
 
     def _alike_together(self, beside: Beside) -> Mask:
         """Which derivatives are the same on both sides of the point, in directions that move all numbers."""
@@ -80,40 +91,47 @@ class Settling:
                     alike &= self._is_one(own, _taken(found, side, alike.shape), self.sizes)
         return alike
 
-    def _settle_one(self, number: int, beside: Beside) -> None:
-        """Derivatives by one number from both sides; where they agree, and with those at the point, these stay."""
-        open_, size = self.why[:, number] != "", self.sizes[number : number + 1]
-        own = np.array([one[:, number, None] for one in self.both.values()])
-        there, is_run = self._beside(number, beside, STEP)
-        same = self._is_same(own, there[is_run], size)
+    def _settle(self, numbers: NDArray[np.intp], beside: Callable[[Array], Sequence[Line] | None]) -> bool:
+        """Derivatives by numbers from both sides; where they agree, and with those at the point, these stay.
+
+        False where there is no run on any side.
+        """
+        open_, sizes = self.why[:, numbers] != "", self.sizes[numbers]
+        own = np.array([one[:, numbers] for one in self.both.values()])
+        there, is_run = self._beside(numbers, beside, STEP)
+        same = self._is_same(own, there[is_run], sizes)
         if np.any(open_ & ~same):
             # what is more than the derivatives at the point: the limits of those beside it
-            nearer, is_run = self._beside(number, beside, NEARER * STEP)
+            nearer, is_run = self._beside(numbers, beside, NEARER * STEP)
             limits = (nearer - NEARER * there) / (1.0 - NEARER)
             nearly = np.abs(nearer - there) <= NEARLY * np.maximum(np.abs(nearer), np.abs(there))
             there = np.where(nearly, limits, nearer)
-            same |= self._is_same(own, there[is_run], size)
-        agree = self._is_one(there[0], there[1], size)[:, 0]
+            same |= self._is_same(own, there[is_run], sizes)
+        agree, mean, new = self._is_one(there[0], there[1], sizes), 0.5 * there.sum(axis=0), open_ & ~same
         for one, beside_it in zip(self.both.values(), there, strict=True):
-            one[open_ & ~same, number] = np.where(agree, 0.5 * there.sum(axis=0)[:, 0], beside_it[:, 0])[open_ & ~same]
-        self.why[open_ & (agree | same), number] = ""
+            one[:, numbers] = np.where(new, np.where(agree, mean, beside_it), one[:, numbers])
+        self.why[:, numbers] = np.where(open_ & (agree | same), "", self.why[:, numbers])
+        return bool(is_run.any())
 
-    def _is_same(self, own: Array, there: Array, size: Array) -> Mask:
+    def _is_same(self, own: Array, there: Array, sizes: Array) -> Mask:
         """Whether derivatives beside the point are those at it: from both sides, or from the only one."""
         if not len(there):
-            return np.zeros(len(self.lines), dtype=bool)
-        found: Mask = np.logical_and.reduce([self._is_one(one, other, size) for one in own for other in there])[:, 0]
+            return np.zeros(own.shape[1:], dtype=bool)
+        found: Mask = np.logical_and.reduce([self._is_one(one, other, sizes) for one in own for other in there])
         return found
 
-    def _beside(self, number: int, beside: Beside, width: float) -> tuple[Array, Mask]:
-        """Derivatives by a number on both sides of the point, NaN where a value jumps, and where there is a run."""
-        made, is_run = np.full((len(SIDES), len(self.lines), 1), np.nan), np.zeros(len(SIDES), dtype=bool)
-        step = np.where(np.arange(len(self.x)) == number, width * self.sizes, 0.0)
+    def _beside(
+        self, numbers: NDArray[np.intp], beside: Callable[[Array], Sequence[Line] | None], width: float
+    ) -> tuple[Array, Mask]:
+        """Derivatives by numbers on both sides of the point, NaN where a value jumps, and where there is a run."""
+        shape = len(self.lines), len(self.x)
+        made, is_run = np.full((len(SIDES), shape[0], len(numbers)), np.nan), np.zeros(len(SIDES), dtype=bool)
+        step = np.where(np.isin(np.arange(len(self.x)), numbers), width * self.sizes, 0.0)
         for place, (side, sign) in enumerate(SIDES.items()):
-            found = beside(self.x + sign * step, number)
+            found = beside(self.x + sign * step)
             if found is not None:
-                whole, is_run[place] = _taken(found, side, (len(self.lines), 1)), True
-                made[place] = np.where(self._jumps(found, step[[number]], whole)[:, None], np.nan, whole)
+                whole, is_run[place] = _taken(found, side, shape)[:, numbers], True
+                made[place] = np.where(self._jumps(found, step[numbers], whole)[:, None], np.nan, whole)
         return made, is_run
 
     def _jumps(self, found: Sequence[Line], step: Array, *derivatives: Array) -> Mask:
@@ -164,3 +182,12 @@ class Settling:
 
 def _taken(lines: Sequence[Line], side: str, shape: tuple[int, ...]) -> Array:
     return np.array([getattr(line, side) for line in lines], dtype=float).reshape(shape)
+
+
+def _alone(beside: Beside, number: int, count: int, x: Array) -> list[Line] | None:
+    """Lines of a run beside the point by one number, those by the others not known."""
+    found, kept = beside(x, number), np.arange(count) == number
+    if found is None:
+        return None
+    nan = float("nan")
+    return [one._replace(left=spread(one.left, kept, nan), right=spread(one.right, kept, nan)) for one in found]
