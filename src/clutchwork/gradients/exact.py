@@ -173,7 +173,7 @@ class Exact:
         """Lines without derivatives, where no number has one."""
         none = np.zeros(0)
         values = zip(self.task.labels, self._values(x[None])[0].tolist(), strict=True)
-        return [Line(name, value, none, none, self.task.t_end) for name, value in values]
+        return [Line(name, value, 0.0, none, none, self.task.t_end) for name, value in values]
 
     def lines(self, point: Point) -> tuple[Run, list[Line]]:
         """A run, and what is asked of it with derivatives as they are."""

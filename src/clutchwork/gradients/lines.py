@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.gradients.forms import weights
 from clutchwork.gradients.measures import Asked, Measure, measures
+from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.runs import Run
 from clutchwork.gradients.traces import trace
 from clutchwork.sweeps.outputs import AtTimes, Output
@@ -27,6 +28,7 @@ class Line(NamedTuple):
 
     name: str
     value: float
+    size: float  # of what it is one of, by which differences are judged
     left: Array
     right: Array
     until: float  # s, up to when it looks
@@ -47,7 +49,8 @@ def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked:
         if isinstance(one, AtTimes) and run.is_forward:
             columns = weights(run.primal.forms[one.signal], run.primal.rows[:1]).columns
             for time, value, own in zip(one.times, *trace(run, one), strict=True):
-                made.append(Line(next(names), float(value), own, own, time, time, columns))
+                size = _size(run.primal, columns, time)
+                made.append(Line(next(names), float(value), size, own, own, time, time, columns))
         else:
             made += [_line(run, next(names), measure, sizes) for measure in measures(run.primal, one, asked)]
     return made
@@ -56,7 +59,7 @@ def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked:
 def without_derivatives(labels: Sequence[str], found: Sequence[Measure]) -> list[Line]:
     """Lines of measures for what asks for no derivatives: when they look, and where."""
     return [
-        Line(name, one.value, NONE, NONE, one.until, one.at, _columns(one), one.kinks)
+        Line(name, one.value, one.size, NONE, NONE, one.until, one.at, _columns(one), one.kinks)
         for name, one in zip(labels, found, strict=True)
     ]
 
@@ -69,7 +72,7 @@ def _line(run: Run, name: str, one: Measure, sizes: Array) -> Line:
     if not one.changes:
         nothing, remedy = np.full(len(sizes), np.nan), "take one that does, or a later end time"
         why = f"{name} does not happen before {run.primal.t_end:g} s; {remedy}"
-        return Line(name, one.value, nothing, nothing, one.until, none=why)
+        return Line(name, one.value, 0.0, nothing, nothing, one.until, none=why)
     found = np.array([run.slope(change) for change in one.changes])
     least, most, why = found[0], found[0], ""
     apart = _apart(found, one.size / sizes)
@@ -79,7 +82,16 @@ def _line(run: Run, name: str, one: Measure, sizes: Array) -> Line:
         why = f"{name} is reached at {when}, and they move apart; {remedy}"
         least, most = found.min(axis=0), found.max(axis=0)
     left, right = (most, least) if one.is_least else (least, most)
-    return Line(name, one.value, left, right, one.until, one.at, _columns(one), one.kinks, several=why)
+    columns = _columns(one)
+    size = one.size if one.at is None else _size(run.primal, columns, one.at)
+    return Line(name, one.value, size, left, right, one.until, one.at, columns, one.kinks, several=why)
+
+
+def _size(primal: Primal, columns: Places, time: float) -> float:
+    """The largest of all numbers of a row that are of the kind of some."""
+    row, parts = primal.rows[primal.row(time)], primal.columns.values()
+    used = (row[part] for part in parts if np.any((columns >= part.start) & (columns < part.stop)))
+    return max((float(np.abs(part).max()) for part in used), default=0.0)
 
 
 def _apart(found: Array, sizes: Array) -> Places:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import field
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,14 +138,18 @@ class Settling:
         """Values that are others beside the point than derivatives say."""
         here, there = (np.array([line.value for line in lines]) for lines in (self.lines, found))
         further = FURTHER * np.max([np.abs(own) @ step for own in derivatives], axis=0)
-        allowed = JUMP * np.maximum(np.abs(here), np.abs(there)) + np.nan_to_num(further) + NOISE
+        allowed = JUMP * np.maximum(self._line_sizes, np.abs(there)) + np.nan_to_num(further) + NOISE
         jumps: Mask = ~(np.abs(there - here) <= allowed)
         return jumps
+
+    @cached_property
+    def _line_sizes(self) -> Array:
+        return np.array([max(abs(line.value), line.size) for line in self.lines])
 
     def _is_one(self, one: Array, other: Array, sizes: Array) -> Mask:
         """Derivatives by numbers of some sizes that are the same but for the tolerance of the runs."""
         allowed = ALIKE + BY_TOLERANCE * self.task.options.rtol
-        values = np.abs([line.value for line in self.lines])[:, None] / sizes
+        values = self._line_sizes[:, None] / sizes
         found: Mask = np.abs(one - other) <= allowed * np.maximum(np.maximum(np.abs(one), np.abs(other)), values)
         return found
 
