@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache, partial
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -77,10 +78,8 @@ def _product() -> Any:
     JAX turns it round for reverse mode, in which the weights of values that a loss does not use are zero.
     """
     jax = need("jax", "jax", CALL)
-    from jax.extend.core import Primitive
-    from jax.interpreters import ad, batching, mlir
-
-    made = Primitive("clutchwork_product")
+    ad, batching, mlir = (import_module(f"jax.interpreters.{name}") for name in ("ad", "batching", "mlir"))
+    made = import_module("jax.extend.core").Primitive("clutchwork_product")
 
     def product(matrix: Any, vector: Any) -> Any:
         beside = vector[..., None, :]

@@ -113,7 +113,7 @@ class Exact:
             point = self.runs.point(x)
         except NoGradient:
             return None
-        run = self._run(point, 1)
+        run = self._refined(point, 1)
         found = [one for output in self.task.outputs.values() for one in measures(run.primal, output, self._asked)]
         if any(len(one.changes) != 1 for one in found) or self._doubts(
             point, run, without_derivatives(self.task.labels, found)
@@ -177,13 +177,20 @@ class Exact:
 
     def lines(self, point: Point) -> tuple[Run, list[Line]]:
         """A run, and what is asked of it with derivatives as they are."""
-        run, outputs = self._run(point, len(self.task.labels)), self.task.outputs
-        rows_at = partial(self.runs.plain.rows_at, point.system, range(run.primal.rows.shape[1]))
-        steps, _ = self.runs.plain.refined(run.primal.steps, run.primal.rows, run.primal.forms, rows_at)
-        if steps is not run.primal.steps:
-            grid = np.unique(np.concatenate([self.runs.wanted.grid, steps.times.ravel()]))
-            run = self._run(point._replace(steps=steps, grid=grid), len(self.task.labels))
+        run, outputs = self._refined(point, len(self.task.labels)), self.task.outputs
         return run, lines(run, outputs, self.task.labels, self._asked, self._sizes(point.x))
+
+    def _refined(self, point: Point, results: int) -> Run:
+        """A run with rows on both sides of where signals of extremes bend."""
+        run, plain = self._run(point, results), self.runs.plain
+        if plain.sharing is None or not len(run.primal.steps):
+            return run
+        primal, rows_at = run.primal, partial(plain.rows_at, point.system, range(run.primal.rows.shape[1]))
+        steps, _ = plain.refined(primal.steps, primal.rows, primal.forms, plain.sharing.columns, rows_at)
+        if steps is primal.steps:
+            return run
+        grid = np.unique(np.concatenate([self.runs.wanted.grid, steps.times.ravel()]))
+        return self._run(point._replace(steps=steps, grid=grid), results)
 
     def _run(self, point: Point, results: int) -> Run:
         """A run, followed back where results are few and numbers many."""

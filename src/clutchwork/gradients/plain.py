@@ -14,7 +14,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE
 from clutchwork.gradients import extremes, jerk
 from clutchwork.gradients.measures import number_of
-from clutchwork.gradients.refined import refined
+from clutchwork.gradients.refined import Sharing, refined
 from clutchwork.gradients.steps import Steps
 from clutchwork.sweeps.batch import Wanted
 from clutchwork.sweeps.columns import all_needed, moved
@@ -47,7 +47,7 @@ class Plain:
     wanted: Wanted
     options: Mapping[str, float]
     threads: int
-    may_bend: bool = False  # whether signals may bend inside of steps
+    sharing: Sharing | None = None  # contacts whose torques may bend inside of steps
 
     def runs(self, systems: Sequence[bytes], columns: Sequence[int], *, grid: bool, steps: bool) -> list[Run]:
         """One run for each of the bytes; numbers of a row that are kept, at the instants and in the steps."""
@@ -93,41 +93,54 @@ class Plain:
     def values(self, systems: Sequence[bytes], forms: Sequence[Mapping[str, Form]]) -> Array:
         """Outputs of each of the bytes, with the forms of its signals; NaN for what there is not."""
         columns = all_needed(form for some in forms for form in some.values())
+        modes = self.sharing.columns if self.sharing is not None and self.wanted.signals(Extreme) else ()
+        columns = sorted({*columns, *modes})
         places = {column: place for place, column in enumerate(columns)}
         runs = self.runs(systems, columns, grid=self.on_grid, steps=self.in_steps)
         found = list[list[float]]()
         for system, run, own in zip(systems, runs, forms, strict=True):
             there = {name: moved(form, places) for name, form in own.items()}
-            found.append(self._of(run, there, partial(self.rows_at, system, columns)))
+            own_modes = [places[column] for column in modes]
+            found.append(self._of(run, there, own_modes, partial(self.rows_at, system, columns)))
         return np.array(found)
 
     def refined(
-        self, steps: Steps, rows: Array, forms: Mapping[str, Form], rows_at: Callable[[Array], Array]
+        self,
+        steps: Steps,
+        rows: Array,
+        forms: Mapping[str, Form],
+        modes: Sequence[int],
+        rows_at: Callable[[Array], Array],
     ) -> tuple[Steps, Array]:
         """Steps and their rows, split where signals of extremes bend inside of them.
 
-        Parameters: rows_at, rows of the same run at any instants.
+        Parameters: modes, of the contacts, their places in a row; rows_at, rows of the same run at any instants.
         """
-        ones = [one for one in self.wanted.outputs.values() if isinstance(one, Extreme)]
-        if not ones or not self.may_bend or not len(steps):
+        sharing, ones = self.sharing, [one for one in self.wanted.outputs.values() if isinstance(one, Extreme)]
+        if not ones or sharing is None or not len(steps):
             return steps, rows
 
-        def on(steps: Steps) -> tuple[Steps, Array]:
-            grid = np.unique(steps.times)
-            return steps.on(grid), rows_at(grid)
+        def on(made: Steps) -> tuple[Steps, Array]:
+            grid = np.unique(made.times)
+            return made.on(grid), rows_at(grid)
 
-        def values(steps: Steps, rows: Array) -> list[Array]:
-            return [np.asarray(forms[one.signal](rows), dtype=float)[steps.rows] for one in ones]
+        def values(made: Steps) -> tuple[list[Array], NDArray[np.bool_]]:
+            placed, known = (steps, rows) if made is steps else on(made)
+            found = [np.asarray(forms[one.signal](known), dtype=float)[placed.rows] for one in ones]
+            # beside its middle no event is near
+            return found, sharing.within(known[placed.rows[:, 2]][:, modes])
 
-        made = refined(steps, ones, values(steps, rows), lambda steps: values(*on(steps)))
-        return (steps, rows) if made is None else on(made)
+        split = refined(steps, ones, values)
+        return (steps, rows) if split is None else on(split)
 
-    def _of(self, run: Run, forms: Mapping[str, Form], rows_at: Callable[[Array], Array]) -> list[float]:
+    def _of(
+        self, run: Run, forms: Mapping[str, Form], modes: Sequence[int], rows_at: Callable[[Array], Array]
+    ) -> list[float]:
         found = list[float]()
         steps, rows = Steps.of_parts(run.times), run.rows
         reached = run.status == DONE
         if reached:
-            steps, rows = self.refined(steps, rows, forms, rows_at)
+            steps, rows = self.refined(steps, rows, forms, modes, rows_at)
         for one in self.wanted.outputs.values():
             if isinstance(one, When):
                 number = number_of(run.events, one, self.wanted.contacts)

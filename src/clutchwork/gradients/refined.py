@@ -12,8 +12,11 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
+from clutchwork.assembly.wiring import wiring
+from clutchwork.base.classes import dataclass
 from clutchwork.gradients.extremes import reaching
 from clutchwork.gradients.steps import Steps
+from clutchwork.results.forms import LOCKED
 from clutchwork.sweeps.outputs import Extreme
 from clutchwork.sweeps.parts import PARTS
 
@@ -21,8 +24,9 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
 Array = NDArray[np.float64]
-# values of each extreme's signal in the rows of steps
-Values = Callable[[Steps], Sequence[Array]]
+Mask = NDArray[np.bool_]
+# values of each extreme's signal in the rows of steps, and steps in which signals may bend
+Values = Callable[[Steps], tuple[Sequence[Array], Mask]]
 
 # the last coefficient of a polynomial that misses a bend, of the largest size of the signal
 ROUGH = 1e-6
@@ -32,40 +36,57 @@ CUTS, ROUNDS = 8, 6
 SHORTEST = 1e-3
 
 
-def may_bend(system: System) -> bool:
-    """Whether contacts may share a load that the motion does not decide: their slips depend on each other."""
-    arrays, ends = system.arrays, system.arrays["contact_rate_end"]
-    rates = np.zeros((len(ends), len(arrays["initial_speed"])))
-    row = np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
-    rates[row, arrays["contact_rate_column"]] = arrays["contact_rate_value"]
-    return bool(np.linalg.matrix_rank(rates) < len(rates)) if rates.size else False
+@dataclass(frozen=True, eq=False)
+class Sharing:
+    """Contacts that may share a load which the motion does not decide: their slips depend on each other."""
+
+    rates: Array  # of each contact: how its slip follows from the independent speeds
+    columns: tuple[int, ...]  # of their modes in a row
+
+    @classmethod
+    def of(cls, system: System) -> Sharing | None:
+        """Those of a System, None where there are none."""
+        arrays, ends = system.arrays, system.arrays["contact_rate_end"]
+        rates = np.zeros((len(ends), len(arrays["initial_speed"])))
+        row = np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
+        rates[row, arrays["contact_rate_column"]] = arrays["contact_rate_value"]
+        modes = wiring(system).columns["contact_mode"]
+        return cls(rates, tuple(range(modes.start, modes.stop))) if _depend(rates) else None
+
+    def within(self, modes: Array) -> Mask:
+        """Steps in which such contacts are locked together, from the modes in each."""
+        patterns, same = np.unique(modes == LOCKED, axis=0, return_inverse=True)
+        found: Mask = np.array([_depend(self.rates[locked]) for locked in patterns], dtype=bool)[same.ravel()]
+        return found
 
 
-def refined(steps: Steps, ones: Sequence[Extreme], first: Sequence[Array], values: Values) -> Steps | None:
-    """The steps split where signals bend near their extremes; None where they do not.
+def _depend(rates: Array) -> bool:
+    return bool(len(rates) and np.linalg.matrix_rank(rates) < len(rates))
 
-    Parameters: first, values in the rows of these steps.
-    """
-    made, known = steps, first
+
+def refined(steps: Steps, ones: Sequence[Extreme], values: Values) -> Steps | None:
+    """The steps split where signals bend near their extremes; None where they do not."""
+    made = steps
     for _ in range(ROUNDS):
-        cuts = dict[int, set[float]]()
+        cuts, (known, may_bend) = dict[int, set[float]](), values(made)
         for one, own in zip(ones, known, strict=True):
-            for step in _rough(one, made, own):
+            for step in _rough(one, made, own, may_bend):
                 cuts.setdefault(step, set()).update(_places(made, own, step))
         cuts = {step: places for step, places in cuts.items() if places}
         if not cuts:
             break
         made = split(made, cuts)
-        known = values(made)
     return None if made is steps else made
 
 
-def _rough(one: Extreme, steps: Steps, values: Array) -> Iterator[int]:
+def _rough(one: Extreme, steps: Steps, values: Array, may_bend: Mask) -> Iterator[int]:
     """Steps that reach the extreme with a polynomial that misses a bend."""
+    if not may_bend.any():
+        return
     last = np.abs(np.einsum("ni,ni->n", steps.basis[:, PARTS], values))
     size = float(np.abs(values).max(initial=0.0))
     for step in reaching(one, steps, values).tolist():
-        if last[step] > ROUGH * size:
+        if may_bend[step] and last[step] > ROUGH * size:
             yield step
 
 

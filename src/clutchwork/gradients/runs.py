@@ -18,7 +18,7 @@ from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
 from clutchwork.gradients.plain import Plain
 from clutchwork.gradients.primal import Knots, Primal
-from clutchwork.gradients.refined import may_bend
+from clutchwork.gradients.refined import Sharing
 from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import Steps
 from clutchwork.gradients.task import Task
@@ -86,7 +86,7 @@ class Runs:
     @cached_property
     def plain(self) -> Plain:
         """Runs without derivatives."""
-        return Plain(self.wanted, self._options, self.task.threads, may_bend(self.task.system))
+        return Plain(self.wanted, self._options, self.task.threads, Sharing.of(self.task.system))
 
     # ------------------------------------------------------------------------------------------------- with derivatives
 
