@@ -126,7 +126,8 @@ class Doubts:
         for time, why in struck_together(system, primal.events, contacts):
             yield Doubt(why, self._up_to(time), self._all)
         knots = times_of(*self.runs.words.at(self.point.x), primal.t_end)
-        for time, why in decided_at_knots(primal.events, primal.grazes, knots, contacts):
+        behind = knots[knots > self.runs.wanted.begin]
+        for time, why in decided_at_knots(primal.events, primal.grazes, behind, contacts):
             yield Doubt(why, self._up_to(time), self._all)
 
     def _start(self) -> Iterator[Doubt]:

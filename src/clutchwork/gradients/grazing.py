@@ -33,7 +33,8 @@ PIECES, TOUCHED = (6, 9), 1e-5
 CROWD, CROWDED = 6, 1e-4
 # kinds of guards that decide about contacts, by their numbers in the core: slips, capacities, sets, spares, loads
 DECIDED = (1, 2, 3, 4, 5)
-IMPACT, INPUT = (next(n for n, (name, _) in CAUSES.items() if name == wanted) for wanted in ("impact", "input"))
+BY_NAME = {name: number for number, (name, _) in CAUSES.items()}
+IMPACT, DRIVEN = BY_NAME["impact"], (BY_NAME["input"], BY_NAME["other event"])
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
 
@@ -112,7 +113,7 @@ def decided_at_knots(
     Parameters: knots, instants of all [s]. Where a signal jumps the knot is what makes them do so.
     """
     changed = events[(events[:, AT["from"]] == LOCKED) != (events[:, AT["to"]] == LOCKED)]
-    jumps, by_knot = grazes[grazes[:, KIND] < 0, TIME], changed[:, AT["cause"]] == INPUT
+    jumps, by_knot = grazes[grazes[:, KIND] < 0, TIME], np.isin(changed[:, AT["cause"]], DRIVEN)
     near = _near(changed[:, AT["time"]], knots) & ~(by_knot & _near(changed[:, AT["time"]], jumps))
     for event in changed[near]:
         time = float(event[AT["time"]])
