@@ -105,7 +105,9 @@ class Settling:
             nearer, is_run = self._beside(numbers, beside, NEARER * STEP)
             limits = (nearer - NEARER * there) / (1.0 - NEARER)
             nearly = np.abs(nearer - there) <= NEARLY * np.maximum(np.abs(nearer), np.abs(there))
-            there = np.where(nearly, limits, nearer)
+            nearly |= np.array([self._is_one(*both, sizes) for both in zip(there, nearer, strict=True)])
+            # what is neither the same nor a line has another kink nearby, up to which alone it would hold
+            there = np.where(nearly, limits, np.nan)
             same |= self._is_same(own, there[is_run], sizes)
         agree, mean, new = self._is_one(there[0], there[1], sizes), 0.5 * there.sum(axis=0), open_ & ~same
         for one, beside_it in zip(self.both.values(), there, strict=True):
