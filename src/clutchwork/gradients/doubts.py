@@ -45,7 +45,7 @@ class Doubts:
     sizes: NDArray[np.float64]  # of the numbers
 
     def found(self) -> Iterator[Doubt]:
-        """One by one; values that do not exist are no doubt."""
+        """One by one, of values that exist."""
         if not self.lines or not len(self.sizes):
             return
         yield from self._asked_at_events()
