@@ -43,12 +43,23 @@ def test_the_example_is_fitted(capsys: pytest.CaptureFixture[str], tmp_path: Pat
 
 def test_json_and_folder(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert (
-        main([*LINE, "--json", "--out", str(tmp_path / "there"), "--free", "kinetic, speed", "--confidence", "0.99"])
+        main(
+            [
+                *LINE,
+                "--json",
+                "--out",
+                str(tmp_path / "there"),
+                "--free",
+                "static, kinetic, speed",
+                "--confidence",
+                "0.99",
+            ]
+        )
         == 0
     )
     told = json.loads(capsys.readouterr().out)
-    assert [p["name"] for p in told["parameters"]] == ["kinetic", "speed"]
-    assert told["friction"]["static"] == 0.2
+    assert [p["name"] for p in told["parameters"]] == ["static", "kinetic", "speed"]
+    assert told["friction"]["viscous"] == 1e-4
     assert told["confidence"] == 0.99
     assert len(told["files"]) == 3
 

@@ -52,6 +52,11 @@ class CrankSlider(Component):
         """Angle at the start [rad]."""
         return (angle_of(self.shaft) - angle_of(self.support) + self.phase,)
 
+    def start_positions(self) -> tuple[tuple[Node, float], ...]:
+        """Where it holds the mass at the start [m]."""
+        (angle,) = self.initial_states()
+        return ((self.mass, self.radius * cos(angle) + sqrt(self.rod**2 - (self.radius * sin(angle)) ** 2)),)
+
     def start_ratio(self) -> float:
         """Speed of the mass over that of the shaft at the start [m]."""
         (angle,) = self.initial_states()

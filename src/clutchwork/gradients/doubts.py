@@ -1,7 +1,7 @@
 """Where a derivative may not exist: which values and numbers are in doubt at a point, and why.
 
 What is in doubt is settled by derivatives beside the point, so a doubt too many costs runs, one too few is a wrong
-derivative. docs/theory/gradients.md (16)
+derivative. docs/theory/gradients.md (17)
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Extremes of signals over a run, and how they change: docs/theory/gradients.md (12), (17), (18)."""
+"""Extremes of signals over a run, and how they change: docs/theory/gradients.md (12), (18), (19)."""
 
 from __future__ import annotations
 

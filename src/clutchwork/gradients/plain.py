@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE
-from clutchwork.gradients import extremes, jerk
+from clutchwork.gradients import extremes
 from clutchwork.gradients.measures import number_of
 from clutchwork.gradients.refined import Sharing, refined
 from clutchwork.gradients.steps import Steps
 from clutchwork.sweeps.batch import Wanted
 from clutchwork.sweeps.columns import all_needed, moved
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When
-from clutchwork.sweeps.parts import PARTS
+from clutchwork.sweeps.parts import PARTS, squared_jerk
 
 if TYPE_CHECKING:
     from clutchwork.results.forms import Form
@@ -65,6 +65,14 @@ class Plain:
         found: Array = self._call([system], columns, 0, times)[2][0]
         return found
 
+    def with_jerks(self, system: bytes, forms: Mapping[str, Form]) -> tuple[Run, dict[str, float]]:
+        """One run in steps, and the squared jerks that are asked for, by the signals that they are made of."""
+        asked = {one.signal for one in self.wanted.outputs.values() if isinstance(one, SquaredJerk)}
+        columns, own = over_columns([{name: forms[name] for name in asked}])
+        run = self.runs([system], columns, grid=False, steps=True)[0]
+        steps = Steps.of_parts(run.times)
+        return run, {name: _jerk(run, steps, own[0][name]) for name in asked}
+
     def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int, instants: Array | None = None) -> Any:
         count = len(systems)
         choice = np.arange(count, dtype=np.int64).reshape(-1, 1)
@@ -92,17 +100,18 @@ class Plain:
 
     def values(self, systems: Sequence[bytes], forms: Sequence[Mapping[str, Form]]) -> Array:
         """Outputs of each of the bytes, with the forms of its signals; NaN for what there is not."""
-        columns = all_needed(form for some in forms for form in some.values())
         modes = self.sharing.columns if self.sharing is not None and self.wanted.signals(Extreme) else ()
-        columns = sorted({*columns, *modes})
-        places = {column: place for place, column in enumerate(columns)}
-        runs = self.runs(systems, columns, grid=self.on_grid, steps=self.in_steps)
-        found = list[list[float]]()
-        for system, run, own in zip(systems, runs, forms, strict=True):
-            there = {name: moved(form, places) for name, form in own.items()}
-            own_modes = [places[column] for column in modes]
-            found.append(self._of(run, there, own_modes, partial(self.rows_at, system, columns)))
-        return np.array(found)
+        columns, own = over_columns(forms, modes)
+        runs, places = (
+            self.runs(systems, columns, grid=self.on_grid, steps=self.in_steps),
+            np.searchsorted(columns, modes),
+        )
+        return np.array(
+            [
+                self._of(run, some, places.tolist(), partial(self.rows_at, system, columns))
+                for system, run, some in zip(systems, runs, own, strict=True)
+            ]
+        )
 
     def refined(
         self,
@@ -137,17 +146,17 @@ class Plain:
         self, run: Run, forms: Mapping[str, Form], modes: Sequence[int], rows_at: Callable[[Array], Array]
     ) -> list[float]:
         found = list[float]()
-        steps, rows = Steps.of_parts(run.times), run.rows
+        steps = Steps.of_parts(run.times)
         reached = run.status == DONE
-        if reached:
-            steps, rows = self.refined(steps, rows, forms, modes, rows_at)
+        split = self.refined(steps.long(), run.rows, forms, modes, rows_at) if reached else (steps, run.rows)
         for one in self.wanted.outputs.values():
             if isinstance(one, When):
                 number = number_of(run.events, one, self.wanted.contacts)
                 found.append(float(run.events[number, 0]) if number >= 0 else np.nan)
-            elif isinstance(one, IN_STEPS):
-                inside = np.asarray(forms[one.signal](rows), dtype=float)[steps.rows]
-                found.append(_in_steps(one, steps, inside) if reached else np.nan)
+            elif isinstance(one, Extreme):
+                found.append(_extreme(one, *split, forms) if reached else np.nan)
+            elif isinstance(one, SquaredJerk):
+                found.append(_jerk(run, steps, forms[one.signal]) if reached else np.nan)
             else:
                 found += self._on_grid(one, run.grid, forms, reached)
         return found
@@ -163,9 +172,21 @@ class Plain:
         return [float(values[-1] - values[0] if isinstance(one, Integral) else values[-1])]
 
 
-def _in_steps(one: Any, steps: Steps, values: Array) -> float:
-    if isinstance(one, SquaredJerk):
-        return jerk.value(steps, values)
+def over_columns(
+    forms: Sequence[Mapping[str, Form]], more: Sequence[int] = ()
+) -> tuple[list[int], list[dict[str, Form]]]:
+    """Numbers of a row that signals need, and more, and their forms over these alone."""
+    columns = sorted({*all_needed(form for some in forms for form in some.values()), *more})
+    places = {column: place for place, column in enumerate(columns)}
+    return columns, [{name: moved(form, places) for name, form in some.items()} for some in forms]
+
+
+def _jerk(run: Run, steps: Steps, form: Form) -> float:
+    return squared_jerk(run.times, np.asarray(form(run.rows), dtype=float), steps.rows[:, 0])
+
+
+def _extreme(one: Extreme, steps: Steps, rows: Array, forms: Mapping[str, Form]) -> float:
+    values = np.asarray(forms[one.signal](rows), dtype=float)[steps.rows]
     return extremes.value(one, extremes.candidates(one, steps, values))
 
 

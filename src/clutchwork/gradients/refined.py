@@ -1,6 +1,6 @@
 """Steps in which a signal bends without an event: contacts of a dependent set of which one reaches its capacity.
 
-Polynomials miss such bends, so that steps are split at them. docs/theory/gradients.md (18)
+Polynomials miss such bends, so that steps are split at them. docs/theory/gradients.md (19)
 """
 
 from __future__ import annotations
@@ -125,11 +125,12 @@ def _meeting(steps: Steps, values: Array, step: int) -> float | None:
 
 def split(steps: Steps, cuts: Mapping[int, set[float]]) -> Steps:
     """The same steps where some are cut at places in them."""
-    begins, lengths = list[float](), list[float]()
+    begins, lengths, jumps = list[float](), list[float](), list[bool]()
     for step, (begin, length) in enumerate(zip(steps.begin.tolist(), steps.length.tolist(), strict=True)):
         places = [0.0, *sorted(cuts.get(step, ())), 1.0]
         begins += [begin + place * length for place in places[:-1]]
         lengths += (np.diff(places) * length).tolist()
+        jumps += [bool(steps.jumps[step]), *([False] * (len(places) - 2))]
     rows = np.zeros((len(begins), PARTS + 1), dtype=np.intp)
     shares = np.broadcast_to(np.arange(PARTS + 1) / PARTS, rows.shape)
-    return Steps(np.array(begins), np.array(lengths), shares, rows).inside()
+    return Steps(np.array(begins), np.array(lengths), shares, rows, np.array(jumps)).inside()

@@ -1,4 +1,4 @@
-"""What is in doubt at a point is settled by derivatives beside it: docs/theory/gradients.md (16)."""
+"""What is in doubt at a point is settled by derivatives beside it: docs/theory/gradients.md (17)."""
 
 from __future__ import annotations
 

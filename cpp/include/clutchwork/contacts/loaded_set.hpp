@@ -7,6 +7,12 @@
 /// docs/theory/load-dependent.md.
 namespace clutchwork {
 
+/// Loads by the torques of all directions, with what transmissions carry of them.
+template <class T>
+const T* loads_by_shares(const Workspace<T>& ws) {
+  return ws.ratios.n > 0 && !ws.ratios.inside ? ws.loads.beside_torque : ws.loads.by_torque;
+}
+
 /// The largest factor of the load that such a set can hold, for a choice of the lines of each bound. Variables: the
 /// torques of the set, for each member with a load what its two bounds have left, then the factor.
 template <class T>
@@ -26,7 +32,7 @@ struct LoadedLimit {
   T lower(int j) const { return low[j]; }
   T upper(int j) const { return high[j]; }
   int load_of_member(int f) const { return ws.loads.of[member[follower[f]]]; }
-  T share(int l, int j) const { return ws.loads.by_torque[l * ws.n_directions + ws.sys.elements + member[j]]; }
+  T share(int l, int j) const { return loads_by_shares(ws)[l * ws.n_directions + ws.sys.elements + member[j]]; }
 
   /// Row of what the bound of follower f against slip in a direction has left: that, less what the torques of the set
   /// and the factor take of it.

@@ -18,8 +18,8 @@ struct DogClutch : declared::DogClutch {
     T reversed;   ///< [1]
   };
   // apart: the sleeve moves freely; fast: it is held back, the slip is too high; blocked: tooth stands on tooth; then
-  // in mesh: no flank, one flank, the other
-  enum Piece : int { apart, fast, blocked, loose, ahead, behind };
+  // in mesh: no flank, one flank, the other, and these where they part faster than they spring back
+  enum Piece : int { apart, fast, blocked, loose, ahead, behind, slack_ahead, slack_behind };
 
   template <class T>
   static double pitch(const Params<T>& p) {
@@ -30,35 +30,40 @@ struct DogClutch : declared::DogClutch {
   static S command(const Params<T>& p, const At<S>& at) {
     return at.input[Input::command] * T(value(p.reversed) != 0 ? -1 : 1);
   }
-  /// Angle from the middle of the nearest gap [rad].
-  template <class T, class S>
-  static S off_centre(const Params<T>& p, const At<S>& at) {
-    return at.state[angle] - S(pitch(p) * std::nearbyint(value(at.state[angle]) / pitch(p)));
+  /// The flank that is met: 1, -1, or 0 for none.
+  static int flank(int piece) {
+    return piece == ahead || piece == slack_ahead ? 1 : piece == behind || piece == slack_behind ? -1 : 0;
   }
-  /// How deep the flanks are pressed together [rad].
+  /// How deep the flanks are pressed together [rad]; in mesh the angle is that from the middle of the gap.
   template <class T, class S>
   static S depth(const Params<T>& p, const At<S>& at) {
-    if (at.piece == ahead) return off_centre(p, at) - S(p.gap / T(2));
-    if (at.piece == behind) return -off_centre(p, at) - S(p.gap / T(2));
-    return S(0);
+    return S(flank(at.piece)) * at.state[angle] - S(p.gap / T(2));
   }
-  /// Torque that pushes the flanks apart, never negative.
+  /// Rate at which they close [rad/s].
+  template <class T, class S>
+  static S closing(const Params<T>&, const At<S>& at) {
+    return S(flank(at.piece)) * at.rate;
+  }
+  /// Push of the flanks over that of their spring: they never pull.
+  template <class T, class S>
+  static S damped(const Params<T>& p, const At<S>& at) {
+    return S(1) + p.damping * closing(p, at);
+  }
+  /// Torque that pushes the flanks apart.
   template <class T, class S>
   static S push(const Params<T>& p, const At<S>& at) {
     if (at.piece != ahead && at.piece != behind) return S(0);
-    const S closing = at.piece == ahead ? at.rate : -at.rate;
-    return larger(p.stiffness * depth(p, at) * (S(1) + p.damping * closing), S(0));
+    return p.stiffness * depth(p, at) * damped(p, at);
   }
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {
-    return at.piece == behind ? push(p, at) : -push(p, at);
+    return S(-flank(at.piece)) * push(p, at);
   }
   /// Heat of the damped flanks [W].
   template <class T, class S>
   static S heat(const Params<T>& p, const At<S>& at) {
-    if (at.piece != ahead && at.piece != behind) return S(0);
-    const S closing = at.piece == ahead ? at.rate : -at.rate;
-    return (push(p, at) - p.stiffness * larger(depth(p, at), S(0))) * closing;
+    if (flank(at.piece) == 0) return S(0);
+    return (push(p, at) - p.stiffness * depth(p, at)) * closing(p, at);
   }
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
@@ -99,8 +104,9 @@ struct DogClutch : declared::DogClutch {
       // a margin above the speed keeps the two from taking turns
       watch(S(0.01) - excess(p, at), slips);
     } else {
-      watch(at.piece == loose ? S(1) - abs(off_centre(p, at)) * T(2) / p.gap : depth(p, at) * T(2) / p.gap, meets);
+      watch(at.piece == loose ? S(1) - abs(at.state[angle]) * T(2) / p.gap : depth(p, at) * T(2) / p.gap, meets);
       watch(at.state[sleeve] - reach, leaves);
+      if (flank(at.piece) != 0) watch(at.piece <= behind ? damped(p, at) : -damped(p, at), parts);
     }
     return least + change;
   }
@@ -109,25 +115,48 @@ struct DogClutch : declared::DogClutch {
     if (who == turned) return at.piece;
     if (who == leaves) return apart;
     if (who == slips) return fast;
-    if (at.piece == blocked) return loose;
+    if (at.piece == blocked) return mesh(p, state);
     if (at.piece == apart || at.piece == fast) return meet(p, at, state);
-    if (at.piece == loose) return value(off_centre(p, at)) > 0 ? ahead : behind;
+    if (at.piece == loose) return next_flank(at);
+    if (who == parts) return at.piece <= behind ? at.piece + (slack_ahead - ahead) : at.piece - (slack_ahead - ahead);
     return loose;
   }
   template <class T>
   static bool turns(const Params<T>&, int) {
     return false;
   }
+  /// A sleeve that is in at the start is in mesh, whatever the slip.
+  template <class T>
+  static int settle(const Params<T>& p, const At<T>& at) {
+    if (at.piece != apart || value(at.state[sleeve]) <= value(p.reach) + 1e-9) return at.piece;
+    return abs(value(at.state[angle])) * 2 <= value(p.gap) ? loose : next_flank(at);
+  }
 
  private:
-  enum Who : int { meets, leaves, slips };
+  enum Who : int { meets, leaves, slips, parts };
 
+  /// Angle from the middle of the nearest gap [rad].
+  template <class T>
+  static T off_centre(const Params<T>& p, const T* state) {
+    return state[angle] - T(pitch(p) * std::nearbyint(value(state[angle]) / pitch(p)));
+  }
+  /// In mesh the angle is counted from the middle of the gap, which the teeth do not leave.
+  template <class T>
+  static int mesh(const Params<T>& p, T* state) {
+    return state[angle] = off_centre(p, state), loose;
+  }
+
+  /// The flank that the teeth are on, or next to.
+  template <class T>
+  static int next_flank(const At<T>& at) {
+    return value(at.state[angle]) > 0 ? ahead : behind;
+  }
   /// The sleeve at the tips of the teeth: held back, in mesh, or on a tooth. Pointed teeth find the middle of a gap.
   template <class T>
   static int meet(const Params<T>& p, const At<T>& at, T* state) {
     if (at.piece == apart && value(excess(p, at)) > 0) return fast;
     if (value(p.pointed) != 0) return state[angle] = T(0), loose;
-    if (abs(value(off_centre(p, at))) * 2 < value(p.gap)) return loose;
+    if (abs(value(off_centre(p, state))) * 2 < value(p.gap)) return mesh(p, state);
     state[angle] -= T(pitch(p) * std::floor(value(state[angle]) / pitch(p)));
     return blocked;
   }

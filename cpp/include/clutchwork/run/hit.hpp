@@ -25,6 +25,37 @@ struct Hit {
   int who = -1;    ///< what of a law leaves its piece; the end that a stop meets
 };
 
+/// What the caller of a run with derivatives knows a kind by; null behind the last one.
+constexpr const char* name_of(Hit::What what) {
+  switch (what) {
+    case Hit::nothing:
+      return "nothing";
+    case Hit::line:
+      return "line";
+    case Hit::multiplier:
+      return "multiplier";
+    case Hit::set:
+      return "set";
+    case Hit::parting:
+      return "parting";
+    case Hit::load:
+      return "load";
+    case Hit::law:
+      return "law";
+    case Hit::fault:
+      return "fault";
+    case Hit::exit:
+      return "exit";
+    case Hit::process:
+      return "process";
+    case Hit::flip:
+      return "flip";
+    case Hit::gap:
+      return "gap";
+  }
+  return nullptr;
+}
+
 /// Round-off of a load over its largest size: a load that has passed zero passes it again only from farther away.
 /// docs/theory/events.md, rule 10
 inline constexpr double load_noise = 1e-11;

@@ -108,9 +108,12 @@ T guard_at(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y, i
     }
     case Hit::gap:
       return T(hit.who) * (stop_end(ws, hit.index, hit.who) - y[nz + place_of(ws, hit.index)]);
-    default:
-      return T(1);
+    case Hit::nothing:
+    case Hit::exit:
+      // the run ends there
+      break;
   }
+  return T(1);
 }
 
 /// Element or contact whose guard it is.
@@ -135,9 +138,11 @@ int component_of(const Workspace<T>& ws, const Hit& hit) {
     case Hit::exit:
     case Hit::gap:
       return ne + hit.index;
-    default:
-      return -1;
+    case Hit::process:
+    case Hit::nothing:
+      break;
   }
+  return -1;
 }
 
 /// Size of what makes a guard, against which its rate is measured.
@@ -158,9 +163,17 @@ double guard_scale(Form& form, const Hit& hit, const T* y) {
       return larger(1e-3, abs(value(y[form.nz() + place_of(ws, hit.index)])));
     case Hit::flip:
       return larger(torque_size(ws), 1e-300);
-    default:
-      return 1;
+    // these have their own scale already, or are slips
+    case Hit::set:
+    case Hit::parting:
+    case Hit::law:
+    case Hit::fault:
+    case Hit::process:
+    case Hit::exit:
+    case Hit::nothing:
+      break;
   }
+  return 1;
 }
 
 // ------------------------------------------------------------------------------------------------- to the event and on
@@ -203,6 +216,7 @@ template <class Form, class T = typename Form::Scalar>
 void move_with(Form& form, Step<Form>& step, const T& shift, const T* algebraic = nullptr) {
   Workspace<T>& ws = form.ws;
   ws.moved.shift = T(0);
+  ws.moved.here = shift, ws.moved.here_time = ws.time;
   if (is_zero(shift)) return;
   T* velocity = step.k(0);
   motion_now(form, step.y0(), algebraic, velocity);
@@ -305,16 +319,30 @@ double guard_rate(Form& form, Step<Form>& step, const Hit& hit, const T* velocit
   return rate;
 }
 
-/// How a hit moves: minus the derivative of its guard at a fixed instant over its time derivative.
-/// docs/theory/gradients.md (3)
+/// Whether a guard did not pass zero where it was hit: what happened at the same instant has made it jump past.
+template <class T>
+bool has_jumped(const Workspace<T>& ws, double guard, double scale) {
+  constexpr double least = 1e-9;
+  return guard < -least * scale && ws.time - ws.moved.here_time <= 1e-12 * (1 + abs(ws.time));
+}
+
+/// How a hit moves: minus the derivative of its guard at a fixed instant over its time derivative; one that has jumped
+/// moves with what made it jump. docs/theory/gradients.md (3)
 template <class Form, class T = typename Form::Scalar>
 T hit_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
   Workspace<T>& ws = form.ws;
-  const double rate = guard_rate(form, step, hit, velocity);
+  const int component = component_of(ws, hit);
   int who = hit.who;
   const T guard = guard_at(form, step, hit, ws.time, step.y0(), who);
+  const double scale = guard_scale(form, hit, step.y0());
+  if (has_jumped(ws, value(guard), scale)) {
+    const T shift = ws.moved.here;
+    note_graze(ws, int(hit.what), component, infinity, shift);
+    return shift;
+  }
+  const double rate = guard_rate(form, step, hit, velocity);
   const T shift = rate != 0 ? without_value(guard) * T(-1 / rate) : T(0);
-  note_graze(ws, int(hit.what), component_of(ws, hit), abs(rate) / guard_scale(form, hit, step.y0()), shift);
+  note_graze(ws, int(hit.what), component, abs(rate) / scale, shift);
   return shift;
 }
 
