@@ -12,6 +12,7 @@ from scipy.optimize import linprog
 import clutchwork as cw
 from clutchwork.calibration.corners import around, is_optimal, left_behind
 from clutchwork.calibration.evaluate import Evaluator
+from clutchwork.calibration.rows import Row
 from clutchwork.calibration.scaled import Samples, Scaled
 from clutchwork.gradients.differentiable import differentiable
 from support.engagement import BOTH, ENGINE, GAIN, LINING, PRESSURE, SPEED, discs
@@ -27,7 +28,7 @@ class Peaks:
         self.planes[0] = -np.sum(self.planes[1:], axis=0) / count
         self.heights = rng.uniform(0.5, 1.0, count)
         self.width, self.worst, self.rows = np.ones(self.own), False, list[Any]()
-        self.linear = np.zeros((0, self.own)), np.zeros(0)
+        self.linear, self.evaluator = (np.zeros((0, self.own)), np.zeros(0)), SimpleNamespace(runs=0)
         # the least one as a linear program
         found = linprog(
             np.append(np.zeros(self.own), 1.0), np.column_stack([self.planes, -np.ones(count)]), -self.heights,
@@ -43,6 +44,15 @@ class Peaks:
 
     def point(self, y: Any) -> Any:
         return SimpleNamespace(is_fine=True, note="", x=y)
+
+    def tried(self, y: Any) -> Any:
+        return self.point(y)
+
+    def goal_at(self, found: Any, y: Any) -> float:
+        return self.goal(y) if found.is_fine else np.inf
+
+    def values_at(self, found: Any, y: Any, block: Any) -> Any:
+        return self.values(found.x * 0.0 + y, block)
 
     def lifted(self, y: Any, found: Any) -> Any:
         return y.copy() if found.is_fine else y
@@ -74,6 +84,43 @@ def test_the_way_out_leads_to_the_least_one(seed: int) -> None:
     y = left_behind(peaks, begin)
     assert peaks.goal(y) <= peaks.least + 1e-3
     assert is_optimal(around(peaks, y), peaks.goal(y))
+
+
+class Walled(Peaks):
+    """One plane, and an event that is lost beyond a wall: a limit has room before it and is broken at once behind."""
+
+    def __init__(self, seed: int) -> None:
+        super().__init__(seed)
+        rng = np.random.default_rng(seed)
+        self.normal = rng.uniform(0.2, 1.0, self.own)
+        self.normal /= np.linalg.norm(self.normal)
+        self.rows = [Row(0, 0, 1.0, 1.0, 1.0, 0)]
+        self.planes, self.heights = rng.uniform(0.1, 3.0) * self.normal[None], np.ones(1)
+        # on the side where it still happens
+        self.best = 0.5 * np.ones(self.own)
+        self.end = float(self.normal @ self.best) - 1e-6
+
+    def _inside(self, y: Any) -> float:
+        return float(self.normal @ y) - self.end
+
+    def values(self, y: Any, block: Any) -> Any:
+        inside = self._inside(y)
+        return np.full(len(block.rows), 0.02 + 0.1 * np.sqrt(inside) if inside > 0.0 else -0.03)
+
+    def slopes(self, y: Any, block: Any) -> Any:
+        inside = self._inside(y)
+        return np.tile(0.05 / np.sqrt(inside) * self.normal if inside > 0.0 else 0.0 * y, (len(block.rows), 1))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_at_the_wall_of_an_event_a_goal_is_optimal_that_falls_across_it_alone(seed: int) -> None:
+    walled: Any = Walled(seed)
+    assert is_optimal(around(walled, walled.best), walled.goal(walled.best))
+    if walled.own > 1:
+        along = np.random.default_rng(seed).standard_normal(walled.own)
+        along -= (along @ walled.normal) * walled.normal
+        walled.planes = walled.planes + 0.2 * along / np.linalg.norm(along)
+        assert not is_optimal(around(walled, walled.best), walled.goal(walled.best))
 
 
 @pytest.mark.parametrize("seed", range(8))

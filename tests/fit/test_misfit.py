@@ -92,7 +92,7 @@ def test_a_fit_that_is_worse_than_the_mean_is_an_error_that_names_the_unit(seed:
     # the speed is held where it is right in rad/s
     with pytest.raises(FitError, match=r"describes the samples worse than their mean does: r2 is -") as caught:
         fit_law(LAWS[0][0], **data, free=["kinetic"], bounds={"kinetic": (0.09, 0.11)})
-    assert "likely the slip is in 1/min and was taken as rad/s: with that r2 is 0." in str(caught.value)
+    assert "likely the slip is in 1/min and was taken as rad/s: with that r2 is 1;" in str(caught.value)
     assert "check units" in caught.value.remedy
     assert caught.value.result.r2 < 0.0
     assert not caught.value.result.determined

@@ -57,7 +57,7 @@ class Parts:
             return self._archive.read(self._there[name])
 
     def probable(self, name: str) -> bytes:
-        """A part, unpacked where it is no larger than what a writer of numbers and words packs so small."""
+        """A part, unpacked where its size is one that numbers and words can have, packed so small."""
         packed, size = self._there[name].compress_size, self.size(name)
         if size > LEAST_BOUND + MOST_PACKED * packed:
             raise ValueError(f"its part {name} unpacks {packed} bytes to {size}, more than a run can hold in them")

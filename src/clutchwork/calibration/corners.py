@@ -21,6 +21,7 @@ from clutchwork.calibration.outcome import FEASIBLE, OPTIMAL
 from clutchwork.calibration.rows import Block, measure
 
 if TYPE_CHECKING:
+    from clutchwork.calibration.evaluate import Point
     from clutchwork.calibration.scaled import Scaled
 
 Array = NDArray[np.float64]
@@ -30,6 +31,8 @@ RADIUS = 1e-3
 WHOLE = 1e2
 # boxes of a step out of a corner, in shares of the bounds, and steps in all
 BOXES, MOST_STEPS = (3e-2, 1e-2, 3e-3, 1e-3, 1e-4), 15
+# runs that may be spent on the way out
+MOST_RUNS = 1500
 # steps keep off a wall by this share of their box, or less
 OFF = (0.0, 0.1)
 # by what share of itself a step must make the goal less; steps of less than the second are slow, and few are made
@@ -71,7 +74,7 @@ def around(scaled: Scaled, y: Array) -> Around | None:
         if not point.is_fine:
             return
         other = scaled.lifted(one, point)
-        if scaled.goal(other) < least and _holds(scaled, other, block):
+        if scaled.goal(other) < least and _holds(scaled, point, other, block):
             best, least = other, scaled.goal(other)
         if not point.note:
             cuts.append(_cut(scaled, other, y, block, goal))
@@ -134,8 +137,10 @@ def left(scaled: Scaled, y: Array) -> float:
 
 def left_behind(scaled: Scaled, y: Array) -> Array:
     """Better unknowns than those of a corner, by steps that know its gradients to all sides."""
-    slow = 0
+    slow, last = 0, scaled.evaluator.runs + MOST_RUNS
     for _ in range(MOST_STEPS):
+        if scaled.evaluator.runs >= last:
+            break
         found = around(scaled, y)
         here = scaled.goal(y)
         if found is None or is_optimal(found, here) or slow >= MOST_SLOW:
@@ -160,10 +165,10 @@ def _neighbours(y: Array, own: int) -> list[Array]:
     return made
 
 
-def _holds(scaled: Scaled, y: Array, block: Block) -> bool:
+def _holds(scaled: Scaled, point: Point, y: Array, block: Block) -> bool:
     """Whether all limits hold."""
     matrix, ends = scaled.linear
-    values = scaled.values(y, block)
+    values = scaled.values_at(point, y, block)
     out = np.where(block.equal, np.abs(values), -values)
     return max(float(np.max(one, initial=0.0)) for one in (out, matrix @ y - ends)) <= FEASIBLE
 
@@ -209,12 +214,13 @@ def _stepped(scaled: Scaled, y: Array, found: Around) -> Array:
     best, least = found.y, found.goal
     for box, off in product(BOXES, OFF if len(found.walls) else OFF[:1]):
         other = _program(scaled, y, found, box, off)
-        point = scaled.point(other)
-        if point.is_fine:
-            other = scaled.lifted(other, point)
-            if _holds(scaled, other, block) and scaled.goal(other) < least:
-                best, least = other, scaled.goal(other)
-    return best
+        # without gradients, for much less work
+        point = scaled.tried(other)
+        other = scaled.lifted(other, point)
+        goal = scaled.goal_at(point, other)
+        if goal < least and _holds(scaled, point, other, block):
+            best, least = other, goal
+    return best if scaled.point(best).is_fine else found.y
 
 
 def _program(scaled: Scaled, y: Array, found: Around, box: float, off: float) -> Array:

@@ -15,7 +15,7 @@ from clutchwork.calibration.corners import left, left_behind
 from clutchwork.calibration.evaluate import Evaluator, Point
 from clutchwork.calibration.linear import Linear
 from clutchwork.calibration.optimal import certificate
-from clutchwork.calibration.outcome import OPTIMAL, Outcome
+from clutchwork.calibration.outcome import FEASIBLE, OPTIMAL, Outcome
 from clutchwork.calibration.rows import measure
 from clutchwork.calibration.scaled import Samples, Scaled
 from clutchwork.calibration.scatter import breaking, in_all, sobol, violations
@@ -201,8 +201,9 @@ def _left(scaled: Scaled, x: Array) -> float:
     if not point.is_fine:
         return np.inf
     y = scaled.lifted(np.resize((x - scaled.problem.low) / scaled.width, scaled.count), point)
-    smooth = certificate(scaled, y).residual / measure(scaled.goal(y))
-    return smooth if smooth <= OPTIMAL else min(smooth, left(scaled, y))
+    proof = certificate(scaled, y)
+    smooth = proof.residual / measure(scaled.goal(y))
+    return smooth if smooth <= OPTIMAL or proof.violation > FEASIBLE else min(smooth, left(scaled, y))
 
 
 def _clearly_better(one: Outcome, other: Outcome) -> bool:

@@ -55,7 +55,8 @@ class CrankSlider(Component):
     def start_positions(self) -> tuple[tuple[Node, float], ...]:
         """Where it holds the mass at the start [m]."""
         (angle,) = self.initial_states()
-        return ((self.mass, self.radius * cos(angle) + sqrt(self.rod**2 - (self.radius * sin(angle)) ** 2)),)
+        along = self.rod * sqrt(1.0 - (self.radius / self.rod * sin(angle)) ** 2)
+        return ((self.mass, self.radius * cos(angle) + along),)
 
     def start_ratio(self) -> float:
         """Speed of the mass over that of the shaft at the start [m]."""

@@ -21,7 +21,7 @@ class DeepKeyError(ValueError):
 
 
 def parsed(text: str) -> dict[str, Any]:
-    """The tables of a text; ValueError says what is wrong and where."""
+    """The tables of a file; ValueError says what is wrong and where."""
     import tomllib
 
     if found := _LONG_KEY.search(text):

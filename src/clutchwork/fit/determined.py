@@ -86,7 +86,7 @@ def _doubts(descent: Descent, residuals: Array) -> list[str]:
 
 
 def _labels(descent: Descent, signal: str) -> list[str]:
-    """What tells the records of a signal apart, in messages."""
+    """Names of the records of a signal, for messages."""
     several = len(descent.records) > 1
     return [
         f" ({record.label})" if several else ""

@@ -123,7 +123,8 @@ def _fit(
     found = widened(search, solution, estimate(search, solution.u, confidence))
     doubts = _doubts(search, found)
     worse = is_worse(r2, int(np.sum(search.model.equations)))
-    if worse or doubts:
+    # runs of the core for a few percent would take long
+    if worse or (doubts and search.model.exact):
         doubts += _turned(search)
         doubts += likely(samples, 1.0 - r2, lambda other: _share(*searched(other)))
     result = _result(search, solution, found, confidence, r2, doubts)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.instants import BEND, JUMP, add_shift
-from clutchwork.gradients.primal import Primal
+from clutchwork.gradients.primal import EVENT, KNOT, Primal
 from clutchwork.gradients.signals import add_signal
 from clutchwork.gradients.steps import Steps
 
@@ -23,8 +23,9 @@ def add_jerk(primal: Primal, signal: str, acceleration: Array, into: Functional)
     inside = 2.0 * np.einsum("nij,nj->ni", steps.squared_slope, _varying(acceleration))
     add_signal(primal, signal, steps.rows.ravel(), inside.ravel(), into)
     before, behind = (side[1:-1] for side in _limits(steps, acceleration))
-    smooth = ~steps.jumps[1:] | (_rise(steps, acceleration) <= JUMP)
-    # what moves an instant makes both limits differ at a fixed time: it need not be known
+    known = np.isin(primal.between[0][1:], (EVENT, KNOT))
+    smooth = ~known & (~steps.jumps[1:] | (_rise(steps, acceleration) <= JUMP))
+    # what moves an instant at which it bends makes both limits differ at a fixed time: it need not be known
     share = np.where(smooth, before + behind, 0.0)[:, None]
     add_signal(primal, signal, steps.rows[1:].ravel(), (share * steps.left[1:]).ravel(), into)
     add_signal(primal, signal, steps.rows[:-1].ravel(), (-share * steps.right[:-1]).ravel(), into)

@@ -398,23 +398,24 @@ template <class T>
 void break_set(Workspace<T>& ws, int k, const T* carried) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
   const int* member = ws.held.set_member + ws.held.set_first[k];
-  auto force = [&](auto&& price) {
+  auto force = [&](auto&& price, auto&& motion) {
     double most = 0;
     for (int i = 0; i < set.n; ++i) most = larger(most, abs(value(price(i))));
     for (int i = 0; i < set.n; ++i) {
-      const double own = value(price(i));
-      if (abs(own) > 1e-9 * most) ws.contact.forced[member[i]] = own > 0 ? backward : forward;
+      if (abs(value(price(i))) > 1e-9 * most) ws.contact.forced[member[i]] = value(motion(i)) > 0 ? backward : forward;
     }
   };
   if (ws.sys.loads > 0 && holds_loads(ws)) {
     outer_loads(ws, k, ws.loads.now, carried);
     LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
     solve_at_limit(limit);
-    return force([&](int i) { return limit.price_of(i); });
+    const T way = T(limit.way_of_motion());
+    return force([&](int i) { return limit.price_of(i); }, [&](int i) { return way * limit.motion_of(i); });
   }
   LimitLoad<T> limit = limit_of(ws, set);
   limit.solve();
-  force([&](int i) { return limit.price[i]; });
+  auto price = [&](int i) { return limit.price[i]; };
+  force(price, price);
 }
 
 /// Torques of the contacts that a decision has locked: what it gave them together, shared as everywhere else.
