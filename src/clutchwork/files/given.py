@@ -8,11 +8,11 @@ from typing import Any
 
 from clutchwork.base.errors import ModelError, Problem
 from clutchwork.base.shown import shown
+from clutchwork.base.toml_text import parsed
 from clutchwork.declare.given import settled
 from clutchwork.declare.node import Node, ThermalNode
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.files.references import References
-from clutchwork.files.toml_text import parsed
 from clutchwork.files.values import Values
 from clutchwork.model.changes import PLACES, Target, changed_model, targets_of
 from clutchwork.model.fields import BROKEN

@@ -39,12 +39,12 @@ from clutchwork.base.errors import ModelError, ModelFileError, Problem, nearest
 from clutchwork.base.paths import fitting
 from clutchwork.base.regular import read_regular, reason
 from clutchwork.base.shown import listed, shortened, shown
+from clutchwork.base.toml_text import parsed
 from clutchwork.base.writing import put
 from clutchwork.declare.node import Domain
 from clutchwork.declare.speech import words_of_files
 from clutchwork.files.lines import Lines
 from clutchwork.files.reader import FORMAT, Reader
-from clutchwork.files.toml_text import parsed
 from clutchwork.files.writer import Writer, toml
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model

@@ -16,7 +16,7 @@ from typing import Any
 from clutchwork.base.errors import ModelError, ModelFileError, Problem, near
 from clutchwork.base.regular import read_regular, reason
 from clutchwork.base.shown import listed, shortened, shown
-from clutchwork.files.toml_text import parsed
+from clutchwork.base.toml_text import parsed
 from clutchwork.gearbox.checks import problems
 from clutchwork.gearbox.definition import Definition
 from clutchwork.gearbox.reader import Reader

@@ -172,7 +172,8 @@ void pose_loads(const FullForm<T>& form, const Whole<S>& e) {
     S given = S(T(0));
     for (int j = 0; j < ws.n_branches; ++j) add_times(by_branch[j], e.torque[j], given);
     for (int p = 0; p < np; ++p)
-      add_times(ws.loads.by_prescribed[l * np + p], slope_of_reference(ws, e, form.n(), int(ws.sys.n_input_refs) + p), given);
+      add_times(ws.loads.by_prescribed[l * np + p], slope_of_reference(ws, e, form.n(), int(ws.sys.n_input_refs) + p),
+                given);
     const S slope = bound.slope[line] * S(sign);
     for (int j = 0; j < m; ++j) e.coupling[i * m + j] = slope * S(by_branch[ws.loads.branch[j]]) + S(T(i == j ? 1 : 0));
     e.followed[i] = -(slope * given + bound.offset[line] * S(sign));
