@@ -19,10 +19,16 @@
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/step_calls.hpp>
 #include <clutchwork/run/stiffness.hpp>
+#include <clutchwork/run/variation.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// One smooth phase: from an event to the next one.
 namespace clutchwork {
+
+/// A plain phase has no variation.
+struct NoVariation {
+  NoVariation(auto&, auto&) {}
+};
 
 /// Integration until an event, the end time, or a full buffer.
 template <class Form>
@@ -46,11 +52,12 @@ class Phase : public Pace<typename Form::Scalar> {
   Form form_;
   Step<Form> step_;
   const StepCalls<Form> calls_;
+  [[no_unique_address]] std::conditional_t<has_tangents<T>, Variation<Form>, NoVariation> varied_;
 
  public:
   template <class Integrator>
   Phase(Workspace<T>& ws, double t_end, Sink& sink, Tag<Integrator>)
-      : Base(ws, t_end, sink), form_(ws), step_(form_), calls_(step_calls<Integrator>(form_)) {
+      : Base(ws, t_end, sink), form_(ws), step_(form_), calls_(step_calls<Integrator>(form_)), varied_(form_, step_) {
     Base::rows_ = step_.k(0), Base::width_ = form_.n();
     step_.calls = &calls_;
   }
@@ -112,20 +119,42 @@ class Phase : public Pace<typename Form::Scalar> {
     look_here();
     // kept, so that a run takes the same steps whether or not it is asked for a row here
     if (event) ws_.last_step *= calls_.restart;
-    h_ = ws_.last_step > 0 ? ws_.last_step : first_step(form_, step_, t_end_ - ws_.time);
+    h_ = ws_.last_step > 0 ? ws_.last_step : first_step(taken_form(), taken_step(), t_end_ - ws_.time);
   }
 
  private:
+  // the form and the step in which the run goes on and guards are sought: of a run with derivatives its plain image
+  CLUTCHWORK_INLINE auto& taken_form() {
+    if constexpr (has_tangents<T>)
+      return varied_.form;
+    else
+      return form_;
+  }
+  CLUTCHWORK_INLINE auto& taken_step() {
+    if constexpr (has_tangents<T>)
+      return varied_.step;
+    else
+      return step_;
+  }
+
   CLUTCHWORK_INLINE void look_here() {
-    calls_.look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here);
+    if constexpr (has_tangents<T>)
+      varied_.reflect_here();
+    else
+      calls_.look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here);
   }
   CLUTCHWORK_INLINE void look_at_end() {
-    calls_.look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
+    if constexpr (has_tangents<T>)
+      varied_.look_at_end(end_of_step());
+    else
+      calls_.look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
   }
 
   /// The same where the phase goes on behind an event.
   CLUTCHWORK_INLINE void look_on() {
-    if constexpr (has_tangents<T>) leave_event(form_, step_);
+    if constexpr (has_tangents<T>) {
+      if (leave_event(form_, step_)) balance_massless(form_, step_);
+    }
     look_here();
   }
 
@@ -160,7 +189,8 @@ class Phase : public Pace<typename Form::Scalar> {
     const bool jumps = sink_.steps > 0 && ws_.time < t_end_ && any_jumps(ws_);
     if (pass_knot(form_, step_)) return hand_over(Cause::input);
     if constexpr (has_tangents<T>) {
-      if (leave_event(form_, step_)) look_here();
+      if (leave_event(form_, step_)) balance_massless(form_, step_);
+      look_here();
     }
     if (jumps) show_jump();
   }
@@ -178,17 +208,29 @@ class Phase : public Pace<typename Form::Scalar> {
   CLUTCHWORK_INLINE bool take_step() {
     plan_step();
     step_.t = ws_.time;
-    const double error = calls_.advance(form_, step_, reach_);
-    if (!judge(error, all_finite(form_.n(), step_.y1()))) return false;
-    if constexpr (Form::full) keep_ties(form_, step_, end_of_step(), step_.y1());
+    const double error = advance();
+    if (!judge(error, all_finite(form_.n(), taken_step().y1()))) return false;
+    if constexpr (Form::full) tie_end();
     look_at_end();
     return true;
+  }
+
+  CLUTCHWORK_INLINE double advance() {
+    if constexpr (has_tangents<T>)
+      return varied_.advance(reach_);
+    else
+      return calls_.advance(form_, step_, reach_);
+  }
+
+  void tie_end() {
+    keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
+    if constexpr (has_tangents<T>) keep_ties(form_, step_, end_of_step(), step_.y1());
   }
 
   /// Whether a step counts.
   CLUTCHWORK_INLINE bool judge(double error, bool finite) {
     error_ = finite ? error : infinity;
-    if (error_ <= 1 && ws_.options.work && rates_bend(ws_)) error_ = larger(error_, work_error(form_, step_));
+    if (error_ <= 1 && ws_.options.work && rates_bend(ws_)) error_ = larger(error_, work_error(taken_form(), taken_step()));
     if (!(error_ <= 1)) {
       reject();
       return false;
@@ -199,7 +241,7 @@ class Phase : public Pace<typename Form::Scalar> {
 
   /// What happens inside a step, and where the run goes on from.
   [[gnu::noinline]] void settle_step() {
-    const Hit hit = find_hit(form_, step_);
+    const Hit hit = find_hit(taken_form(), taken_step());
     if (must_land(hit)) {
       land(hit.s);
     } else if (misses_rest(hit)) {
@@ -217,7 +259,7 @@ class Phase : public Pace<typename Form::Scalar> {
   /// point. docs/theory/events.md, rule 7
   CLUTCHWORK_INLINE bool must_land(const Hit& hit) {
     if (hit.what == Hit::nothing || landings_ >= most_landings || hit.s <= 0 || hit.s >= 1) return false;
-    return !(error_until(form_, step_, hit.s) <= most_cut_error);
+    return !(error_until(taken_form(), taken_step(), hit.s) <= most_cut_error);
   }
 
   /// Repeat the step so that it ends there.
@@ -231,15 +273,18 @@ class Phase : public Pace<typename Form::Scalar> {
   /// The derivatives are those of the other end.
   void look_back() {
     ws_.in.time = -infinity;
-    look_here();
+    if constexpr (has_tangents<T>)
+      varied_.look_here();
+    else
+      look_here();
   }
 
   /// Whether a step towards rest has run over a change of the coefficient: the two solutions whose difference is its
   /// error may agree by chance. docs/theory/events.md, rule 7
   bool misses_rest(const Hit& hit) {
-    if (!calls_.stiff || hit.what != Hit::nothing || !nears_rest(ws_)) return false;
-    fit(form_, step_);
-    const double missed = error_until(form_, step_, inner);
+    if (!calls_.stiff || hit.what != Hit::nothing || !nears_rest(taken_form().ws)) return false;
+    fit(taken_form(), taken_step());
+    const double missed = error_until(taken_form(), taken_step(), inner);
     if (missed > most_inner_error) return error_ = missed, true;
     look_at_end();
     return false;
@@ -270,6 +315,7 @@ class Phase : public Pace<typename Form::Scalar> {
   CLUTCHWORK_INLINE void accept() {
     for (int i = 0; i < form_.n(); ++i) {
       step_.y0()[i] = step_.y1()[i];
+      if constexpr (has_tangents<T>) continue;
       step_.f0()[i] = step_.f1()[i];
       step_.dt0()[i] = step_.dt1()[i];
     }
@@ -277,7 +323,14 @@ class Phase : public Pace<typename Form::Scalar> {
     ws_.here = ws_.there;
     ws_.there = edge;
     move_on();
-    if (ws_.guard.n_undirected > 0) direct_open(form_, ws_.here);
+    if constexpr (has_tangents<T>) varied_.accept();
+    if (ws_.guard.n_undirected > 0) {
+      const int before = ws_.guard.n_undirected;
+      direct_open(form_, ws_.here);
+      if constexpr (has_tangents<T>) {
+        if (ws_.guard.n_undirected != before) look_here();
+      }
+    }
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) leave(Status::chatter);
     if (!calls_.stiff && !over_ && ws_.options.method == Method::auto_) watch_strain();
   }
@@ -337,7 +390,7 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (!law) pass_line(form_, *guard);
     look_on();
-    if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(form_, hit.index));
+    if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(taken_form(), hit.index));
     h_ = ws_.last_step;
     return true;
   }
