@@ -149,7 +149,7 @@ void reflect(Workspace<T>& from, Workspace<double>& to, bool first) {
   to.in.prescribed = to.in.u + sys.n_input_refs, to.in.prescribed_slope = to.in.du + sys.n_input_refs;
   reflect_part<Contacts>(from, to, from.contact, to.contact, true);
   reflect_part<Held>(from, to, from.held, to.held, true);
-  reflect_part<Loads>(from, to, from.loads, to.loads, sys.loads > 0);
+  reflect_part<Loads>(from, to, from.loads, to.loads, true);
   reflect_part<Geometry>(from, to, from.geometry, to.geometry, first);
   reflect_part<Reduced>(from, to, from.reduced, to.reduced, true);
   reflect_part<SparseRows>(from, to, from.rows, to.rows, true);

@@ -5,7 +5,6 @@
 #include <clutchwork/run/mirror.hpp>
 #include <clutchwork/run/step_calls.hpp>
 #include <clutchwork/workspace.hpp>
-
 /// Steps of a run with derivatives: a plain step, and the derivatives along it. docs/theory/gradients.md (2)
 namespace clutchwork {
 
