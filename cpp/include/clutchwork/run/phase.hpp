@@ -210,7 +210,7 @@ class Phase : public Pace<typename Form::Scalar> {
     step_.t = ws_.time;
     const double error = advance();
     if (!judge(error, all_finite(form_.n(), taken_step().y1()))) return false;
-    if constexpr (Form::full) tie_end();
+    if constexpr (Form::full) keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
     look_at_end();
     return true;
   }
@@ -220,11 +220,6 @@ class Phase : public Pace<typename Form::Scalar> {
       return varied_.advance(reach_);
     else
       return calls_.advance(form_, step_, reach_);
-  }
-
-  void tie_end() {
-    keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
-    if constexpr (has_tangents<T>) keep_ties(form_, step_, end_of_step(), step_.y1());
   }
 
   /// Whether a step counts.
@@ -246,7 +241,7 @@ class Phase : public Pace<typename Form::Scalar> {
       land(hit.s);
     } else if (misses_rest(hit)) {
       retake();
-    } else if (write(hit.s)) {
+    } else if (reach(hit.s)) {
       hit.what == Hit::nothing ? accept() : meet(hit);
     }
   }
@@ -294,6 +289,39 @@ class Phase : public Pace<typename Form::Scalar> {
     --ws_.statistics.steps;
     look_back();
     reject();
+  }
+
+  /// To the share s of the step, with rows and integrals, and with derivatives where there are some. False: the run
+  /// cannot go on.
+  CLUTCHWORK_INLINE bool reach(double s) {
+    if constexpr (has_tangents<T>)
+      return follow(s);
+    else
+      return write(s);
+  }
+
+  /// Derivatives along the step up to the share s, in as many parts as they need.
+  bool follow(double s) {
+    varied_.rest();
+    for (double at = 0; at < s;) {
+      const double to = varied_.follow(at, s);
+      if (to < 0) return leave(Status::step_collapse), false;
+      const double end = to == s ? time_at(s) : step_.t + step_.h;
+      if constexpr (Form::full) keep_ties(form_, step_, end, step_.y1());
+      if (!write_part(end)) return false;
+      for (int i = 0; to < s && i < form_.n(); ++i) step_.y0()[i] = step_.y1()[i];
+      at = to;
+    }
+    if (s >= 1 && varied_.was_moved()) look_at_end();
+    return true;
+  }
+  bool write_part(double end) {
+    const bool rows = end > step_.t && sink_.at < sink_.count && sink_.times[sink_.at] <= end;
+    if (ws_.options.work) fit_power(form_, step_, 1.0);
+    const Status shown = rows ? emit(form_, step_, 1.0, end, sink_) : Status::running;
+    if (shown != Status::running) return leave(shown), false;
+    accumulate(form_, step_, 1.0);
+    return true;
   }
 
   /// Rows and integrals of the step up to the share s. False: a row is not finite, or the caller wants to stop.
@@ -353,14 +381,16 @@ class Phase : public Pace<typename Form::Scalar> {
     ws_.last_step = hit.s * reach_ > 1e-9 * larger(1e-3, planned) ? planned : larger(4 * h_, planned);
     // the run keeps its last step alone, and may be left here to make room for rows
     before_ = 0, landings_ = 0, rejected_ = false;
-    note_before(form_, step_, hit.s);
-    interpolate(form_, step_, hit.s, step_.u());
+    // a run with derivatives has a step that ends there
+    const double at = has_tangents<T> ? 1.0 : hit.s;
+    note_before(form_, step_, at);
+    interpolate(form_, step_, at, step_.u());
     ws_.time = smaller(ws_.time + hit.s * reach_, stop_);
     forget_forced(ws_);
     if (hit.what == Hit::set) force_set(hit);
-    if constexpr (has_tangents<T>) interpolate_slope(form_, step_, hit.s, step_.k(2));
+    if constexpr (has_tangents<T>) slope_at_end();
     for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = step_.u()[i];
-    if constexpr (has_tangents<T>) move_to_hit(form_, step_, hit);
+    if constexpr (has_tangents<T>) ws_.moved.span = planned, move_to_hit(form_, step_, hit);
     if (hit.what == Hit::gap) land_on_end(form_, step_, hit);
     ws_.in.time = -infinity;
     if constexpr (Form::full) keep_ties(form_, step_, ws_.time, step_.y0());
@@ -371,9 +401,20 @@ class Phase : public Pace<typename Form::Scalar> {
     if (!passes(hit) && !over_) settle_later(hit);
   }
 
+  /// Slopes of the speeds without inertia, which no equation of motion gives.
+  void slope_at_end() {
+    if (step_.h > 0) return interpolate_slope(form_, step_, 1.0, step_.k(2));
+    for (int i = 0; i < form_.n(); ++i) step_.k(2)[i] = T(0);
+  }
+
   /// A set at its limit load: its contacts slip the way in which it gives way, seen just behind the limit.
   void force_set(const Hit& hit) {
-    torques_at(form_, step_, larger(hit.s, 1e-6));
+    auto& ws = taken_form().ws;
+    torques_at(taken_form(), taken_step(), larger(hit.s, 1e-6));
+    if constexpr (has_tangents<T>) {
+      for (int a = 0; a < ws_.held.n; ++a) ws_.seen.carried[a] = T(ws.seen.carried[a]);
+      for (int l = 0; l < ws_.sys.loads; ++l) ws_.loads.now[l] = T(ws.loads.now[l]);
+    }
     break_set(ws_, hit.index, ws_.seen.carried);
   }
 

@@ -65,6 +65,8 @@ class Variation {
   Step<Form>& step_;
   Workspace<T>& ws_;
   const StepCalls<Plain> calls_;
+  double from_ = 0, share_ = 1;  ///< present part of the plain step
+  bool pristine_ = false;        ///< the image has the factor of its step
 
  public:
   Plain form;
@@ -97,15 +99,46 @@ class Variation {
     give_edge(form.ws.there, ws_.there);
   }
 
-  /// One step with its derivatives; the larger of both errors.
+  /// The plain step; its error in units of the tolerance.
   double advance(double h) {
     step.t = ws_.time;
     const double error = calls_.advance(form, step, h);
-    step_.t = step.t, step_.h = h, step_.dense = false;
-    if (!(error <= 1) || !all_finite(form.n(), step.y1())) return error;
-    fit(form, step);
-    return larger(error, vary(h));
+    if (error <= 1) share_factor(form.ws, ws_, Form::full);
+    pristine_ = true;
+    return error;
   }
+
+  /// A step of the derivatives from where they are, at the share `from` of the plain step, to `until` or less far; how
+  /// far it got, -1: its length has become too short. docs/theory/gradients.md (3)
+  double follow(double from, double until) {
+    fit(form, step);
+    for (;;) {
+      const double left = (until - from) * step.h, pace = ws_.moved.pace;
+      const bool last = left <= 1.001 * pace;
+      // the rest in equal parts
+      const double h = last ? left : left / double(std::int64_t(left / pace) + 1);
+      const double to = last ? until : from + h / step.h;
+      if (!(h > 1e-14 * larger(1e-2, abs(step.t)))) return last ? leap(from, until) : -1;
+      if (!ready(from, h)) return -1;
+      from_ = from, share_ = h / step.h;
+      const double error = vary(from, h);
+      const double growth = 0.9 * pow(larger(error, 1e-10), -0.2);
+      if (error <= 1) {
+        // one that was cut says nothing of longer ones
+        ws_.moved.pace = last ? larger(pace, h * smaller(6.0, growth)) : h * smaller(6.0, growth);
+        set_values(from, to);
+        return to;
+      }
+      ws_.moved.pace = h * (error < 1e300 ? larger(0.2, smaller(0.9, growth)) : 0.1);
+    }
+  }
+  /// Where no time passes.
+  void rest() {
+    rest_step(form_, step_);
+    step_.dense = true;
+  }
+  /// Whether the image has been linearized elsewhere since.
+  bool was_moved() const { return !pristine_; }
 
   /// Go on from the end of the step.
   void accept() {
@@ -125,21 +158,61 @@ class Variation {
     return *ws.moved.plain;
   }
 
+  /// Too short for a step: the derivatives stay.
+  double leap(double from, double until) {
+    for (int i = 0; i < form.n(); ++i) step_.y1()[i] = step_.y0()[i];
+    for (int q = 0; q < 3; ++q) {
+      for (int i = 0; i < form.n(); ++i) step_.p(q)[i] = T(0);
+    }
+    step_.t = step.t + from * step.h, step_.h = (until - from) * step.h;
+    set_values(from, until);
+    return until;
+  }
+
+  /// The factor for a step of the derivatives: that of the plain step where they go all the way with it.
+  bool ready(double from, double h) {
+    if (pristine_ && from == 0 && h == step.h) return true;
+    pristine_ = false;
+    double *y = step.point(), *d = step.u(), *dt = step.slope();
+    interpolate(form, step, from, y);
+    linearize(form, step.t + from * step.h, y, d, dt, form.ws.there);
+    if (!Rodas5P::factor(form, 1 / (Rodas5P::gamma * h))) return false;
+    share_factor(form.ws, ws_, Form::full);
+    return true;
+  }
+
+  /// The values of a part of the plain step, beside the derivatives.
+  void set_values(double from, double to) {
+    const double d = to - from;
+    double* end = step.point();
+    if (to < 1) interpolate(form, step, to, end);
+    for (int i = 0; i < form.n(); ++i) {
+      const double p0 = step.p(0)[i], p1 = step.p(1)[i], p2 = step.p(2)[i], a = step.y0()[i];
+      const double c1 = step.y1()[i] - a + p0, c2 = p1 - p0, c3 = p2 - p1, c4 = -p2;
+      // the same quartic over the part
+      const double m1 = d * (c1 + from * (2 * c2 + from * (3 * c3 + from * 4 * c4)));
+      const double m2 = d * d * (c2 + from * (3 * c3 + from * 6 * c4)), m3 = d * d * d * (c3 + from * 4 * c4);
+      T *first = step_.y0() + i, *last = step_.y1() + i;
+      last->v = to < 1 ? end[i] : step.y1()[i];
+      const double q0 = m1 - (last->v - first->v), q1 = m2 + q0;
+      step_.p(0)[i].v = q0, step_.p(1)[i].v = q1, step_.p(2)[i].v = m3 + q1;
+    }
+    step_.dense = true;
+  }
+
   void give_edge(const Edge<double>& from, Edge<T>& to) {
     for (int k = 0; k < ws_.n_rates; ++k) to.rate[k] = T(from.rate[k]), to.slope[k] = T(from.slope[k]);
     for (int a = 0; a < ws_.held.n; ++a) to.multiplier[a] = T(from.multiplier[a]);
   }
 
-  /// Derivatives of the slopes at the share s of the step, whose state has the derivatives of `y`, into `d`.
+  /// Derivatives of the slopes at the share s of the present part of the step, whose state has the derivatives of `y`, into `d`.
   void slopes_at(double s, const T* y, T* d) {
     double *point = step.point(), *velocity = step.slope();
     T* whole = step_.point();
-    if (s == 0)
-      for (int i = 0; i < form.n(); ++i) point[i] = step.y0()[i];
-    else
-      interpolate(form, step, s, point);
+    const double at = from_ + s * share_;
+    interpolate(form, step, at, point);
     for (int i = 0; i < form.n(); ++i) whole[i] = y[i], whole[i].v = point[i];
-    evaluate(form_, step.t + s * step.h, whole, d);
+    evaluate(form_, step.t + at * step.h, whole, d);
     // the mass may have derivatives too
     for (int i = 0; i < form.nz(); ++i) velocity[i] = value(d[i]);
     form.solve_mass(velocity);
@@ -152,12 +225,12 @@ class Variation {
     for (int i = 0; i < form.n(); ++i) d[i].v = 0;
   }
 
-  /// The derivatives at the end of the step; their error in units of the tolerance.
-  double vary(double h) {
+  /// The derivatives at the end of a part of the step of length h; their error in units of the tolerance.
+  double vary(double from, double h) {
     constexpr auto& R = Rodas5P::a;
     const int n = form.n(), nz = form.nz();
     const double ih = 1 / h;
-    share_factor(form.ws, ws_, Form::full);
+    step_.t = step.t + from * step.h, step_.h = h;
     T *start = step_.y1(), *u = step_.u(), *drift = step_.dt0(), *mix = step_.p(0);
     for (int i = 0; i < n; ++i) start[i] = step_.y0()[i], start[i].v = 0;
     // change of the slopes with time along the motion, to second order
@@ -194,10 +267,7 @@ class Variation {
     }
     for (int i = 0; i < n; ++i) start[i] = u[i] + step_.k(7)[i];
     const double error = error_of(step_.k(7), start);
-    for (int i = 0; i < n; ++i) {
-      start[i].v = step.y1()[i];
-      for (int s = 0; s < 8; ++s) step_.k(s)[i].v = step.k(s)[i];
-    }
+    Rodas5P::prepare_dense(form_, step_);
     return error;
   }
 

@@ -35,6 +35,8 @@ struct Moved {
   T* row = nullptr;     ///< one row of output
   int n = 0;
   Workspace<double>* plain = nullptr;  ///< its image without derivatives
+  double span = 0;                     ///< [s] steps that are taken where an event is met
+  double pace = infinity;              ///< [s] that a step of the derivatives may take
   double size[T::seen] = {};           ///< largest that each direction has had, over the size of the motion
 
   template <class P, class A>
