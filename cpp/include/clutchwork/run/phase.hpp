@@ -57,7 +57,7 @@ class Phase : public Pace<typename Form::Scalar> {
  public:
   template <class Integrator>
   Phase(Workspace<T>& ws, double t_end, Sink& sink, Tag<Integrator>)
-      : Base(ws, t_end, sink), form_(ws), step_(form_), calls_(step_calls<Integrator>(form_)), varied_(form_, step_) {
+      : Base(ws, t_end, sink), form_(ws), step_(form_), calls_(phase_calls<Integrator>(form_)), varied_(form_, step_) {
     Base::rows_ = step_.k(0), Base::width_ = form_.n();
     step_.calls = &calls_;
   }
@@ -187,10 +187,11 @@ class Phase : public Pace<typename Form::Scalar> {
     note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
     const bool jumps = sink_.steps > 0 && ws_.time < t_end_ && any_jumps(ws_);
-    if (pass_knot(form_, step_)) return hand_over(Cause::input);
+    if (knot_decides(ws_)) return hand_over(Cause::input);
+    look_here();
+    if (knot_lets_go(taken_form().ws)) return hand_over(Cause::input);
     if constexpr (has_tangents<T>) {
-      if (leave_event(form_, step_)) balance_massless(form_, step_);
-      look_here();
+      if (leave_event(form_, step_)) balance_massless(form_, step_), look_here();
     }
     if (jumps) show_jump();
   }

@@ -5,7 +5,7 @@
 #include <clutchwork/run/mirror.hpp>
 #include <clutchwork/run/step_calls.hpp>
 #include <clutchwork/workspace.hpp>
-/// Steps of a run with derivatives: a plain step, and the derivatives along it. docs/theory/gradients.md (2)
+/// Steps of a run with derivatives: a plain step, and the derivatives along it. docs/theory/gradients.md (16)
 namespace clutchwork {
 
 template <class Form>
@@ -109,7 +109,7 @@ class Variation {
   }
 
   /// A step of the derivatives from where they are, at the share `from` of the plain step, to `until` or less far; how
-  /// far it got, -1: its length has become too short. docs/theory/gradients.md (3)
+  /// far it got, -1: its length has become too short.
   double follow(double from, double until) {
     fit(form, step);
     for (;;) {
@@ -293,7 +293,7 @@ class Variation {
   double step1(int i) const { return const_cast<Step<Plain>&>(step).y1()[i]; }
 
   /// Error of the derivatives in units of the tolerance, each direction of the largest size that it has had.
-  /// docs/theory/gradients.md (3)
+  /// docs/theory/gradients.md (17)
   double error_of(const T* missed, const T* end) {
     constexpr int seen = T::seen;
     double sum[seen] = {}, worst = 0;
