@@ -186,7 +186,8 @@ def kind(item: Field[Any]) -> str:
     """The type of a field; the words of a choice, where its annotation does not say them."""
     spec = item.metadata.get("spec")
     choices = ", ".join(map(repr, spec.choices)) if spec else ""
-    return f"Literal[{choices}]" if choices else str(item.type)
+    optional = " | None" if item.default is None else ""
+    return f"Literal[{choices}]{optional}" if choices else str(item.type)
 
 
 def quoted(text: str, indent: str = "    ") -> str:

@@ -152,6 +152,7 @@ int cw_release_input(cw_run* run, std::int64_t input) {
   if (!signal.given && signal.set == 0) return 1;
   keep_left(run->ws);
   if (signal.set != 0) signal.segment = 0, signal.set = 0;
+  begin_sums(run->ws);
   follow(run->ws, int(input));
   return 1;
 }

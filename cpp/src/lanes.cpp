@@ -65,6 +65,7 @@ bool same_structure(const System& a, const System& b) {
               same_words(a.contact_law_input, b.contact_law_input, a.contacts) &&
               same_words(a.contact_state, b.contact_state, a.contacts) &&
               same_words(a.prescribed_input, b.prescribed_input, a.prescribed) &&
+              same_words(a.prescribed_sums, b.prescribed_sums, a.prescribed) &&
               same_words(a.input_refs, b.input_refs, a.n_input_refs);
   // places of curves and choices of words
   auto check = [&](std::int64_t at) { same = same && a.params[at] == b.params[at]; };

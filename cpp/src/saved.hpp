@@ -332,7 +332,7 @@ inline void resume(Workspace<double>& ws, const unsigned char* bytes) {
   place_cursors(ws);
   // so was the choice of the method
   ws.options.method = ws.reduced.method;
-  const bool entered = enter_mode(ws);
+  const bool entered = enter_mode(ws, true);
   read();
   rest_fresh(ws);
   ws.fresh_phase = ws.fresh_phase || !entered;

@@ -125,7 +125,8 @@ def calibrated(shift: Shift) -> cw.Calibration:
 def robust(shift: Shift, system: cw.System, samples: int = 64) -> cw.Calibration:
     """The pressures that keep all limits in all samples of production and have the least jerk of the worst of them."""
     limits = [*shift.limits, cw.limit(shift.jerk, upper=shift.worst)]
-    production = {"scatter": shift.linings, "samples": samples, "robust": "worst", "threads": 2}
+    # it begins where the drawing led to
+    production = {"scatter": shift.linings, "samples": samples, "robust": "worst", "threads": 2, "starts": 1}
     given = {"free": shift.free, "minimise": shift.jerk, "subject_to": limits}
     return cw.calibrate(system, shift.t_end, **given, **production, **RUNS)
 

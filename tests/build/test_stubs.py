@@ -27,7 +27,7 @@ d = cw.Driveline("two")
 shaft: cw.Node = d.shaft("engine", inertia=0.2, speed=100.0)
 node: cw.ThermalNode = d.thermal("plates", capacity=1e3)
 law: cw.Law = cw.Stribeck(static=0.12, kinetic=0.1, speed=1.0)
-clutch = cw.DiskClutch("c", base=d.housing, follower=shaft, radius=0.1, pressure=cw.Ramp(height=1e6, duration=0.1))
+clutch = cw.DiskClutch("c", base=d.housing, follower=shaft, radius=0.1, normal_force=cw.Ramp(height=1e6, duration=0.1))
 """
 # values by the sort of the field
 VALUES = {

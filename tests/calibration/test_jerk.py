@@ -42,3 +42,29 @@ def test_a_step_as_the_run_begins_does_not_count():
         iterations=1,
     )
     assert abs(found.limits[0].before[1]) < 1e-6 * JUMP
+
+
+def test_one_definition_in_sweeps_calibrations_and_shifts():
+    """The lock-up makes the acceleration jump: everywhere that counts as its height over the window."""
+    found = cw.sweep(discs(), 5.0, vary=[{}], outputs={"j": cw.jerk("load", WINDOW, (0.5, 4.0))})["j"].ravel()[0]
+    limited = cw.calibrate(
+        discs(),
+        5.0,
+        free={"c1.gain": (3e-4, 9e-4)},
+        minimise="c1.heat",
+        subject_to=cw.limit(cw.jerk("load", WINDOW, (0.5, 4.0)), upper=1e5),
+        iterations=1,
+    )
+    assert float(found) == pytest.approx(limited.limits[0].before[1], rel=1e-6)
+    step = 1e-3
+    speed = discs().simulate(5.0, times=np.arange(0.0, 5.0, step))["load.speed"]
+    felt = cw.shifts.jerk(speed, step, WINDOW)[round(0.6 / step) : round(3.9 / step)]
+    assert np.max(np.abs(felt)) == pytest.approx(JUMP, rel=step / WINDOW)
+    assert JUMP * (1.0 - 0.5 / PER_WINDOW) <= float(found) <= JUMP * (1.0 + 1e-6)
+    # in a calibration and in a sweep at instants a sixteenth of a window apart, in shifts a millisecond
+    assert float(found) <= np.max(np.abs(felt)) * (1.0 + step / WINDOW)
+
+
+def test_a_run_that_is_too_short_has_none_in_a_sweep():
+    found = cw.sweep(discs(), 0.1, vary=[{}], outputs={"j": cw.jerk("load", WINDOW)})["j"].ravel()[0]
+    assert np.isnan(found)

@@ -42,6 +42,12 @@ def refused(**given):
         ({"free": {"k": cw.together("c1.gain", factor=(1.1, 2.0))}}, "the model has factor 1, outside of 1.1 to 2;"),
         ({"free": {"k": cw.together(["c1.gain", "c1.gain"], factor=(0.5, 2.0))}}, "names c1.gain twice; give it once"),
         ({"scatter": {"c1.gain": (4e-4, 6e-4)}}, "c1.gain is free, and scatter sets it from 0.0004 to 0.0006 m3"),
+        (
+            {"scatter": {"load.inertia": (0.9, 1.1)}},
+            "scatter of 'load.inertia': the model has 0.8 kg m2, outside of 0.9 to 1.1 kg m2; "
+            "give bounds around it, or cw.together('load.inertia', factor=(0.9, 1.1))",
+        ),
+        ({"scatter": {"load.inertia": (1.2, 1.4)}}, "outside of 1.2 to 1.4 kg m2; give bounds around it"),
         ({"minimise": cw.jerk("load", 3.0)}, "two windows of 3 s take 6 s, there are 5 s of the run"),
         ({"minimise": cw.jerk("load", 0.1, (7.0, 9.0))}, "there are 0 s of the run"),
         ({"minimise": {cw.jerk("load"): 1.0, cw.slope("c1.pressure"): 1.0}}, "slope(c1.pressure) has 2; give a limit"),

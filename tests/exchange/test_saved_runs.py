@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+import tracemalloc
 import warnings
 import zipfile
 from contextlib import suppress
@@ -15,8 +16,10 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.declare.schema import Role
+from clutchwork.results.exchange.saved import RUN_PARTS
 from clutchwork.run.saved import RepeatError, RunFormatError
-from support import random_drivelines, samples
+from support import random_drivelines, random_mixes, samples
+from support.amount import amount
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -221,6 +224,44 @@ def test_flipped_bytes_are_found(saved: Path) -> None:
         # bytes that no reader looks at, such as a date, change nothing
         with suppress(RunFormatError):
             _same(cw.load_run(saved), run)
+
+
+@pytest.mark.parametrize("name", RUN_PARTS)
+def test_no_part_unpacks_to_more_than_the_run_holds(saved: Path, name: str) -> None:
+    # 0.1 MB that would be 100 MB
+    with zipfile.ZipFile(saved) as archive:
+        content = {item: archive.read(item) for item in archive.namelist()}
+    with zipfile.ZipFile(saved, "w", zipfile.ZIP_DEFLATED) as archive:
+        for item, data in content.items():
+            with archive.open(item, "w", force_zip64=True) as stream:
+                stream.write(data if item != name else b"")
+                for _ in range(100 if item == name else 0):
+                    stream.write(bytes(1_000_000))
+    tracemalloc.start()
+    with pytest.raises(RunFormatError, match=r"more than a run can hold|do not fit its model"):
+        cw.load_run(saved)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 40e6
+
+
+@pytest.mark.random
+def test_random_mixes_of_all_elements_read_back(tmp_path: Path) -> None:
+    count = 0
+    for seed in range(amount(150)):
+        d = random_mixes.driveline(seed)
+        if d is None:
+            continue
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", cw.ModelWarning)
+            run = d.simulate(0.01, max_steps=200, max_events=50, **({"output": "steps"} if seed % 2 else {}))
+            if len(run):
+                _same(run, _again(run, tmp_path))
+        system = d.assemble()
+        system.save(tmp_path / "system")
+        assert cw.System.load(tmp_path / "system").to_bytes() == system.to_bytes()
+        count += 1
+    assert count > 0.9 * amount(150)
 
 
 @pytest.mark.parametrize("path", ["none", ".", "/dev/zero", "a\0b"])

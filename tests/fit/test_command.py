@@ -43,12 +43,23 @@ def test_the_example_is_fitted(capsys: pytest.CaptureFixture[str], tmp_path: Pat
 
 def test_json_and_folder(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert (
-        main([*LINE, "--json", "--out", str(tmp_path / "there"), "--free", "kinetic, speed", "--confidence", "0.99"])
+        main(
+            [
+                *LINE,
+                "--json",
+                "--out",
+                str(tmp_path / "there"),
+                "--free",
+                "static, kinetic, speed",
+                "--confidence",
+                "0.99",
+            ]
+        )
         == 0
     )
     told = json.loads(capsys.readouterr().out)
-    assert [p["name"] for p in told["parameters"]] == ["kinetic", "speed"]
-    assert told["friction"]["static"] == 0.2
+    assert [p["name"] for p in told["parameters"]] == ["static", "kinetic", "speed"]
+    assert told["friction"]["viscous"] == 1e-4
     assert told["confidence"] == 0.99
     assert len(told["files"]) == 3
 
@@ -106,6 +117,7 @@ def test_a_temperature(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> No
         ({"--bounds": "speed=1"}, 2, "is not low:high"),
         ({"--bounds": "speed=2:a"}, 2, "'a' is not a number"),
         ({"--rest": "1e9"}, 2, "lower `rest`"),
+        ({"--loss": "soft"}, 2, "did you mean 'soft_l1'"),
     ],
 )
 def test_mistakes(changes: dict[str, str], code: int, words: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -122,6 +134,15 @@ def test_a_file_that_is_not_there(capsys: pytest.CaptureFixture[str]) -> None:
 def test_bounds_reach_the_fit(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*LINE, "--bounds", "speed=:2,kinetic=0.05:"]) == 1
     assert "speed is not determined: it lies on its bound" in capsys.readouterr().out
+
+
+def test_a_loss(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*LINE, "--loss", "soft_l1", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert "(loss 'soft_l1')" in told["notes"]
+    # a spoilt Stribeck speed leaves a pattern
+    assert main([*LINE, "--free", "static,kinetic"]) == 1
+    assert "the residuals are not noise" in capsys.readouterr().out
 
 
 def test_files_and_python_say_the_same(capsys: pytest.CaptureFixture[str]) -> None:

@@ -137,9 +137,13 @@ def test_columns_without_units_are_noted(tmp_path: Path) -> None:
     write_csv(tmp_path / "run.csv", {**known, "time": columns()["time"]})
     driven = {"c1.pressure": "p1 [bar]"}
     record = Record.read(tmp_path / "run.csv", MEASURED, driven, window=WINDOW, time="time [s]")
-    found = fit_records(two.discs(), record, ["load.inertia"])
+    with pytest.raises(FitError, match="worse than their mean") as caught:
+        fit_records(two.discs(), record, ["load.inertia"])
+    found = caught.value.result
     told = "run: n_eng, n_load of the file have no unit and were taken as rad/s; give one with the name, such as "
     assert told + "'n_eng [1/min]'" in found.notes
+    assert told in str(caught.value)
+    assert "likely engine.speed is in 1/min and was taken as rad/s: give units=" in str(caught.value)
     assert "p1" not in found.notes
 
 

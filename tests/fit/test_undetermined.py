@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.fit import FitResult, UndeterminedError, fit_law
+from clutchwork.fit import FitError, FitResult, UndeterminedError, fit_law
 from clutchwork.fit.sliding import coefficients
 from support import rig_data
 
@@ -150,15 +150,18 @@ def test_a_wrong_law_is_seen_in_its_residuals() -> None:
     assert "the law misses something" in result.notes
 
 
-def test_noise_of_the_slip_above_rest_is_told() -> None:
+def test_noise_of_the_slip_above_rest_is_recognised() -> None:
     law = rig_data.true_law(cw.Stribeck)
     data = rig_data.measured(law)
     noisy = data.slip + 0.03 * np.random.default_rng(5).standard_normal(len(data.slip))
     result = fit_law(law, data.time, noisy, data.torque, data.load, free=["kinetic"])
-    assert "give `rest` above the noise" in result.notes
-    better = fit_law(law, data.time, noisy, data.torque, data.load, free=["kinetic"], rest=0.15)
-    assert "rest" not in better.notes
-    assert better["kinetic"].value == pytest.approx(law.kinetic, rel=0.02)
+    assert "the noise of the slip turned the sign of" in result.notes
+    assert 0.06 < result.rest < 0.2
+    assert result["kinetic"].value == pytest.approx(law.kinetic, rel=0.02)
+    with pytest.raises(FitError, match=r"leave out `rest`, or give 0\.0"):
+        fit_law(law, data.time, noisy, data.torque, data.load, free=["kinetic"], rest=1e-3)
+    given = fit_law(law, data.time, noisy, data.torque, data.load, free=["kinetic"], rest=0.05)
+    assert "give `rest` above the noise" in given.notes
 
 
 def test_an_open_result_can_be_made_an_error() -> None:

@@ -214,7 +214,7 @@ def test_a_disc_clutch_gives_its_plates_the_limit() -> None:
     shaft = d.shaft("s", inertia=1.0)
     given = {"base": d.housing, "follower": shaft, "radius": 0.1, "temperature_limit": "250 degC"}
     assert cw.DiskClutch("c", **given, thermal_mass=1e3).plates.limit == 523.15
-    d.add(cw.DiskClutch("c", **given, pressure=0.0))
+    d.add(cw.DiskClutch("c", **given, area=1e-3, pressure=0.0))
     assert "give thermal_mass, or the limit of the heat node" in str(d.check()[0])
 
 

@@ -64,7 +64,15 @@ def driveline() -> cw.Driveline:
     command = cw.Table([(0.0, 0.0), (0.1, 2.5e5), (1.0, 4e5)])
     piston = d.add(cw.PressureActuator("piston", command=command, lag=0.03, fill_time=0.02))
     clutch = cw.DiskClutch(
-        "c1", base=engine, follower=plate, friction=lining, radius=0.13, pressure=piston, drag=0.02, thermal_mass=90.0
+        "c1",
+        base=engine,
+        follower=plate,
+        friction=lining,
+        radius=0.13,
+        area=1e-3,
+        pressure=piston,
+        drag=0.02,
+        thermal_mass=90.0,
     )
     d.add(clutch)
     d.add(cw.Convection("cooling", hot=clutch.plates, cold=d.ambient("air"), conductance=5.0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import pytest
 import clutchwork as cw
 from clutchwork.base.paths import WriteError
 from clutchwork.command.main import main
+from support.full_disk import full_disk
 
 
 def braked() -> cw.Driveline:
@@ -30,7 +32,7 @@ def writers() -> dict[str, Write]:
     d = braked()
     run = d.simulate(0.5)
     sweep = cw.sweep(d, 0.1, vary={"b.normal_force": [10.0, 50.0]}, outputs=["disc.speed"])
-    schematic = d.draw()
+    schematic, box = d.draw(), cw.Gearbox.load("zf-6hp26")
     return {
         "run.csv": run.to_csv,
         "run.parquet": run.to_parquet,
@@ -46,6 +48,9 @@ def writers() -> dict[str, Write]:
         "model.toml": d.save,
         "sweep.csv": sweep.to_csv,
         "sweep.parquet": sweep.to_parquet,
+        "losses.svg": lambda path: run.losses().sankey(path),
+        "box.toml": box.save,
+        "box.svg": lambda path: cw.diagram(box, "stick").save(path),
         "modes.png": cw.linearise(d).plot,
         "run.cwrun": run.save,
         "run.cwstate": run.state().save,
@@ -107,3 +112,48 @@ def test_the_command_line_says_so_before_the_run(tmp_path: Path, capsys: pytest.
         assert main(["run", str(tmp_path / "model.toml"), option, str(tmp_path / "x.txt")]) == 2
         assert "ends in '.txt'" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["model.toml"]
+
+
+def test_a_failed_write_leaves_the_file_that_was_there(writers: dict[str, Write], tmp_path: Path) -> None:
+    for name, write in writers.items():
+        path = tmp_path / name
+        # the folder of C has many files; the first ones are of the model
+        path = path / "model.h" if name == "c" else path
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(b"what was there")
+        with full_disk(10), pytest.raises(WriteError, match=r"cannot be written: .*; make room on the disk, or give"):
+            write(tmp_path / name)
+        assert path.read_bytes() == b"what was there", name
+        assert [one.name for one in path.parent.iterdir() if one.name.startswith(".")] == [], name
+        write(tmp_path / name)
+        assert path.read_bytes() != b"what was there", name
+
+
+def test_rights_links_and_devices_stay(tmp_path: Path) -> None:
+    d, path = braked(), tmp_path / "model.toml"
+    path.write_text("")
+    path.chmod(0o640)
+    (tmp_path / "link.toml").symlink_to("model.toml")
+    d.save(tmp_path / "link.toml")
+    assert (tmp_path / "link.toml").is_symlink()
+    assert (path.stat().st_mode & 0o777, cw.Driveline.load(path).name) == (0o640, "braked")
+    (tmp_path / "null.csv").symlink_to("/dev/null")
+    d.simulate(0.1).to_csv(tmp_path / "null.csv")
+    assert not Path("/dev/null").is_file()
+
+
+# what writes a file in Python
+OPENS = re.compile(r"\.write_(text|bytes|html|image)\(|open\([^)]*[\"'][wxa]|\.(savefig|savez|savetxt|savemat)\(")
+# the helper, a lock, and what gets a file to write from `exchange.write` or writes into memory
+ALLOWED = (
+    r"^(base/writing|studies/lock|results/plot/canvas|schematic/picture|results/exchange/(csv_table|mat|mdf))\.py$"
+)
+# of `replaced`; and a picture writes itself by it
+ITS_PATH = r"\bnew\b|\bfigure\.savefig\("
+
+
+def test_nothing_else_opens_a_file_to_write(root: Path) -> None:
+    package = root / "src/clutchwork"
+    lines = [(path, line) for path in sorted(package.rglob("*.py")) for line in path.read_text().splitlines()]
+    found = [(path.relative_to(package).as_posix(), line.strip()) for path, line in lines if OPENS.search(line)]
+    assert [one for one in found if not re.match(ALLOWED, one[0]) and not re.search(ITS_PATH, one[1])] == []

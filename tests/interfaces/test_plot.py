@@ -61,7 +61,7 @@ def test_each_panel_has_one_unit() -> None:
     d = cw.Driveline()
     a, b = d.shaft("a", inertia=0.2, speed=100.0), d.shaft("b", inertia=0.2)
     block, lining = d.mass("block", mass=2.0, speed=30.0), cw.Coulomb(static=0.3, kinetic=0.3)
-    d.add(cw.DiskClutch("c", base=a, follower=b, friction=lining, radius=0.1, pressure=1e6))
+    d.add(cw.DiskClutch("c", base=a, follower=b, friction=lining, radius=0.1, area=1e-3, pressure=1e6))
     d.add(cw.BandBrake("band", shaft=b, friction=lining, radius=0.1, wrap=4.0, force=10.0))
     d.add(cw.Brake("slide", shaft=block, friction=lining, gain=1.0, normal_force=20.0))
     labels = [axes.get_ylabel() for axes in d.simulate(0.1).plot().axes]

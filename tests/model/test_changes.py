@@ -267,7 +267,9 @@ def test_what_refers_to_what_is_changed():
     engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)
     air = d.ambient("air", temperature=295.0)
     c = d.add(
-        cw.DiskClutch("c", base=engine, follower=load, radius=0.1, pressure=1e5, thermal_mass=500.0, wear_rate=1e-12)
+        cw.DiskClutch(
+            "c", base=engine, follower=load, radius=0.1, area=1e-3, pressure=1e5, thermal_mass=500.0, wear_rate=1e-12
+        )
     )
     d.add(cw.Convection("cooling", hot=c.plates, cold=air, conductance=20.0))
     piston = d.add(cw.PressureActuator("piston", command=2e5, lag=0.1))

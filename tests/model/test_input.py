@@ -7,6 +7,7 @@ import json
 import os
 import re
 from itertools import pairwise
+from time import process_time
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -69,6 +70,24 @@ def test_deep_nesting(tmp_path, name, text):
     said = _mistakes(tmp_path, text, name)
     assert "nested too deeply" in said or "holds a table" in said
     assert len(said) < 1000
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "\n\n" + ".".join(["a"] * 200_000) + " = 1",
+        "name = 'x'\n\n[[ " + ' . "b" . '.join(["a"] * 50_000) + "]]",
+        "name = 'x'\n\nx = {b = 1, " + " .'c'.".join(["a"] * 50_000) + " = 1}",
+    ],
+    ids=["key", "head", "inline"],
+)
+def test_a_long_dotted_key_is_refused_at_once_with_its_line(tmp_path, text):
+    started = process_time()
+    assert "line 3" in _mistakes(tmp_path, text, "m.toml")
+    (tmp_path / "box.toml").write_text(text)
+    with pytest.raises(cw.ModelError, match="more than 16 parts"):
+        cw.Gearbox.load(tmp_path / "box.toml")
+    assert process_time() - started < 1.0
 
 
 def test_elements_in_a_long_chain(tmp_path):
@@ -254,7 +273,7 @@ def test_thermal_nodes_shafts_and_contacts_are_found_by_identity():
 def test_parts_of_elements_are_found():
     d = cw.Driveline("parts")
     engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)
-    disk = d.add(cw.DiskClutch("c", base=load, follower=engine, radius=0.1, pressure=1e5, wear_rate=1e-12))
+    disk = d.add(cw.DiskClutch("c", base=load, follower=engine, radius=0.1, area=1e-3, pressure=1e5, wear_rate=1e-12))
     spring = cw.DiaphragmSpring("s", force=[(0.0, 5e3), (4e-3, 2e3), (8e-3, 0.0)], travel=0.0, wear=disk.part("wear"))
     d.add(spring)
     assert d.check() == []

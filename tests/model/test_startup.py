@@ -22,7 +22,7 @@ SIMULATE = {
 # rooms with a command of their own
 ROOMS = ("codegen", "diagrams", "fit", "linear", "page", "rig", "schematic", "sweeps")
 HELP = IMPORT | {
-    *("base.extras", "base.paths", "base.progress", "base.shell"),
+    *("base.extras", "base.paths", "base.progress", "base.shell", "base.writing"),
     *("command", "command.check", "command.completion", "command.main", "command.models", "command.new"),
     *("command.plot", "command.progress", "command.reference", "command.run"),
     *("declare.options", "declare.purposes", "declare.setting", "diagrams.kinds", "run", "run.flags", "sweeps.asking"),

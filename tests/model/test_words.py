@@ -11,7 +11,7 @@ import clutchwork as cw
 from clutchwork.base.errors import UnknownName
 from clutchwork.base.text import counted
 from clutchwork.declare.schema import REGISTRY, Role, specs
-from clutchwork.model.components import component_advice
+from clutchwork.model.components import component_problems
 from clutchwork.results.energy import EnergyBalance
 from clutchwork.results.events import Event, Events
 from support import samples
@@ -108,12 +108,14 @@ def test_every_pressure_and_force_on_a_contact_presses() -> None:
 
 
 @pytest.mark.parametrize(("cls", "name"), PRESSED)
-def test_a_constant_load_below_zero_is_warned_of(cls: type, name: str) -> None:
+def test_a_load_that_is_never_above_zero_is_refused(cls: type, name: str) -> None:
     element = samples.driveline(cls).elements[0]
-    dips = cw.Table([(0.0, -1.0), (1.0, 1.0)])
-    for load, warned in ((-1.0, True), (cw.Constant(-1.0), True), (0.0, False), (None, False), (dips, False)):
-        advice = [str(one) for one in component_advice(replace(element, **{name: load}))]
-        assert any(f": {name} = -1" in one and "never presses" in one for one in advice) == warned, (load, advice)
+    dips, below = cw.Table([(0.0, -1.0), (1.0, 1.0)]), cw.Table([(0.0, -1.0), (1.0, 0.0)])
+    never = (-1.0, cw.Constant(-1.0), below, cw.Sine(amplitude=0.5, frequency=1.0, offset=-0.5))
+    for load in (*never, 0.0, None, dips):
+        found = [str(one) for one in component_problems(replace(element, **{name: load}))]
+        refused = any(f": {name} = -1" in one and "never presses" in one for one in found)
+        assert refused == any(load is one for one in never), (load, found)
 
 
 def test_a_system_counts_in_the_words_of_its_driveline() -> None:

@@ -162,7 +162,7 @@ def test_a_slider_with_stops_has_the_words_of_python(engine: Any) -> None:
 
 
 def test_the_largest_jerk_is_that_of_calibration(engine: Any) -> None:
-    """docs/theory/calibration.md (3), in which the jump of a lock-up counts."""
+    """docs/theory/jerk.md (1), in which the jump of a lock-up counts."""
     (found,) = engine(page_data("six_speed"), [{"measures": 4}])
     (jerk,) = (one["value"] for one in found["measures"] if one["name"] == "Largest jerk of w8 over 0.05 s")
     window, end = 0.05, 4.0

@@ -555,6 +555,7 @@ def test_torque_within_capacity_power_never_positive_and_the_energy_closes(
         follower=follower,
         friction=law,
         radius=0.1,
+        area=1e-3,
         pressure=pressure,
         drag=drag,
         thermal_mass=capacity,

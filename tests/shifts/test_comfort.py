@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from clutchwork.shifts.comfort import jerk, low_pass, vibration_dose, weighted
+from clutchwork.shifts.comfort import HIGH, LOW, QUALITY, TRANSITION, jerk, low_pass, vibration_dose, weighted
 
 STEP = 1e-3  # s
 
@@ -36,22 +36,50 @@ def test_dose_grows_with_the_amplitude_and_with_the_fourth_root_of_time() -> Non
     assert once == pytest.approx(0.512 * (0.375 * 20.0) ** 0.25, rel=1e-2)
 
 
-def test_jerk_of_a_ramp_and_of_a_sine() -> None:
+@pytest.mark.parametrize("rest", [0.0, 0.5, 20.0])
+def test_what_happens_at_the_end_does_not_come_round_to_the_begin(rest: float) -> None:
+    """A jump of 0.2 m/s2 after 0.1 s: the same dose however long the acceleration was level before."""
+    values = np.concatenate([np.ones(round(rest / STEP)), np.where(np.arange(1300) < 100, 1.0, 1.2)])
+    # the step response of (10), integrated with steps of 1e-5 s
+    assert vibration_dose(values, STEP) == pytest.approx(0.2 * step_dose(1.2), rel=2e-3)
+
+
+def step_dose(duration: float, h: float = 1e-5) -> float:
+    """Dose of a jump of 1 m/s2 over some time, from the poles of (10)."""
+    low, high, turn = (2.0 * np.pi * f for f in (LOW, HIGH, TRANSITION))
+    over = np.polymul([1.0, np.sqrt(2.0) * low, low**2], [1.0 / high**2, np.sqrt(2.0) / high, 1.0])
+    over = np.polymul(over, [1.0 / turn**2, 1.0 / (QUALITY * turn), 1.0])
+    poles = np.roots(over)
+    # of s (1 + s/turn) / over, by residues
+    shares = poles * (1.0 + poles / turn) / np.polyval(np.polyder(over), poles)
+    time = (np.arange(round(duration / h)) + 0.5) * h
+    response = (np.exp(np.outer(time, poles)) @ shares).real
+    return float((np.sum(response**4) * h) ** 0.25)
+
+
+def test_jerk_of_a_steady_one_and_of_a_sine() -> None:
     time = np.arange(0.0, 2.0, STEP)
     middle = slice(500, 1500)
-    assert jerk(3.0 * time, STEP, 20.0)[middle] == pytest.approx(3.0, rel=1e-3)
-    # at a tenth of the cut-off the filter takes 1e-4 of a wave
+    assert jerk(1.5 * time**2, STEP)[middle] == pytest.approx(3.0, rel=1e-9)
+    # the mean over two windows takes (sin x/x)^2 of a wave, x = 0.05 s times half its rate
     wave = 2.0 * np.pi * 2.0
-    assert np.max(jerk(np.sin(wave * time), STEP, 20.0)[middle]) == pytest.approx(wave, rel=1e-3)
+    share = np.sinc(0.05 * wave / 2.0 / np.pi) ** 2
+    assert np.max(jerk(np.sin(wave * time), STEP)[middle]) == pytest.approx(share * wave**2, rel=1e-4)
 
 
-def test_a_step_has_the_jerk_of_the_cut_off() -> None:
-    """A jump of 1 m/s2 behind a filter of second order forward and backward: peak pi f0/sqrt(2)."""
-    values = np.where(np.arange(4000) < 2000, 0.0, 1.0)
-    for cut_off in (5.0, 20.0):
-        # a jump takes a step of the grid; the integral of 1/(1 + x^4) from 0 to infinity is pi/(2 sqrt 2)
-        peak = 2.0 * cut_off * np.pi / (2.0 * np.sqrt(2.0))
-        assert np.max(jerk(values, STEP, cut_off)) == pytest.approx(peak, rel=5e-3)
+def test_a_jump_has_the_jerk_of_its_height_over_the_window() -> None:
+    time = np.arange(0.0, 4.0, STEP)
+    for window in (0.05, 0.2):
+        found = jerk(np.maximum(time - 2.0, 0.0), STEP, window)
+        assert np.max(found) == pytest.approx(1.0 / window, rel=1e-9)
+        # of as much area as the jump has, and over two windows
+        assert np.sum(found) * STEP == pytest.approx(1.0, rel=1e-9)
+        assert np.all(found[np.abs(time - 2.0) > window + STEP] < 1e-9)
+
+
+def test_ends_go_on_evenly() -> None:
+    time = np.arange(0.0, 1.0, STEP)
+    assert np.max(np.abs(jerk(2.0 + 3.0 * time, STEP))) < 1e-9
 
 
 def test_the_filter_has_no_delay() -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
+from support.amount import amount
 
 # both pairs reverse the direction: the output turns backward
 BOX = cw.Gearbox.from_dict(
@@ -174,6 +175,24 @@ def test_tie_up_where_the_second_clutch_carries_too_much(overlap: float) -> None
     against = -I1 * (T + J1 * I1 * slower - capacity / I2)
     assert against > 100.0
     assert one.tie_up == pytest.approx(against, rel=0.02)
+
+
+@pytest.mark.random
+def test_tie_up_on_both_sides_of_a_short_inertia_phase() -> None:
+    """The first clutch is held on after the second one has locked: it slips backward with all that it can."""
+    for seed in range(amount(12)):
+        rng = np.random.default_rng([3131, seed])
+        before, behind = rng.uniform(0.03, 0.3, 2)
+        first, second = float(rng.uniform(20.0, 150.0)), float(rng.uniform(400.0, 800.0))
+        points = [
+            (0.6, {"C2": first / PER_PASCAL}),
+            (0.6 + before, {"C1": second / PER_PASCAL, "C2": 4.0 * second / PER_PASCAL}),
+            (0.6 + before + behind, {"C1": 0.0}),
+        ]
+        one = quality(run(*points))
+        assert one.tie_up == pytest.approx(second, rel=1e-6), seed
+        assert one.shift.begin == pytest.approx(0.6, abs=1e-9), seed
+        assert one.shift.end == pytest.approx(0.6 + before + behind, abs=1e-9), seed
 
 
 def test_neutral_and_a_gear_from_it() -> None:

@@ -302,7 +302,15 @@ def test_faults_are_told_where_they_happen() -> None:
     a, b = d.shaft("a", inertia=1.0, speed=50.0), d.shaft("b", inertia=1.0)
     friction = cw.Coulomb(static=0.3, kinetic=0.25)
     clutch = cw.DiskClutch(
-        "c", base=a, follower=b, radius=0.1, pressure=1e5, friction=friction, fault="cannot_transmit", fault_time=0.3
+        "c",
+        base=a,
+        follower=b,
+        radius=0.1,
+        area=1e-3,
+        pressure=1e5,
+        friction=friction,
+        fault="cannot_transmit",
+        fault_time=0.3,
     )
     d.add(clutch)
     sim = cw.Simulator(d)

@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
+from clutchwork.base.paths import WriteError
 from clutchwork.studies import fingerprints
 from clutchwork.studies.parts import there
 from support import scattered
+from support.full_disk import full_disk
 
 pytest.importorskip("pyarrow")
 pytest.importorskip("scipy")
@@ -94,11 +96,25 @@ def test_damaged_and_unfinished_files_are_run_again(tmp_path: Path) -> None:
     run(tmp_path)
     (tmp_path / "data" / "part-000001.parquet").write_bytes(b"PAR1 and no more")
     (tmp_path / "data" / "part-000003.parquet").unlink()
-    (tmp_path / "data" / ".part-000003-x.new").write_bytes(b"half")
+    (tmp_path / "data" / ".0123456789abcdef.new.parquet").write_bytes(b"half")
     (tmp_path / "data" / "part-000007.parquet").replace(tmp_path / "data" / "part-000005.parquet")
     assert sorted(there(tmp_path, cw.Study.load(tmp_path).manifest.sizes)) == [0, 2, 4, 6]
     assert run(tmp_path)["c1.heat"].tobytes() == swept()["c1.heat"].tobytes()
     assert not list((tmp_path / "data").glob(".*"))
+
+
+@pytest.mark.parametrize("how", [{"threads": 1}, {"threads": 2}])
+def test_a_full_disk_is_named_and_the_same_call_goes_on(tmp_path: Path, how: dict[str, Any]) -> None:
+    run(tmp_path / "whole", **how)
+    sizes = [path.stat().st_size for path in (tmp_path / "whole").glob("**/*.*") if path.is_file()]
+    folder = tmp_path / "study"
+    # at the first file, and where one is larger than those before
+    for room in (10, max(sizes) - 1):
+        with full_disk(room), pytest.raises(WriteError, match=r"cannot be written: .*; make room on the disk") as told:
+            run(folder, **how)
+        assert str(folder) in str(told.value)
+        assert not list(folder.glob("**/.*.new*"))
+    assert run(folder, **how).complete
 
 
 def gained(gain: float) -> cw.System:

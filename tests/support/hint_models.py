@@ -158,15 +158,6 @@ def juddering(damping: float) -> cw.Driveline:
     return d
 
 
-def disc(area: float | None) -> cw.Driveline:
-    """A DiskClutch with an area [m2], or the one it has by default."""
-    d = cw.Driveline("disc")
-    base, follower = d.shaft("base", inertia=0.2, speed=50.0), d.shaft("follower", inertia=0.2)
-    given = {} if area is None else {"area": area}
-    d.add(cw.DiskClutch("c", base=base, follower=follower, radius=0.1, pressure=4e5, **given))
-    return d
-
-
 def dog(speed: float) -> cw.Driveline:
     """A dog clutch in mesh, whose base turns with a speed [rad/s] at the start."""
     d = cw.Driveline("dog")
@@ -221,7 +212,6 @@ CASES: dict[str, Case] = {
     "outside its table": Case(lambda: warm(400.0), lambda: warm(700.0), 30.0),
     "too hot": Case(lambda: warm(900.0, capacity=80.0), lambda: warm(900.0), 30.0),
     "judder": Case(lambda: juddering(0.1), lambda: juddering(0.6), 4.0),
-    "default area": Case(lambda: disc(None), lambda: disc(0.012), 0.5),
     "too fast to mesh": Case(lambda: dog(10.0), lambda: dog(2.0), 0.1),
     "joined to nothing": Case(lambda: lonely(False), lambda: lonely(True), 0.1),
     "redundant gear": Case(lambda: parallel(2), lambda: parallel(1), 0.1),

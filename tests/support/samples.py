@@ -150,7 +150,11 @@ def driveline(cls: type) -> cw.Driveline:
     if fourth is not None:
         values["large_sun"] = fourth
     # as are two wheels, and two sides
-    values |= {name: nodes["other"] for name in ("wheel", "right") if name in values}
+    values |= {
+        name: nodes["other"]
+        for name in ("wheel", "right", "turbine", "forward")
+        if isinstance(values.get(name), cw.Node)
+    }
     d.add(cls("x", **values))
     return d
 

@@ -199,7 +199,11 @@ def test_composites():
     engine, load = d.shaft("engine", inertia=0.2, speed=200.0), d.shaft("load", inertia=3.0)
     air = d.ambient("air", temperature=295.0)
     ramp = cw.Ramp(height=3e5, duration=1.0)
-    c = d.add(cw.DiskClutch("c", base=engine, follower=load, radius=0.1, pressure=ramp, thermal_mass=500.0, drag=0.01))
+    c = d.add(
+        cw.DiskClutch(
+            "c", base=engine, follower=load, radius=0.1, area=1e-3, pressure=ramp, thermal_mass=500.0, drag=0.01
+        )
+    )
     d.add(cw.Convection("cooling", hot=c.plates, cold=air, conductance=20.0))
     system = d.assemble()
     vary = {"c.radius": [0.1, 0.12], "c.thermal_mass": [500.0, 800.0], "cooling.conductance": [10.0, 20.0]}

@@ -64,7 +64,7 @@ export function slope(values: Float64Array, times: Float64Array): Float64Array {
 }
 
 /** The largest jerk that a person feels: the change of the mean accelerations before and behind an instant over a window, in
- * which a jump counts; null for a run of less than two windows. docs/theory/calibration.md (3) */
+ * which a jump counts; null for a run of less than two windows. docs/theory/jerk.md (1) */
 export function feltJerk(acceleration: Float64Array, times: Float64Array, window = 0.05): number | null {
   const n = times.length;
   const [first, last] = [times[0] ?? 0, times[n - 1] ?? 0];

@@ -68,7 +68,10 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     arrays |= flow_arrays(model, pools, wires)
     arrays |= heat_arrays(model, where)
     arrays |= shared.arrays(pools, wires, states)
-    arrays |= {"prescribed_input": wires.prescribe(motions)}
+    arrays |= {
+        "prescribed_input": wires.prescribe(motions),
+        "prescribed_sums": [int(one.integrates) for one, _ in motions],
+    }
     arrays |= wires.arrays()
     arrays |= {"params": pools.params, "points": pools.points, "initial_speed": [float(speed) for speed in speeds]}
     return {

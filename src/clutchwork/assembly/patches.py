@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.inputs import plain_signal
 from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode, is_reference
 from clutchwork.declare.schema import Role, inputs, specs
-from clutchwork.model.parts import is_stop, role
+from clutchwork.model.parts import is_open, is_stop, role
 from clutchwork.model.pools import Pools
 from clutchwork.signals.bases import waveform
 
@@ -96,8 +96,10 @@ def patches(where: Numbered, old: Any, new: Any) -> list[Patch]:
         raise Unpatched
     if type(old).ways and old.directions() != new.directions():
         raise Unpatched
-    if is_stop(old) and old.initial_states() != new.initial_states():
-        # its position is the state of an element of its own
+    if is_stop(old) and (old.initial_states() != new.initial_states() or is_open(old)):
+        # its position is the state of an element of its own, and may follow from what moves its mass
+        raise Unpatched
+    if old.start_positions() != new.start_positions():
         raise Unpatched
     if where.massless and type(old).passive is not Component.passive:
         raise Unpatched

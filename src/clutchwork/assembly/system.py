@@ -246,10 +246,10 @@ class System:
     def save(self, path: str | Path) -> None:
         """Write arrays and model to an archive, whatever its ending; nothing in it is code."""
         from clutchwork.base import archive
-        from clutchwork.base.paths import target
+        from clutchwork.base.paths import fitting
 
         parts = self.parts()
-        archive.write(target("system.save", path, "model.cwsystem"), parts)
+        archive.write(fitting("system.save", path, "model.cwsystem"), parts)
 
     def parts(self) -> dict[str, bytes]:
         """What a file holds of it, by the names of `PARTS`."""

@@ -40,15 +40,6 @@ def path_fault(path: object, example: str) -> str:
     return ""
 
 
-def target(call: str, path: object, example: str, endings: Sequence[str] = ()) -> Path:
-    """The path of a file that is to be written; its folder is there afterwards.
-
-    Parameters: endings, those that the file may have, any by default. UseError for no path or a wrong ending,
-    WriteError where the file cannot be written there.
-    """
-    return made(fitting(call, path, example, endings))
-
-
 def fitting(call: str, path: object, example: str, endings: Sequence[str] = ()) -> Path:
     """The path of a file that is to be written, not made yet; UseError for no path or a wrong ending."""
     if fault := path_fault(path, example):

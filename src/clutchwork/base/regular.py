@@ -7,6 +7,8 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
+PIECE = 1_000_000
+
 
 class UnfitFileError(OSError):
     """A path that leads to no regular file, or to one that is too large."""
@@ -39,11 +41,14 @@ def open_regular(path: str | Path, most: int) -> BinaryIO:
 
 def read_regular(path: str | Path, most: int) -> bytes:
     """All bytes of a regular file."""
+    data = bytearray()
     with open_regular(path, most) as stream:
-        data = stream.read(most + 1)
-    if len(data) > most:
-        raise UnfitFileError(f"has more than {most} bytes")
-    return data
+        # as much memory as there is to read, not as there may be
+        while piece := stream.read(PIECE):
+            data += piece
+            if len(data) > most:
+                raise UnfitFileError(f"has more than {most} bytes")
+    return bytes(data)
 
 
 def reason(error: OSError) -> str:

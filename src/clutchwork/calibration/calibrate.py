@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 # what an optimiser makes use of must be in the runs, not in their errors
 TIGHT = {"rtol": 1e-8, "atol": 1e-10}
 ROBUST = ("mean", "worst")
+# searches of a goal that may have several least values; each costs as much as the first
+STARTS = 3
 
 
 @explained("calibrate", free="{'c1.pressure.values[2:]': (0.0, 8e5)}", minimise="'c1.heat'")
@@ -47,7 +49,7 @@ def calibrate(
     minimise: Any,
     subject_to: Sequence[Limit] | Limit = (),
     solver: str = "slsqp",
-    starts: int = 1,
+    starts: int = STARTS,
     scatter: Mapping[str, Any] | None = None,
     samples: int = 64,
     robust: str = "mean",
@@ -67,8 +69,8 @@ def calibrate(
     a table by "c1.pressure.values[2:]", or any name with `cw.together`; minimise, an output as `cw.sweep` takes it,
     `cw.jerk`, `cw.rms_jerk`, `cw.squared_slope`, or a sum {output: weight, ...}; one of several values is made least
     where it is largest. subject_to, limits, each a `cw.limit`; solver, "slsqp", "trust-constr" or "ipopt"; starts, from
-    how many points to search: the values of the model first, then others between the bounds; threads, how many of
-    these go at once.
+    how many points to search: the values of the model first, then others between the bounds, by default three, each as
+    long as one, and their goals are `spread`; threads, how many of these go at once.
 
     scatter, what differs in production, given as free is: limits then hold in all of so many samples, and in all
     corners where no more than four scatter; the goal is the mean of the first nine samples, or with robust="worst" that

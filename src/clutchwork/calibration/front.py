@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
 from clutchwork.base.progress import followed
 from clutchwork.base.shown import shown
 from clutchwork.base.text import columns
@@ -59,7 +59,7 @@ class Front:
 
     def plot(self, path: str | Path | None = None) -> Picture:
         """Draw it, with the slope at each point; written to `path` when given. Needs matplotlib."""
-        return drawn(self, None if path is None else target("front.plot", path, "front.png", PICTURES))
+        return drawn(self, None if path is None else fitting("front.plot", path, "front.png", PICTURES))
 
 
 def front(found: Calibration, limit: Settled, bounds: Sequence[Any], progress: Any) -> Front:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.base.errors import UseError
+from clutchwork.base.writing import put
 from clutchwork.calibration.outcome import Outcome
 
 if TYPE_CHECKING:
@@ -45,10 +46,7 @@ class Memory:
             self.written = time.monotonic()
             found = self.before | {one.number: one for one in list(outcomes)}
             data = {"format": FORMAT, "key": self.key, "starts": [_plain(one) for one in found.values()]}
-            # a file that is read is always whole
-            beside = self.path.with_name(f"{self.path.name}.new")
-            beside.write_text(json.dumps(data, indent=1), encoding="utf-8")
-            beside.replace(self.path)
+            put(self.path, json.dumps(data, indent=1))
 
 
 def _key(problem: Problem, settings: Iterable[Any]) -> str:

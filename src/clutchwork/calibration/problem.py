@@ -138,6 +138,8 @@ def problem(
     curves = {stem: mistakes.caught(partial(curve, system, stem), None) for stem in stems}
     moved = unknowns[1] | spread[1]
     mistakes.found += [*_twice(unknowns[0]), *_scattered(unknowns[0], spread[0]), *outside(unknowns[0], moved)]
+    # factors and shifts need not hold the nominal ones: a lining may only wear
+    mistakes.found += outside([one for one in spread[0] if one.kind == VALUE], moved, "scatter")
     if not mistakes.found and goal is not None:
         mistakes.found += [fault for one in sums for fault in one.faults(span, curves)]
         mistakes.found += _restless(goal)
@@ -191,7 +193,7 @@ def _scattered(unknowns: Sequence[Unknown], scatter: Sequence[Unknown]) -> Itera
             )
 
 
-def outside(unknowns: Sequence[Unknown], moved: Mapping[str, Parameter]) -> Iterable[str]:
+def outside(unknowns: Sequence[Unknown], moved: Mapping[str, Parameter], what: str = "free") -> Iterable[str]:
     """Values of the model that are not between their bounds: the search begins there."""
     for one in unknowns:
         start = {VALUE: moved[one.numbers[0]].start, FACTOR: 1.0}.get(one.kind, 0.0) if one.numbers else one.low
@@ -199,7 +201,9 @@ def outside(unknowns: Sequence[Unknown], moved: Mapping[str, Parameter]) -> Iter
         if not one.low - room <= start <= one.high + room:
             has = f"{start:g} {one.unit}".rstrip() if one.kind == VALUE else f"{one.kind} {start:g}"
             ends = f"{one.low:g} to {one.high:g} {one.unit}".rstrip()
-            yield f"free of {one.name!r}: the model has {has}, outside of {ends}; give bounds around it"
+            factor = one.kind == VALUE and one.low <= 1.0 <= one.high
+            other = f", or cw.together({one.name!r}, factor=({one.low:g}, {one.high:g}))" if factor else ""
+            yield f"{what} of {one.name!r}: the model has {has}, outside of {ends}; give bounds around it{other}"
 
 
 def _restless(goal: Sum) -> Iterable[str]:

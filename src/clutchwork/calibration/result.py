@@ -16,13 +16,14 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, UseError, near
 from clutchwork.base.shown import shown
 from clutchwork.calibration import words
+from clutchwork.calibration.corners import left
 from clutchwork.calibration.evaluate import Evaluator
 from clutchwork.calibration.held import Held
 from clutchwork.calibration.moves import Moves
 from clutchwork.calibration.optimal import Certificate, certificate
 from clutchwork.calibration.outcome import FEASIBLE, OPTIMAL, Outcome
 from clutchwork.calibration.problem import changed_by
-from clutchwork.calibration.scaled import Samples, Scaled
+from clutchwork.calibration.scaled import Scaled
 from clutchwork.declare.calls import explained_methods
 from clutchwork.run.simulation import simulate
 
@@ -92,6 +93,7 @@ class Calibration:
     samples: tuple[Array, ...]  # of production that decided it
     finished: bool  # not interrupted
     corner: str = ""  # why the gradient there is one of differences, empty where it is not
+    around: float = np.inf  # what is left of the gradients around it together, infinite where a neighbour is better
 
     # ---------------------------------------------------------------------------------------------------------- values
 
@@ -155,7 +157,12 @@ class Calibration:
     @property
     def solved(self) -> bool:
         """Whether the search ended, all limits hold, and no small change makes the goal less."""
-        return self.finished and self.feasible and self.certificate.residual <= OPTIMAL
+        return self.finished and self.feasible and min(self.certificate.residual, self.around) <= OPTIMAL
+
+    @property
+    def spread(self) -> tuple[float, ...]:
+        """Goals that the starts reached where all limits hold, the least first."""
+        return tuple(sorted(one.goal for one in self.outcomes if one.is_feasible))
 
     @property
     def effort(self) -> str:
@@ -236,20 +243,19 @@ def found_by(search: Search, asked: Asked) -> Calibration:
         why = next((one.fault for one in outcomes if one.fault), "it was interrupted before the first run")
         remedy = f"change the start values of the model, widen t_end, {scatter}or give starts=8"
         raise CalibrationError(f"no start could be run with a gradient: {why}; {remedy}")
-    worst = search.way.scatter is not None and search.way.scatter.worst
-    averaged = search.way.scatter.first().averaged if search.way.scatter else 1
     evaluator = Evaluator(problem, search.function)
     before = evaluator.values(problem.start, best.samples or [evaluator.nominal])
     size = float(np.max(np.nan_to_num(np.abs(before[:, evaluator.parts[0]]))))
-    scaled = Scaled(evaluator, best.x, Samples(best.samples, averaged, worst), best.scales, size)
+    scaled = Scaled(evaluator, best.x, search.way.samples(best.samples), best.scales, size)
     proof, after = certificate(scaled, scaled.start), scaled.first
+    around = left(scaled, scaled.start) if proof.residual > OPTIMAL and best.is_feasible else proof.residual
     held = tuple(
         _held(limit, before[:, part], after.values[:, part], proof, number, FEASIBLE * best.scales[number])
         for number, (limit, part) in enumerate(zip(problem.limits, evaluator.parts[1:], strict=True))
     )
     goals = scaled.judged(before), best.goal
     finished = len(outcomes) == search.way.starts and all(one.ended for one in outcomes)
-    return Calibration(problem, asked, best.x, goals, held, proof, outcomes, best.samples, finished, after.note)
+    return Calibration(problem, asked, best.x, goals, held, proof, outcomes, best.samples, finished, after.note, around)
 
 
 def _held(limit: Settled, before: Array, after: Array, proof: Certificate, number: int, room: float) -> Held:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from threading import Event
@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.calibration.corners import left, left_behind
 from clutchwork.calibration.evaluate import Evaluator, Point
 from clutchwork.calibration.linear import Linear
 from clutchwork.calibration.optimal import certificate
-from clutchwork.calibration.outcome import Outcome
+from clutchwork.calibration.outcome import FEASIBLE, OPTIMAL, Outcome
 from clutchwork.calibration.rows import measure
 from clutchwork.calibration.scaled import Samples, Scaled
 from clutchwork.calibration.scatter import breaking, in_all, sobol, violations
@@ -48,6 +49,7 @@ class Search:
         if self.way.threads == 1 or len(pending) == 1:
             for number, start in pending:
                 self._from(number, start)
+            self._out_of_corner(pending)
             return
         with ThreadPoolExecutor(self.way.threads) as pool:
             work = [pool.submit(self._from, number, start) for number, start in pending]
@@ -57,6 +59,21 @@ class Search:
             except BaseException:
                 self.stop.set()
                 raise
+        self._out_of_corner(pending)
+
+    def _out_of_corner(self, pending: Sequence[object]) -> None:
+        """On from the best of all, where that is a corner that may be left."""
+        best = min((one for one in self.found.values() if not one.fault), key=lambda one: one.rank, default=None)
+        if not pending or best is None or best.residual <= OPTIMAL or not best.holds:
+            return
+        evaluator = Evaluator(self.problem, self.function)
+        evaluator.runs = best.runs
+        keeper = Keeper(self, evaluator, best.number, best.start)
+        evaluator.seen = keeper.see
+        scaled = Scaled(evaluator, best.x, self.way.samples(best.samples), best.scales)
+        if scaled.first.is_fine:
+            keeper.watch(scaled)
+            keeper.end(scaled.to_x(left_behind(scaled, scaled.start)))
 
     def _known(self, number: int) -> bool:
         """Whether a file has the end of this start; one that is not solved goes on where there are more iterations."""
@@ -184,7 +201,9 @@ def _left(scaled: Scaled, x: Array) -> float:
     if not point.is_fine:
         return np.inf
     y = scaled.lifted(np.resize((x - scaled.problem.low) / scaled.width, scaled.count), point)
-    return certificate(scaled, y).residual / measure(scaled.goal(y))
+    proof = certificate(scaled, y)
+    smooth = proof.residual / measure(scaled.goal(y))
+    return smooth if smooth <= OPTIMAL or proof.violation > FEASIBLE else min(smooth, left(scaled, y))
 
 
 def _clearly_better(one: Outcome, other: Outcome) -> bool:

@@ -16,7 +16,7 @@ from clutchwork.calibration.optimal import certificate
 from clutchwork.calibration.outcome import FEASIBLE
 from clutchwork.calibration.restoring import Restoring
 from clutchwork.calibration.rows import measure, size_of
-from clutchwork.calibration.scaled import FIRST_REACH, Scaled
+from clutchwork.calibration.scaled import FIRST_REACH, Samples, Scaled
 from clutchwork.calibration.scatter import Scatter, sobol
 
 if TYPE_CHECKING:
@@ -48,6 +48,12 @@ class Way:
     threads: int
     seed: int
     scatter: Scatter | None
+
+    def samples(self, chosen: tuple[Array, ...]) -> Samples:
+        """These samples, judged as the goal asks."""
+        if self.scatter is None:
+            return Samples(chosen)
+        return Samples(chosen, self.scatter.first().averaged, self.scatter.worst)
 
 
 @dataclass(frozen=True)

@@ -16,11 +16,13 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.calibration.numbers import number, pair
 from clutchwork.declare.calls import explained
+from clutchwork.results.felt import WINDOW, felt_jerk
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
 
 if TYPE_CHECKING:
     from clutchwork.calibration.names import Curve
     from clutchwork.gradients.parameters import Parameter
+    from clutchwork.results.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 OUTPUTS = (AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When)
@@ -148,15 +150,17 @@ class Jerk:
 
     def rows(self, given: Given) -> Rows:
         """Two values for each window: of either sign, the larger one is the size."""
-        # docs/theory/calibration.md (3)
-        value, slope = (_second(one) / self.window**2 for one in (given.values, given.slopes))
+        # docs/theory/jerk.md (1)
+        value, slope = (felt_jerk(one, self.window, PER_WINDOW) for one in (given.values, given.slopes))
         return np.concatenate([value, -value]), np.concatenate([slope, -slope])
 
-
-def _second(values: Array) -> Array:
-    """Second differences over windows."""
-    made: Array = values[2 * PER_WINDOW :] - 2.0 * values[PER_WINDOW:-PER_WINDOW] + values[: -2 * PER_WINDOW]
-    return made
+    def largest(self, run: Trajectory) -> float:
+        """The largest of a run, for `sweep`; NaN where that did not reach its end, or has no two windows."""
+        span = Span(run.options.t_start, run.t_end)
+        if not run.finished or self.faults(span):
+            return float("nan")
+        (speed,) = self.needs(span)
+        return float(np.max(np.abs(felt_jerk(speed.of(run), self.window, PER_WINDOW))))
 
 
 @dataclass(frozen=True)
@@ -266,13 +270,15 @@ def _column(given: Given, column: Sequence[Parameter]) -> Rows:
 
 
 @explained("cw.jerk", shaft="'car'")
-def jerk(shaft: str, window: Any = 0.05, between: Any = None) -> Jerk:
-    """The size of the jerk of a shaft [rad/s3] or a mass [m/s3] for `calibrate`: all along the run, over windows.
+def jerk(shaft: str, window: Any = WINDOW, between: Any = None) -> Jerk:
+    """The size of the jerk of a shaft [rad/s3] or a mass [m/s3]: all along the run, over windows.
+
+    For `calibrate`; in a sweep it is the largest of a run.
 
     Parameters: shaft, its name; window [s], or with a unit: what is shorter does not count, 0.05 s is what a person
     feels; between, two times [s], two windows apart or more, by default the whole run. 16 values a window; a
     jump of the acceleration counts as its height over the window, less 3 % at most; one as the run begins does not
-    count, nor do those within a window of its ends in full. docs/theory/calibration.md (3)
+    count, nor do those within a window of its ends in full. docs/theory/jerk.md (1)
     """
     length = number(window, "s")
     if length is None or length <= 0.0:

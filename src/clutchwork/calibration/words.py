@@ -74,6 +74,14 @@ class Told(Protocol):
         """Whether all limits hold."""
 
     @property
+    def around(self) -> float:
+        """What is left of the gradients around it together."""
+
+    @property
+    def spread(self) -> Sequence[float]:
+        """Goals that the starts reached."""
+
+    @property
     def solved(self) -> bool:
         """Whether it is optimal."""
 
@@ -154,7 +162,11 @@ def _effort(found: Told) -> str:
     runs = sum(one.runs for one in found.outcomes)
     said = [f"{found.effort}, {counted(len(found.outcomes), 'starts')}, {counted(runs, 'runs with gradient')}"]
     said.append(f"largest violation {found.certificate.violation:.1g} of its scale")
-    said.append(f"residual {found.certificate.residual:.1g} of the goal")
+    if len(found.spread) > 1:
+        said.append(f"they reached {', '.join(map(_number, found.spread))} {found.problem.unit}".rstrip())
+    said.append(f"residual {min(found.certificate.residual, found.around):.1g} of the goal")
+    if found.around < found.certificate.residual:
+        said[-1] += " in a corner, of its gradients to all sides"
     if found.samples and not found.whole:
         said.append(f"limits were looked at in {len(found.samples)} samples of production alone")
     elif found.samples:
@@ -184,11 +196,11 @@ def faults(found: Told) -> Iterator[str]:
     elif found.finished and not found.solved:
         left = f"what is left of the gradient is {found.certificate.residual:.2g} of the goal"
         yield (
-            f"{left}: the least one is in a corner, as where an event passes an instant that counts, or the "
-            "search stopped before it; give more iterations or starts, or another solver"
+            f"{left}, and a step to a neighbour may make it less: the search stopped before the least one; give more "
+            "iterations or starts, another solver, or search again from found.system"
         )
         if found.corner:
-            yield f"the goal has a corner there, where no gradient is zero: {found.corner}"
+            yield f"the goal has a corner there: {found.corner}"
     for start in found.outcomes:
         if start.fault:
             yield f"start {start.number + 1} could not be used: {start.fault}"

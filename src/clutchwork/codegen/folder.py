@@ -10,6 +10,7 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.paths import fitting
 from clutchwork.base.paths import folder as made_folder
 from clutchwork.base.shown import shown
+from clutchwork.base.writing import put
 from clutchwork.codegen.model import Exported, chosen, files
 from clutchwork.codegen.sources import sources
 from clutchwork.declare.calls import explained
@@ -78,6 +79,5 @@ def _write(exported: Exported, folder: Path) -> Path:
 
 def _put(path: Path, content: bytes) -> None:
     """Write a file; one that is the same keeps its date, so that it is not compiled again."""
-    path.parent.mkdir(parents=True, exist_ok=True)
     if not path.is_file() or path.read_bytes() != content:
-        path.write_bytes(content)
+        put(path, content)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from clutchwork.base.shell import DONE, add_command, add_json, tell, tell_json, writable, wrote
+from clutchwork.base.writing import put
 
 STARTS = Path(__file__).resolve().parent / "starts"
 # what each is, and an option of `run` to try with it
@@ -52,8 +53,7 @@ def new_command(asked: argparse.Namespace) -> int:
     writable([path])
     if path.exists() and not asked.force:
         raise FileExistsError(f"{path} is there already; give another name, or --force to overwrite it")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(start(asked.kind), encoding="utf-8")
+    put(path, start(asked.kind))
     what, attempt = KINDS[asked.kind]
     shown = f'"{path}"' if " " in str(path) else str(path)
     steps = [

@@ -39,7 +39,9 @@ def node(thing: Any) -> str:
     inertia, speed, angle = (_value(value, unit) for value, unit in zip(_of_node(thing), units, strict=True))
     parts = [f"{names[0]} {inertia}"]
     parts += [f"{names[1]} {speed}"] if thing.speed is not None else []
-    return _line("Node", thing, parts + ([] if _is_default(thing.angle, 0.0) else [f"{names[2]} {angle}"]))
+    return _line(
+        "Node", thing, parts + ([] if thing.angle is None or _is_default(thing.angle, 0.0) else [f"{names[2]} {angle}"])
+    )
 
 
 def thermal_node(thing: Any) -> str:

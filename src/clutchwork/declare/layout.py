@@ -115,6 +115,7 @@ FIELDS = (
     ("shared_scale", "f8", ("shared",), "a shared state as an input is offset + scale * state"),
     ("shared_offset", "f8", ("shared",), "offset of that"),
     ("prescribed_input", "i4", ("prescribed",), "signal that gives the prescribed speed"),
+    ("prescribed_sums", "i4", ("prescribed",), "1: an integral, which begins where a run does"),
     (
         "input_refs",
         "i4",
@@ -240,8 +241,8 @@ STATUS = (
     ("bad_system", "the system bytes do not fit this core", "assemble the driveline again with this version"),
     (
         "jammed",
-        "prescribed speeds turn a freewheel backward or go beyond a stop, which nothing can hold",
-        "prescribe speeds that let it overrun or stay inside, or put a shaft with inertia and a spring in between",
+        "prescribed speeds turn a freewheel backward, go beyond a stop or break the ratio of a transmission",
+        "prescribe speeds that it allows, or put a shaft with inertia and a spring in between",
     ),
     (
         "unbalanced",

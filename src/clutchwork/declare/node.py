@@ -47,7 +47,7 @@ class Node:
         domain (choice: Domain.ROTATION, Domain.TRANSLATION; default Domain.ROTATION): a shaft, or a mass on a line
         inertia (number [kg m2 or kg] >= 0, default 0): inertia of a shaft, mass of a mass
         speed (number [rad/s or m/s], default none): at the start; none: follows from the others, else 0
-        angle (number [rad or m], default 0): angle or position at the start
+        angle (number [rad or m], default none): at the start; none: 0, of a mass where its crank holds it
         fixed (flag, default false): whether it is the housing
     """
 
@@ -55,7 +55,7 @@ class Node:
     domain: Domain = Domain.ROTATION
     inertia: float = 0.0
     speed: float | None = None
-    angle: float = 0.0
+    angle: float | None = None
     fixed: bool = False
 
     def _accept(self) -> None:
@@ -294,6 +294,10 @@ class Component(Element):
         """Gears by the contacts that are closed in them, of a gearbox."""
         return None
 
+    def grips(self) -> Iterable[tuple[str, Node, Node]]:
+        """Parts that are closed at the start, each with the two shafts that then turn together."""
+        return ()
+
     def part(self, name: str) -> Element | ThermalNode | Node:
         """A part by its name within this component; KeyError when there is none."""
         named = {part.name: part for part in self.parts()}
@@ -320,6 +324,10 @@ class Component(Element):
 
         The tolerances of a run are absolute too, so a state should not be small against 1.
         """
+        return ()
+
+    def start_positions(self) -> tuple[tuple[Node, float], ...]:
+        """Masses that it holds at a position of its own, with that at the start [m]."""
         return ()
 
     def passive(self) -> Passive | None:

@@ -76,6 +76,7 @@ class Spec:
     whole: bool = False  # a whole number
     rising: str = ""  # of a curve: "strictly", or "weakly" where equal x mean a jump
     constant: bool = False  # of a curve: a number stands for the same value everywhere
+    rows: bool = False  # of numbers: rows of equally many
     choices: tuple[str, ...] = ()  # a text in Python, its place among these in the core
     example: Any = None  # a value that fits the examples of the other fields
     last: bool = False  # stands behind all other fields in files and tables
@@ -148,9 +149,12 @@ def flag(doc: str, *, default: bool = MISSING) -> Any:  # type: ignore[assignmen
     return _field(Spec("param", "1", doc, flag=True), default)
 
 
-def choice(doc: str, *, choices: tuple[str, ...], default: str = MISSING) -> Any:  # type: ignore[assignment]
-    """One of several words in Python, a `Word` of the C++ `Params`, whose enum the build writes from the words."""
-    return _field(Spec("param", "1", doc, choices=choices), default)
+def choice(doc: str, *, choices: tuple[str, ...], default: str | None = MISSING) -> Any:  # type: ignore[assignment]
+    """One of several words in Python, a `Word` of the C++ `Params`, whose enum the build writes from the words.
+
+    A composite may have one with default None.
+    """
+    return _field(Spec("param", "1", doc, default is None, choices=choices), default)
 
 
 def curve(
@@ -185,15 +189,16 @@ def numbers(
     rising: str = "",
     above: float | None = None,
     at_least: float | None = None,
+    rows: bool = False,
     example: tuple[Any, ...] | None = None,
 ) -> Any:
-    """A list of numbers, or of rows of equally many: a `Curve` of the C++ `Params` whose points hold one number each.
+    """A list of numbers, or with `rows` rows of equally many: a `Curve` of the C++ `Params` with points of one number.
 
     Rows stand one after another. With `rising` "strictly" each number must be above the one before. Left out, where it
     may be, a single zero stands for it there.
     """
     bounds: dict[str, Any] = {"above": above, "at_least": at_least, "rising": rising}
-    spec = Spec("numbers", unit, doc, default is None, **bounds, units=units, example=example)
+    spec = Spec("numbers", unit, doc, default is None, **bounds, units=units, rows=rows, example=example)
     return _field(spec, default)
 
 

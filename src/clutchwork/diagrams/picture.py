@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
+from clutchwork.base.writing import put
 from clutchwork.diagrams.letters import FONT
 from clutchwork.diagrams.marks import PAPER, Disc, Label, Line, Mark, around
 
@@ -31,7 +32,7 @@ class Diagram:
 
     def save(self, path: str | Path) -> None:
         """Write the picture as SVG."""
-        target("diagram.save", path, "gearbox.svg", (".svg",)).write_text(self.svg, encoding="utf-8")
+        put(fitting("diagram.save", path, "gearbox.svg", (".svg",)), self.svg)
 
     def _repr_svg_(self) -> str:
         return self.svg

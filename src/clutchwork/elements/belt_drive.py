@@ -55,10 +55,10 @@ class BeltDrive(Heating):
     tensioner: SignalLike | None = signal(
         "N", "tension of one strand, held by a tensioner", default=None, presses=True, instead_of="preload"
     )
-    tensioned: str = choice(
-        "strand of the tensioner, by what it is while the force is positive",
+    tensioned: str | None = choice(
+        "strand of the tensioner, by what it is while the force is positive; slack by default",
         choices=("slack", "tight"),
-        default="slack",
+        default=None,
     )
     crossed: bool = flag("the belt is crossed: the pulleys turn opposite ways", default=False)
     mass_per_length: float = param("kg/m", "mass of the belt over its length", default=0.0, at_least=0.0)
@@ -71,6 +71,8 @@ class BeltDrive(Heating):
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         least = self.radius_base + self.radius_follower
+        if self.tensioned is not None and self.tensioner is None:
+            return [("tensioned", "needs a tensioner", "give `tensioner` in place of `preload`, or leave it out")]
         if self.centre_distance > least:
             return []
         message = f"is {self.centre_distance:g} m, not above both radii together, {least:g} m"
@@ -92,7 +94,7 @@ class BeltDrive(Heating):
             return 2.0 * tanh(power / 2.0), 2.0 * tanh(power / 2.0)
         # a positive force resists backward slip
         slack, tight = exp(power) - 1.0, 1.0 - exp(-power)
-        return (tight, slack) if self.tensioned == "slack" else (slack, tight)
+        return (slack, tight) if self.tensioned == "tight" else (tight, slack)
 
     def parts(self) -> Iterator[Part]:
         """The circumferences of both pulleys and what joins them to their shafts, and the grip between them."""

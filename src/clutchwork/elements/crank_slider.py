@@ -52,6 +52,12 @@ class CrankSlider(Component):
         """Angle at the start [rad]."""
         return (angle_of(self.shaft) - angle_of(self.support) + self.phase,)
 
+    def start_positions(self) -> tuple[tuple[Node, float], ...]:
+        """Where it holds the mass at the start [m]."""
+        (angle,) = self.initial_states()
+        along = self.rod * sqrt(1.0 - (self.radius / self.rod * sin(angle)) ** 2)
+        return ((self.mass, self.radius * cos(angle) + along),)
+
     def start_ratio(self) -> float:
         """Speed of the mass over that of the shaft at the start [m]."""
         (angle,) = self.initial_states()

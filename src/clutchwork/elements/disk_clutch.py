@@ -56,7 +56,9 @@ class DiskClutch(Heating):
     outer_diameter: float | None = param("m", "outer diameter of the ring", default=None, above=0.0)
     inner_diameter: float | None = param("m", "inner diameter of the ring", default=None, at_least=0.0)
     surfaces: int = param("1", "number of friction surfaces", default=4, above=0.0, whole=True)
-    area: float = param("m2", "area that the pressure acts on", default=1e-3, above=0.0)
+    area: float | None = param(
+        "m2", "area that the pressure acts on, and that wears", default=None, above=0.0, example=1e-3
+    )
     derating: float = param("1", "factor on the capacity: 1 new, less when worn", default=1.0, above=0.0)
     threshold: float = param(
         "Pa", "pressure, or force in N, up to which it stays open", default=0.0, at_least=0.0, units=("N",)
@@ -101,6 +103,9 @@ class DiskClutch(Heating):
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = ring_problems(self.radius, self.outer_diameter, self.inner_diameter)
+        if self.area is None and (self.pressure is not None or self.wear_rate is not None):
+            beside = "a pressure" if self.pressure is not None else "wear_rate"
+            found.append(("area", f"is missing beside {beside}", "give the area of the piston in m2"))
         found += fault_problems(self.fault, self.fault_time, self.fault_signal)
         if self.thermal_mass is not None and self.heat is not None:
             found.append(
@@ -135,7 +140,7 @@ class DiskClutch(Heating):
     @property
     def gain(self) -> float:
         """Torque per unit of pressure [m3] or of force [m] and coefficient."""
-        area = 1.0 if self.pressure is None else self.area
+        area = 1.0 if self.pressure is None else self.area or 1.0
         return self.derating * self.surfaces * self.effective_radius * area
 
     def parts(self) -> Iterable[Component | ThermalNode]:
@@ -184,7 +189,7 @@ class DiskClutch(Heating):
     def _wear(self) -> Wear | None:
         if self.wear_rate is None:
             return None
-        area = self.area * self.surfaces
+        area = (self.area or 1.0) * self.surfaces
         return Wear(f"{self.name}.wear", rate=self.wear_rate, area=area, heat=HeatFlow(self))
 
     def sums(self) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from clutchwork.elements.bases.heating import Heating
         State("angle", "rad", "angle of follower - base", span=1e-7),
         State("sleeve", "1", "position of the sleeve, 0 out, 1 in"),
     ),
-    hooks=("margin", "cross", "turns", "heat"),
+    hooks=("margin", "cross", "turns", "settle", "heat"),
 )
 class DogClutch(Heating):
     """Teeth that mesh only when tooth faces gap and the slip is below `speed`; then they hold any torque.
@@ -45,7 +45,7 @@ class DogClutch(Heating):
     reversed: bool = flag("a negative command closes it", default=False)
     command: SignalLike = signal("1", "wanted position of the sleeve, 0 out, 1 in")
     initial_angle: float = option("rad", "angle at the start, 0 in the middle of a gap", default=0.0)
-    engaged: bool = option("1", "in mesh at the start", default=False, flag=True)
+    engaged: bool = option("1", "in mesh at the start, at any slip", default=False, flag=True)
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
@@ -53,11 +53,13 @@ class DogClutch(Heating):
 
     def initial_states(self) -> tuple[float, ...]:
         """Angle [rad] and place of the sleeve at the start."""
-        return (self.initial_angle, 1.0 if self.engaged else 0.0)
+        # in mesh it is counted from the middle of the gap
+        angle = remainder(self.initial_angle, tau / self.teeth) if self.engaged else self.initial_angle
+        return (angle, 1.0 if self.engaged else 0.0)
 
     def stored(self, states: Sequence[float], torque: float) -> float:
         """Energy of the flank that is pressed [J]; none where there is no torque, whatever the angle."""
-        depth = max(abs(remainder(states[0], tau / self.teeth)) - self.gap / 2, 0.0)
+        depth = max(abs(states[0]) - self.gap / 2, 0.0)
         return 0.5 * self.stiffness * depth**2 if torque else 0.0
 
 

@@ -26,16 +26,19 @@ from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.conduction import Conduction
 from clutchwork.elements.motor_torque import MotorTorque
 
+# speed [rad/s] or [m/s] over which a generator gets its torque, where it has more than the motor has at rest
+NEAR_REST = 0.1
+
 
 @component(Role.COMPOSITE)
 class ElectricMotor(Heating):
     """Motor that follows a torque command within its envelope in all four quadrants, with its losses.
 
     Use it for traction motors, starters, generators and servo drives. The command lags first and is clipped then, to
-    `max_torque` and `max_power` while it drives, to those of the generator while it brakes. `electric_power` is what
-    it draws, work and losses, and is negative where it charges. The losses are a polynomial, plus a map, or follow from
-    a map of efficiencies; tables over abs(speed) and abs(torque) are held beyond their ends. They warm its `heat` node,
-    or a `winding` of its own, whose temperature may derate it.
+    `max_torque` and `max_power` while it drives, to those of the generator while it brakes; at rest it holds no more
+    than it drives with. `electric_power` is what it draws, work and losses, and is negative where it charges. The
+    losses are a polynomial, plus a map, or follow from a map of efficiencies; tables over abs(speed) and abs(torque)
+    are held beyond their ends. They warm its `heat` node, or a `winding` of its own, whose temperature may derate it.
     """
 
     shaft: Node = port("shaft that a positive torque accelerates")
@@ -77,10 +80,10 @@ class ElectricMotor(Heating):
         "N m", "abs(torque) of the columns of the map", units=("N",), rising="strictly", at_least=0.0, default=None
     )
     losses: Sequence[Sequence[float]] | None = numbers(
-        "W", "map of losses, a row over the torques for each speed", at_least=0.0, default=None
+        "W", "map of losses, a row over the torques for each speed", at_least=0.0, default=None, rows=True
     )
     efficiencies: Sequence[Sequence[float]] | None = numbers(
-        "1", "map of efficiencies, a row over the torques for each speed", above=0.0, default=None
+        "1", "map of efficiencies, a row over the torques for each speed", above=0.0, default=None, rows=True
     )
     derating: Points | None = curve(
         "K",
@@ -162,6 +165,10 @@ class ElectricMotor(Heating):
         speeds = union([0.0], [x for x, _ in drives], [x for x, _ in brakes], grid.rows if map_ is not None else [])
         torques = union([0.0], grid.columns) if map_ is not None else (0.0,)
         motoring, generating = at_each(drives, speeds), at_each(brakes, speeds)
+        if generating[0] > motoring[0]:
+            speeds = union([NEAR_REST], speeds)
+            motoring, generating = at_each(drives, speeds), at_each(brakes, speeds)
+            generating = (motoring[0], *generating[1:])
         return MotorTorque(
             self.name,
             shaft=self.shaft,

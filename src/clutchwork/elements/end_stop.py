@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from clutchwork.declare import HOUSING, Found, Node, Role, component, option, param, port
+from clutchwork.declare.node import Domain
+from clutchwork.elements.bases.ratios import angle_of
 from clutchwork.elements.bases.stop import Stop
 
 
@@ -53,6 +55,13 @@ class EndStop(Stop):
             return []
         return [("initial_position", f"is {start:g}, outside {lower:g} to {upper:g}", "start between the ends")]
 
+    def is_open(self) -> bool:
+        """Whether its position at the start may follow from what moves a mass."""
+        ends: tuple[Any, ...] = (self.follower, self.base or HOUSING)
+        if self.initial_position is not None or not all(isinstance(node, Node) for node in ends):
+            return False
+        return any(node.domain is Domain.TRANSLATION and node.angle is None for node in ends)
+
     def rests(self) -> bool:
         """Whether it is at an end at the start."""
         return self.initial_states()[0] in (self.lower, self.upper)
@@ -61,4 +70,4 @@ class EndStop(Stop):
         """Position at the start [rad]."""
         if self.initial_position is not None:
             return (self.initial_position,)
-        return (self.follower.angle - (self.base or HOUSING).angle,)
+        return (angle_of(self.follower) - angle_of(self.base),)

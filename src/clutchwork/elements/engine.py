@@ -26,6 +26,9 @@ from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.engine_torque import EngineTorque
 from clutchwork.laws.coulomb import Coulomb
 
+# speeds [rad/s] above the stall speed over which a ripple comes in that makes the burning part negative
+RIPPLE_BAND = 1.0
+
 
 @component(Role.COMPOSITE)
 class Engine(Component):
@@ -33,8 +36,10 @@ class Engine(Component):
 
     Use it for any engine that drives a driveline. Its torque is `motoring + u (full_load - motoring)`, where u follows
     the throttle with `lag`; an idle control with a projected integral raises it, a limiter lowers it. Boost builds in
-    `boost_lag`, the burning part may ripple over the crank angle. Nothing burns below `stall_speed`, and at rest the
-    motoring torque holds up to its value there. Tables are held beyond their ends.
+    `boost_lag`, the burning part may ripple over the crank angle. Nothing burns below `stall_speed` or backward: an
+    engine that stands burns if that is 0, and has to be started if it is above. At rest the motoring torque holds up to
+    its value there. A ripple that makes the burning part negative comes in over 1 rad/s above `stall_speed`. Tables are
+    held beyond their ends.
 
     Source of the curves: Simscape Driveline, Generic Engine; VehicleInterfaces.Engines.
     """
@@ -59,7 +64,7 @@ class Engine(Component):
         "1", "throttles of the columns of a torque map, from 0", rising="strictly", at_least=0.0, default=None
     )
     torques: Sequence[Sequence[float]] | None = numbers(
-        "N m", "torque map, a row over the throttles for each speed, instead of both curves", default=None
+        "N m", "torque map, a row over the throttles for each speed, instead of both curves", default=None, rows=True
     )
     lag: float = param("s", "time constant of the throttle, 0: it acts at once", default=0.0, at_least=0.0)
     idle_speed: float | None = param(
@@ -90,7 +95,9 @@ class Engine(Component):
     initial_throttle: float = option("1", "throttle that has come through at the start", default=0.0, at_least=0.0)
     initial_idle: float = option("1", "integral of the idle control at the start", default=0.0, at_least=0.0)
     initial_boost: float = option("1", "share of the full boost at the start", default=0.0, at_least=0.0)
-    initial_crank: float = option("rad", "crank angle at the start", default=0.0)
+    initial_crank: float | None = option(
+        "rad", "crank angle at the start, by default that of shaft less base", default=None
+    )
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
@@ -180,6 +187,8 @@ class Engine(Component):
     def _grids(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...], tuple[float, ...]]:
         """Speeds, throttles, torques, and what boost adds."""
         borders = [0.0, self.stall_speed]
+        if sum(map(abs, self.amplitudes or ())) > 1.0:
+            borders.append(self.stall_speed + RIPPLE_BAND)
         if self.max_speed is not None and not self.cut:
             borders += [self.max_speed - self.limit_band, self.max_speed]
         if self.torques is not None:

@@ -22,6 +22,7 @@ from clutchwork.declare import (
     signal,
 )
 from clutchwork.elements.bases.grids import shape_problems
+from clutchwork.elements.bases.ratios import angle_of
 
 STATES = (
     State("opening", "1", "throttle that has come through"),
@@ -54,7 +55,10 @@ class EngineTorque(Component):
         "1", "grid of throttles, from 0", rising="strictly", at_least=0.0, example=(0.0, 1.0)
     )
     torques: Sequence[Sequence[float]] = numbers(
-        "N m", "torque, a row over the throttles for each speed", example=((-0.5, 4.0), (-0.6, 6.0), (-1.0, 5.0))
+        "N m",
+        "torque, a row over the throttles for each speed",
+        example=((-0.5, 4.0), (-0.6, 6.0), (-1.0, 5.0)),
+        rows=True,
     )
     deficit: Sequence[float] = numbers(
         "N m", "torque that full boost adds at full throttle, one for each speed", example=(0.0, 1.0, 2.0)
@@ -83,7 +87,9 @@ class EngineTorque(Component):
     initial_opening: float = option("1", "throttle that has come through at the start", default=0.0, at_least=0.0)
     initial_idle: float = option("1", "integral of the idle control at the start", default=0.0, at_least=0.0)
     initial_boost: float = option("1", "boost at the start", default=0.0, at_least=0.0)
-    initial_crank: float = option("rad", "crank angle at the start", default=0.0)
+    initial_crank: float | None = option(
+        "rad", "crank angle at the start, by default that of shaft less base", default=None
+    )
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
@@ -112,5 +118,8 @@ class EngineTorque(Component):
 
     def initial_states(self) -> tuple[float, ...]:
         """Their values at the start."""
-        starts = (self.initial_opening, self.initial_idle, self.initial_boost, self.initial_crank)
+        crank = self.initial_crank
+        if crank is None:
+            crank = angle_of(self.shaft) - angle_of(self.base)
+        starts = (self.initial_opening, self.initial_idle, self.initial_boost, crank)
         return tuple(float(start) for start, used in zip(starts, self._used(), strict=True) if used)

@@ -25,6 +25,7 @@ class Coordinate(SpringDamper):
         return {"amplitude": {"follower": 1}}
 
 
+SEGMENTS = 8
 GEOMETRY = ("length", "outer_diameter")
 
 
@@ -62,7 +63,9 @@ class FlexibleShaft(Heating):
     inner_diameter: float = param("m", "diameter of the bore", default=0.0, at_least=0.0)
     shear_modulus: float = param("Pa", "shear modulus", default=8e10, above=0.0)
     density: float = param("kg/m3", "density", default=7850.0, above=0.0)
-    segments: int = param("1", "springs in a row", default=8, at_least=1, at_most=200, whole=True)
+    segments: int | None = param(
+        "1", "springs in a row, 8 by default", default=None, at_least=1, at_most=200, whole=True
+    )
     modes: int | None = param(
         "1", "modes of the bar that it has, in place of segments", default=None, at_least=1, at_most=50, whole=True
     )
@@ -70,6 +73,8 @@ class FlexibleShaft(Heating):
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        if self.modes is not None and self.segments is not None:
+            return [("segments", f"is {self.segments:g} beside {self.modes:g} modes", "give one of the two")]
         whole, bar = (self.stiffness, self.inertia), (self.length, self.outer_diameter)
         both = "give `stiffness` and `inertia`, or `length` and `outer_diameter`"
         if whole != (None, None) and bar != (None, None):
@@ -94,6 +99,11 @@ class FlexibleShaft(Heating):
         return self.inertia or self.density * self._polar_moment * (self.length or 1.0)
 
     @property
+    def _count(self) -> int:
+        """Springs in a row."""
+        return SEGMENTS if self.segments is None else int(self.segments)
+
+    @property
     def _polar_moment(self) -> float:
         """Polar second moment of the section [m4]."""
         return pi * ((self.outer_diameter or 0.0) ** 4 - self.inner_diameter**4) / 32.0
@@ -103,8 +113,9 @@ class FlexibleShaft(Heating):
         if self.modes is not None:
             return frequencies(self.whole_stiffness, self.whole_inertia, int(self.modes), fixed=fixed)
         step = 0.5 if fixed else 0.0
-        scale = 2.0 * self.segments * sqrt(self.whole_stiffness / self.whole_inertia)
-        return tuple(scale * sin((j - step) * pi / (2.0 * self.segments)) for j in range(1, int(self.segments) + 1))
+        count = self._count
+        scale = 2.0 * count * sqrt(self.whole_stiffness / self.whole_inertia)
+        return tuple(scale * sin((j - step) * pi / (2.0 * count)) for j in range(1, count + 1))
 
     def notes(self) -> list[str]:
         """Its lowest natural frequencies."""
@@ -123,7 +134,7 @@ class FlexibleShaft(Heating):
             made = Modal(self.name, domain, self.whole_stiffness, self.whole_inertia, self.damping_time, Coordinate)
             yield from made.parts((self.base, self.follower), int(self.modes), self.heat, self.heat_share)
             return
-        count, nodes = int(self.segments), list[Node]()
+        count, nodes = self._count, list[Node]()
         for number in range(count + 1):
             end = {0: self.base, count: self.follower}.get(number)
             # an end that the housing holds needs no shaft
@@ -145,6 +156,6 @@ class FlexibleShaft(Heating):
             )
 
     def _node(self, number: int) -> Node:
-        share = (0.5 if number in (0, self.segments) else 1.0) / self.segments
+        share = (0.5 if number in (0, self._count) else 1.0) / self._count
         domain = self.base.domain if self.follower.fixed else self.follower.domain
         return Node(f"{self.name}.node_{number + 1}", domain, share * self.whole_inertia)

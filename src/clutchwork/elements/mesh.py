@@ -35,6 +35,7 @@ class Mesh(Meshing):
         "rows of speed of the input [rad/s], efficiency where the input drives, efficiency where the output drives,"
         " friction [N m] at the input of either",
         example=((0.0, 0.95, 0.94, 0.0, 0.0),),
+        rows=True,
     )
 
     def problems(self) -> Found:

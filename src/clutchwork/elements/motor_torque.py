@@ -66,6 +66,7 @@ class MotorTorque(Heating):
         "map of losses [W] or efficiencies, a row over the torques for each speed",
         at_least=0.0,
         example=((0.0, 1.0), (1.0, 3.0), (2.0, 4.0)),
+        rows=True,
     )
     map_of: str = choice("what the map holds", choices=("losses", "efficiencies"), default="losses")
     no_load_loss: float = param("W", "constant loss", default=0.0, at_least=0.0)
@@ -93,6 +94,9 @@ class MotorTorque(Heating):
         for name, values in (("motoring", self.motoring), ("generating", self.generating)):
             if len(values) != rows:
                 found.append((name, f"has {len(values)} values for {rows} speeds", "give one for each speed"))
+        if self.generating[0] > self.motoring[0]:
+            fault = f"starts at {self.generating[0]:g} N m, above motoring with {self.motoring[0]:g} N m"
+            found.append(("generating", fault, "give at rest no more than it drives with: there it could not stand"))
         if len(self.map) != rows or any(len(row) != columns for row in self.map):
             found.append(("map", f"must have {rows} rows of {columns} numbers", "give a row for each speed"))
         return found

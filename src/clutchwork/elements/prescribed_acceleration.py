@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from clutchwork.declare import Role, Signal, SignalLike, component, signal
 from clutchwork.elements.bases.motion import Motion, MotionError, as_signal
 from clutchwork.signals.bases.motions import SignalError, integral
@@ -12,8 +14,10 @@ class PrescribedAcceleration(Motion):
     """Source that accelerates a shaft or a mass exactly as wanted, whatever torque that takes.
 
     Use it for a measured acceleration, a shaken base, a braking of given deceleration. It starts with the speed of the
-    shaft; its speed is the exact integral. Pulses and functions are refused: give the speed.
+    shaft, wherever the run begins; its speed is the exact integral. Pulses and functions are refused: give the speed.
     """
+
+    integrates: ClassVar[bool] = True
 
     acceleration: SignalLike = signal("rad/s2", "wanted acceleration relative to the base", units=("m/s2",))
 

@@ -9,6 +9,7 @@ from clutchwork.elements.bases.geometry import Found
 @component(
     Role.PROCESS,
     states=(State("pressure", "Pa", "pressure on the plates; below zero: what is left to be filled"),),
+    hooks=("margin", "cross"),
 )
 class PressureActuator(Component):
     """Piston that has to fill, then follows its command with a lag and within limits of its rate.

@@ -32,6 +32,7 @@ class RackMesh(Meshing):
         "rows of speed of the shaft [rad/s], efficiency where the shaft drives, efficiency where the mass drives,"
         " friction [N m] at the shaft of either",
         example=((0.0, 0.95, 0.94, 0.0, 0.0),),
+        rows=True,
     )
 
     def problems(self) -> Found:

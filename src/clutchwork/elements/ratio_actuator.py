@@ -2,7 +2,21 @@
 
 from __future__ import annotations
 
-from clutchwork.declare import Component, Role, SignalLike, State, component, option, param, signal
+from clutchwork.declare import (
+    Component,
+    Found,
+    HeatFlow,
+    Node,
+    Rate,
+    Role,
+    SignalLike,
+    State,
+    ThermalNode,
+    component,
+    option,
+    param,
+    signal,
+)
 from clutchwork.elements.bases.ratios import at_start
 
 
@@ -17,6 +31,12 @@ class RatioActuator(Component):
     command: SignalLike = signal("1", "wanted ratio", example=2.0)
     lag: float = param("s", "time constant of the ratio", above=0.0, example=0.2)
     initial_ratio: float | None = option("1", "ratio at the start, that of the command by default", default=None)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        if self.initial_ratio is None and isinstance(self.command, Node | Rate | HeatFlow | ThermalNode):
+            return [("initial_ratio", "is missing, and the command says none at the start", "give the ratio there")]
+        return []
 
     def initial_states(self) -> tuple[float, ...]:
         """Ratio at the start."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 from clutchwork.declare import Found, Node, Role, State, Way, component, numbers, option, param, port
@@ -74,10 +75,10 @@ class TorqueConverter(Heating):
             return found
         ratios = self.speed_ratio
         found = at_each_ratio("torque_ratio", self.torque_ratio, ratios)
-        for ratio, m in zip(ratios, self.torque_ratio, strict=False):
-            if not found and ratio * m > 1.0 + 1e-9:
-                fault = f"is {m:g} at speed ratio {ratio:g}, above {1.0 / ratio:.4g}: it would give power"
-                found.append(("torque_ratio", fault, "give at most 1 over the speed ratio there"))
+        if not found and (worst := _most_power(ratios, self.torque_ratio)) is not None:
+            ratio, m = worst
+            fault = f"is {m:.4g} at speed ratio {ratio:.4g}, above {1.0 / ratio:.4g}: it would give power"
+            found.append(("torque_ratio", fault, "give at most 1 over the speed ratio there, also between the points"))
         if self.k_factor is not None and len(self.k_factor) != len(ratios) - 1:
             count = f"has {len(self.k_factor)} values for {len(ratios) - 1} speed ratios below 1"
             found.append(("k_factor", count, "give one for each; at ratio 1, where it is infinite, k is 0"))
@@ -95,3 +96,16 @@ class TorqueConverter(Heating):
             "turns backward with both wheels, where its torque is not known and counts as none",
             ("let the engine turn forward, or take the converter out of the way by a clutch"),
         )
+
+
+def _most_power(ratios: Sequence[float], multiples: Sequence[float]) -> tuple[float, float] | None:
+    """The speed ratio at which the turbine has the most power, and m there, where that is more than goes in."""
+    places = list(zip(ratios, multiples, strict=True))
+    for (x, m), (x_next, m_next) in pairwise(places.copy()):
+        slope = (m_next - m) / (x_next - x)
+        # ratio times m is a parabola between two points
+        top = 0.5 * (x - m / slope) if slope < 0.0 else x
+        if x < top < x_next:
+            places.append((top, m + slope * (top - x)))
+    worst = max(places, key=lambda place: place[0] * place[1])
+    return worst if worst[0] * worst[1] > 1.0 + 1e-9 else None

@@ -205,6 +205,16 @@ class Transmission(Heating):
             if name in drag:
                 yield entry(f"drag.{name}", f"{own}.drag", drag[name], DRAG, ends, self._heat(), closed=False)
 
+    def grips(self) -> Iterable[tuple[str, Node, Node]]:
+        """The shift elements that are closed in the gear at the start."""
+        box = self._box
+        if box is None or not self._in_gear(box):
+            return
+        nodes, closed = {**self._nodes(box), HOUSING.name: HOUSING}, box.closed_in(str(self.gear))
+        for element in box.elements:
+            if element.name in closed:
+                yield f"{self.name}.{element.name}", nodes[element.base], nodes[element.follower]
+
     @classmethod
     def entry_kinds(cls, values: Mapping[str, Any]) -> Mapping[str, str]:
         """Kind of each element that its tables may describe, where they do not say another."""

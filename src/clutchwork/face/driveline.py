@@ -111,10 +111,13 @@ class Driveline:
         return self.add_node(Node(name, Domain.ROTATION, *values))
 
     @explained("d.mass")
-    def mass(self, name: str, *, mass: Number = 0.0, speed: Number | None = None, position: Number = 0.0) -> Node:
+    def mass(
+        self, name: str, *, mass: Number = 0.0, speed: Number | None = None, position: Number | None = None
+    ) -> Node:
         """Add a mass that moves along a line.
 
-        Parameters: mass [kg]; speed [m/s] and position [m] at the start. All else is as for a shaft.
+        Parameters: mass [kg]; speed [m/s] and position [m] at the start. All else is as for a shaft; what a crank or
+        cam moves starts where that holds it.
         """
         values: Any = (mass, speed, position)
         return self.add_node(Node(name, Domain.TRANSLATION, *values))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any
@@ -13,6 +12,7 @@ from clutchwork.declare.given import settled
 from clutchwork.declare.node import Node, ThermalNode
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.files.references import References
+from clutchwork.files.toml_text import parsed
 from clutchwork.files.values import Values
 from clutchwork.model.changes import PLACES, Target, changed_model, targets_of
 from clutchwork.model.fields import BROKEN
@@ -88,7 +88,7 @@ def _pairs(texts: Sequence[str]) -> tuple[dict[str, str], list[Problem]]:
 def _plain(text: str) -> Any:
     """A value as TOML, a number as Python writes it, or else a string."""
     try:
-        data = tomllib.loads(f"value = {text}")
+        data = parsed(f"value = {text}")
     except ValueError:
         data = {}
     if list(data) == ["value"]:

@@ -20,7 +20,7 @@ def curve_in_si(value: Any, spec: Spec, at: At) -> Any:
     x, y = PLAIN, at.scale
     if isinstance(value, Mapping):
         unknown = [key for key in value if key not in ("points", "unit_x", "unit")]
-        if unknown or "points" not in value:
+        if unknown or not isinstance(value.get("points"), list | tuple):
             remedy = "write {points = [[x, y], ...], unit_x, unit}"
             raise QuantityError("must be a list of points", shown(dict(value)), remedy)
         x = scale_to_si(value["unit_x"], spec.unit_x, spec.units_x) if "unit_x" in value else x

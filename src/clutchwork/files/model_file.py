@@ -36,13 +36,15 @@ from pathlib import Path
 from typing import Any
 
 from clutchwork.base.errors import ModelError, ModelFileError, Problem, nearest
-from clutchwork.base.paths import fitting, made
+from clutchwork.base.paths import fitting
 from clutchwork.base.regular import read_regular, reason
 from clutchwork.base.shown import listed, shortened, shown
+from clutchwork.base.writing import put
 from clutchwork.declare.node import Domain
 from clutchwork.declare.speech import words_of_files
 from clutchwork.files.lines import Lines
 from clutchwork.files.reader import FORMAT, Reader
+from clutchwork.files.toml_text import parsed
 from clutchwork.files.writer import Writer, toml
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
@@ -98,9 +100,7 @@ def _parsed(path: Path, text: str) -> Any:
     try:
         if path.suffix.lower() == ".json":
             return json.loads(text, object_pairs_hook=_once, parse_constant=_no_constant)
-        import tomllib
-
-        return tomllib.loads(text)
+        return parsed(text)
     except ValueError as error:
         fault = f"is not valid {path.suffix[1:].upper()}: {shortened(str(error))}"
         raise ModelError([Problem("file", "", fault, remedy=_fix(str(error)))], str(path)) from None
@@ -155,7 +155,7 @@ def save(model: Model, path: str | Path) -> None:
     else:
         problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename the file")
         raise ModelError([problem], str(path))
-    made(path).write_text(text, encoding="utf-8")
+    put(path, text)
 
 
 def to_dict(model: Model, *, folder: str | Path | None = None, embed: bool = False) -> dict[str, Any]:

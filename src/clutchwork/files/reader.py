@@ -75,9 +75,9 @@ class Reader(Values):
         ]
         # a mistake is reported already: stand-ins let the rest be checked
         inertia, speed, angle = (
-            stand_in if v is BROKEN else v for v, stand_in in zip(values, (1.0, None, 0.0), strict=True)
+            stand_in if v is BROKEN else v for v, stand_in in zip(values, (1.0, None, None), strict=True)
         )
-        node = Node(name, domain, 0.0 if inertia is None else inertia, speed, angle or 0.0)
+        node = Node(name, domain, 0.0 if inertia is None else inertia, speed, angle)
         model.nodes.append(node)
         self.nodes.setdefault(name, node)
 

@@ -37,7 +37,11 @@ class Writer:
         """A shaft or a mass; what has its default value is left out."""
         names = NODE_FIELDS[node.domain]
         values = dict(zip(names, (node.inertia, node.speed, node.angle), strict=True))
-        given = {key: float(value) for key, value in values.items() if value is not None and (value or key == "speed")}
+        given = {
+            key: float(value)
+            for key, value in values.items()
+            if value is not None and (value or key in ("speed", "position"))
+        }
         return {"name": node.name, **given}
 
     def thermal(self, node: ThermalNode) -> dict[str, Any]:

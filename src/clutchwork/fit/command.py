@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base import shell
+from clutchwork.base.writing import put, replaced
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Law
@@ -40,7 +41,8 @@ def add_command(subparsers: Any) -> None:
         fit_command,
         "parameters of a friction law from measured slip and torque",
         examples=EXAMPLES,
-        codes="Exit code 1: the samples do not determine all free parameters; the results are written all the same.",
+        codes="Exit code 1: the samples do not determine all free parameters, or what is left over is not noise; the "
+        "results are written all the same.",
     )
     fit.add_argument("file", type=Path, help="CSV file; a unit in brackets after the name of a column is converted")
     fit.add_argument("--law", required=True, metavar="KIND", help="friction law, such as stribeck")
@@ -63,6 +65,9 @@ def add_command(subparsers: Any) -> None:
     fit.add_argument("--bounds", metavar="NAME=LOW:HIGH,...", help="narrower bounds; a side may be empty")
     fit.add_argument("--rest", type=float, metavar="SLIP", help="abs(slip) below which a sample counts as at rest")
     fit.add_argument("--confidence", type=float, default=0.95, help="confidence of the intervals, default 0.95")
+    fit.add_argument(
+        "--loss", default="linear", help="linear, soft_l1, huber or cauchy: how samples that are off count"
+    )
     fit.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "fit"), help="default: out/fit")
     shell.add_json(fit)
 
@@ -84,6 +89,7 @@ def fit_command(asked: argparse.Namespace) -> int:
         bounds=_bounds(asked.bounds),
         rest=asked.rest,
         confidence=asked.confidence,
+        loss=asked.loss,
     )
     data = result.data() | {"friction": law_data(result.law)}
     files = list(_write(result, data, asked.out))
@@ -193,10 +199,7 @@ def _write(result: FitResult, data: dict[str, Any], folder: Path) -> Iterator[Pa
     """Results, samples and, last, the picture, which needs a package more."""
     import numpy as np
 
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / "fit.json"
-    path.write_text(shell.as_json(data) + "\n", encoding="utf-8")
-    yield path
+    yield put(folder / "fit.json", shell.as_json(data) + "\n")
     path, samples = folder / "samples.csv", result.samples
     force, speed = ("N", "m/s") if samples.translation else ("N m", "rad/s")
     head = f"time [s],slip [{speed}],load [{force}],measured [{force}],fitted [{force}],equation"
@@ -204,7 +207,8 @@ def _write(result: FitResult, data: dict[str, Any], folder: Path) -> Iterator[Pa
     if samples.temperature is not None:
         head, columns = f"{head},temperature [K]", [*columns, samples.temperature]
     table = np.column_stack(columns)
-    np.savetxt(path, table, delimiter=",", header=head, comments="", fmt="%.10g")
+    with replaced(path) as new:
+        np.savetxt(new, table, delimiter=",", header=head, comments="", fmt="%.10g")
     yield path
     result.plot(folder / "fit.png")
     yield folder / "fit.png"

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from clutchwork.base.errors import ModelError
 from clutchwork.fit.driven import Driven
 from clutchwork.fit.failure import FitError, scipy
+from clutchwork.fit.losses import Loss
 from clutchwork.fit.numbers import Numbers
-from clutchwork.fit.search import STAY
+from clutchwork.fit.search import MOST_ROUNDS, SETTLED, STAY
 from clutchwork.fit.traces import Trace
 from clutchwork.gradients.differentiable import Differentiable, made
 from clutchwork.results.gradient import NoGradient
@@ -41,8 +42,10 @@ class Ended(NamedTuple):
 class Descent:
     """What is minimised: residuals, each over its deviation or the size of its signal."""
 
-    def __init__(self, records: Sequence[Driven], numbers: Numbers) -> None:
-        self.records, self.numbers = records, numbers
+    def __init__(self, records: Sequence[Driven], numbers: Numbers, loss: Loss | None = None) -> None:
+        self.records, self.numbers, self.loss = records, numbers, loss or Loss()
+        # residuals from where on they count less; None: all count in full
+        self.within: Array | None = None
         self.lower, self.upper = numbers.ends()
         self.points, self.fallen = 0, list[str]()  # derivatives that were asked for, and why some did not exist
 
@@ -142,8 +145,35 @@ class Descent:
 
     def solve(self, starts: int) -> list[Ended]:
         """Where the searches from several starts ended, the best one first."""
-        ended = [self._solved(u) for u in self._starts(starts)]
-        return sorted((one for one in ended if one is not None), key=lambda one: one.squares)
+        made = [self._solved(u) for u in self._starts(starts)]
+        ended = sorted((one for one in made if one is not None), key=lambda one: one.squares)
+        return ended if self.loss.is_linear else [self._settled(ended[0]), *ended[1:]]
+
+    def _settled(self, ended: Ended) -> Ended:
+        """With a loss other than squares, by the noise of each signal, which is found on the way."""
+        for _ in range(MOST_ROUNDS):
+            before, self.within = self.within, self._noise(self.residuals(ended.u))
+            if before is not None and np.all(np.abs(self.within - before) <= SETTLED * self.within):
+                break
+            ended = self._solved(ended.u) or ended
+        return ended
+
+    def _noise(self, residuals: Array) -> Array:
+        """From where on residuals count less, for each."""
+        made = np.zeros(len(residuals))
+        for places in self.rows.values():
+            own = np.concatenate(places)
+            made[own] = self.loss.scale(residuals[own], 1.0)
+        return made
+
+    @cached_property
+    def rows(self) -> dict[str, list[NDArray[np.intp]]]:
+        """Places of the residuals of each signal, those of each record on their own."""
+        rows, first = dict[str, list[NDArray[np.intp]]](), 0
+        for one in self.traces:
+            rows.setdefault(one.signal, []).append(np.arange(first, first + len(one.times)))
+            first += len(one.times)
+        return rows
 
     def _starts(self, count: int) -> list[Array]:
         first = np.clip(self.numbers.codes(), self.lower, self.upper)
@@ -176,8 +206,11 @@ class Descent:
             x_scale="jac",
             xtol=1e-10,
             ftol=1e-12,
+            loss=self.loss.searched(self.within),
         )
-        return Ended(found.x, float(np.sum(self.residuals(found.x) ** 2)), found.status > 0)
+        left = self.residuals(found.x)
+        costs = left**2 if self.within is None else self.loss.costs(left, self.within)
+        return Ended(found.x, float(np.sum(costs)), found.status > 0)
 
     def _stay(self) -> Array:
         """Weights of staying at the start values, which alone decide what the samples leave open."""

@@ -13,6 +13,7 @@ from clutchwork.fit.descent import Descent
 from clutchwork.fit.failure import scipy
 from clutchwork.fit.information import FLOOR, Information, information
 from clutchwork.fit.intervals import FEWEST_NEIGHBOURS, alike, interval, widened
+from clutchwork.fit.misfit import patterns
 from clutchwork.fit.result import Parameter
 
 Array = NDArray[np.float64]
@@ -27,16 +28,17 @@ class Known:
     parameters: tuple[Parameter, ...]
     correlation: Array
     alike: dict[str, float]  # of neighbouring residuals by signal, those that are not chance
+    doubts: list[str]  # why residuals are not noise
 
 
 def known(descent: Descent, u: Array, confidence: float) -> Known:
     """Intervals at a confidence, by the derivatives at a solution."""
-    numbers, residuals, jacobian = descent.numbers, descent.residuals(u), descent.jacobian(u)
+    numbers, residuals, jacobian = descent.numbers, _felt(descent, descent.residuals(u)), descent.jacobian(u)
     scales = _scales(descent, jacobian)
     # runs have an error of their own
     found = information(jacobian * scales, _size(descent), False)
     freedom = max(len(residuals) - int(np.sum(~found.lost)), 1)
-    rows = _rows(descent, residuals)
+    rows = {name: (places, [residuals[own] for own in places]) for name, places in descent.rows.items()}
     correlated = {name: alike(parts) for name, (_, parts) in rows.items()}
     covariance = _covariance(found, jacobian * scales, np.diag(scales), _variances(rows, correlated, freedom))
     halves = float(scipy("stats").t.ppf(0.5 + 0.5 * confidence, freedom)) * np.sqrt(np.diag(covariance))
@@ -56,7 +58,42 @@ def known(descent: Descent, u: Array, confidence: float) -> Known:
         for item, value, ends, reason, direction in zip(items, values, limits, why, directions, strict=True)
     )
     deviations = np.sqrt(np.diag(covariance))
-    return Known(made, covariance / np.outer(deviations, deviations), {k: v for k, v in correlated.items() if v})
+    doubts = _doubts(descent, residuals)
+    return Known(
+        made, covariance / np.outer(deviations, deviations), {k: v for k, v in correlated.items() if v}, doubts
+    )
+
+
+def _felt(descent: Descent, residuals: Array) -> Array:
+    """Residuals as they count."""
+    if descent.within is None:
+        return residuals
+    made = residuals.copy()
+    for places in descent.rows.values():
+        own = np.concatenate(places)
+        made[own] = descent.loss.felt(residuals[own], descent.within[own])
+    return made
+
+
+def _doubts(descent: Descent, residuals: Array) -> list[str]:
+    """Patterns over time that are left in a signal, against its variation in all records."""
+    made, values = list[str](), np.concatenate(descent.measured) / np.concatenate(descent.weights)
+    for name, places in descent.rows.items():
+        size = float(np.std(values[np.concatenate(places)]))
+        rows = {f"time of {name}{of}": residuals[own] for of, own in zip(_labels(descent, name), places, strict=True)}
+        made += patterns(rows, size)
+    return made
+
+
+def _labels(descent: Descent, signal: str) -> list[str]:
+    """Names of the records of a signal, for messages."""
+    several = len(descent.records) > 1
+    return [
+        f" ({record.label})" if several else ""
+        for record in descent.records
+        for one in record.traces
+        if one.signal == signal
+    ]
 
 
 def _size(descent: Descent) -> float:
@@ -70,18 +107,6 @@ def _scales(descent: Descent, jacobian: Array) -> Array:
     effects = np.sqrt(np.mean(jacobian**2, axis=0))
     zero = np.array([not item.is_log and item.start == 0.0 for item in descent.numbers.items])
     return np.where(zero & (effects > 0.0), _size(descent) / np.maximum(effects, 1e-300), descent.numbers.scales)
-
-
-def _rows(descent: Descent, residuals: Array) -> dict[str, tuple[list[NDArray[np.intp]], list[Array]]]:
-    """Places and residuals of each signal, those of each record on their own."""
-    rows, first = dict[str, tuple[list[NDArray[np.intp]], list[Array]]](), 0
-    for one in descent.traces:
-        places = np.arange(first, first + len(one.times))
-        of = rows.setdefault(one.signal, ([], []))
-        of[0].append(places)
-        of[1].append(residuals[places])
-        first += len(one.times)
-    return rows
 
 
 def _variances(

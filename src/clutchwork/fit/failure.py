@@ -5,13 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from clutchwork.base.errors import ClutchworkError, advised
 from clutchwork.base.extras import need
 from clutchwork.base.text import counted
 
 
 class FitError(ClutchworkError, ValueError):
-    """Measurements or settings that no fit can use, with the remedy; several of them are in `problems`."""
+    """Measurements or settings that no fit can use, with the remedy; several of them are in `problems`.
+
+    `result` is the fit where it was made and describes nothing, to be looked at: `error.result.plot("fit.png")`.
+    """
+
+    result: Any = None
 
     def __init__(self, quantity: str, message: str, remedy: str, problems: Sequence[FitError] = ()) -> None:
         self.quantity, self.message, self.remedy = quantity, message, remedy
@@ -34,3 +42,22 @@ def refuse(problems: Sequence[FitError]) -> None:
 def scipy(module: str) -> Any:
     """A module of SciPy, imported now; ImportError with the remedy when there is none."""
     return need(f"scipy.{module}", "fit", "a fit")
+
+
+def described_by_nothing(r2: float, causes: Sequence[str], result: Any) -> FitError:
+    """The error of a fit that is worse than the mean of its samples.
+
+    Parameters: causes, those that are likely.
+    """
+    told = f"describes the samples worse than their mean does: r2 is {r2:.3g}"
+    usual = "check units (1/min or rad/s), that no columns are swapped, the load, what is not free and the bounds, try "
+    usual += "other start values, another law or model, or loss='soft_l1' for samples that are off"
+    error = FitError("fit", "; ".join([told, *causes]), usual)
+    error.result = result
+    return error
+
+
+def rising(rows: dict[str, NDArray[np.float64]]) -> str:
+    """What to say where times do not rise and another row does."""
+    found = [name for name, row in rows.items() if len(row) > 1 and np.all(np.diff(row) > 0.0)]
+    return f"; {found[0]} rises: likely time and {found[0]} are swapped" if found else ""

@@ -34,6 +34,7 @@ class Estimate:
     reasons: list[str]  # why a parameter is not determined; "" where it is
     directions: list[str]  # relative changes that the samples cannot tell from no change
     alike: float  # correlation of neighbouring residuals
+    felt: Array  # residuals of the equations as they count [N m]
 
 
 def estimate(search: Search, u: Array, confidence: float) -> Estimate:
@@ -41,6 +42,8 @@ def estimate(search: Search, u: Array, confidence: float) -> Estimate:
     # a bound that samples at rest lean on holds from one side only: it determines nothing
     equations = search.model.equations
     residuals = search.residuals(u)[equations]
+    if not search.loss.is_linear:
+        residuals = search.loss.felt(residuals, search.within)
     known = information(search.jacobian(u)[equations], search.measured.size, search.model.exact)
     freedom = max(len(residuals) - int(np.sum(~known.lost)), 1)
     correlated = alike([residuals])
@@ -59,7 +62,7 @@ def estimate(search: Search, u: Array, confidence: float) -> Estimate:
         for cause, (item, code, half, end) in zip(reasons.causes(known, spread, items), rows, strict=True)
     ]
     directions = reasons.directions(known, spread, items, why)
-    return Estimate(sqrt(variance), t**2 * variance, covariance, limits, why, directions, correlated)
+    return Estimate(sqrt(variance), t**2 * variance, covariance, limits, why, directions, correlated, residuals)
 
 
 def limits_at(search: Search, u: Array, tolerance: float, places: Array) -> list[tuple[float, float]]:

@@ -7,25 +7,33 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from clutchwork.base.text import counted
 from clutchwork.declare.node import Law as LawBase
 from clutchwork.fit import table
 from clutchwork.fit.adjustable import faults
 from clutchwork.fit.elsewhere import widened
 from clutchwork.fit.experiment import advice
-from clutchwork.fit.failure import FitError
+from clutchwork.fit.failure import FitError, described_by_nothing
 from clutchwork.fit.intervals import Estimate, estimate
+from clutchwork.fit.losses import WIDTH, Loss
 from clutchwork.fit.measurement import Measurement, measurement
+from clutchwork.fit.misfit import DESCRIBED, is_worse, patterns
 from clutchwork.fit.model import model_of
 from clutchwork.fit.ordinates import check_inside
+from clutchwork.fit.readings import likely, of_units
 from clutchwork.fit.result import FitResult, Parameter
 from clutchwork.fit.search import Search, Solution
+from clutchwork.fit.sliding import Sliding, noisy
 from clutchwork.fit.temperature import at_temperature
 from clutchwork.fit.unknown import Bounds
 from clutchwork.fit.unknowns import Unknowns
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Law
+
+Array = NDArray[np.float64]
 
 
 def fit_law(
@@ -41,6 +49,8 @@ def fit_law(
     rest: float | None = None,
     confidence: float = 0.95,
     translation: bool = False,
+    loss: str = "linear",
+    loss_width: float = WIDTH,
 ) -> FitResult:
     """Bounded least squares of measured friction torque; see docs/guide/fit.md.
 
@@ -49,12 +59,15 @@ def fit_law(
     law that depends on it, a number or a row, by default the number that the law holds; free, names of the parameters
     that are searched for, by default all that do not start at zero; bounds, {name: (lower, upper)} within
     those of the declaration; rest, abs(slip) [rad/s] below which a sample counts as at rest, by default 1e-3 of the
-    largest; confidence of the intervals; translation, slip in m/s, torque and load in N.
+    largest, or what the noise of the slip reaches where it turns signs; confidence of the intervals; translation, slip
+    in m/s, torque and load in N; loss, "linear" for least squares, "soft_l1", "huber" or "cauchy" for samples that are
+    off, in which residuals count less from loss_width deviations of the noise on.
 
-    Samples that do not determine a parameter are not an error: the result reports it. FitError reports wrong input.
+    Samples that do not determine a parameter are not an error: the result reports it. FitError reports wrong input, and
+    a fit that is worse than the mean of the samples.
     """
     samples = measurement(time, slip, torque, load, temperature=temperature, translation=translation)
-    return _fit(samples, law, free, bounds, rest, confidence)
+    return _fit(samples, law, free, bounds, rest, confidence, Loss(loss, loss_width))
 
 
 def fit_csv(
@@ -70,6 +83,8 @@ def fit_csv(
     bounds: Bounds | None = None,
     rest: float | None = None,
     confidence: float = 0.95,
+    loss: str = "linear",
+    loss_width: float = WIDTH,
 ) -> FitResult:
     """As `fit_law`, from columns of a CSV file.
 
@@ -78,7 +93,7 @@ def fit_csv(
     """
     columns = {"time": time, "slip": slip, "torque": torque, "load": load}
     samples = table.read(path, columns if temperature is None else columns | {"temperature": temperature})
-    return _fit(samples, law, free, bounds, rest, confidence)
+    return _fit(samples, law, free, bounds, rest, confidence, Loss(loss, loss_width))
 
 
 def _fit(
@@ -88,19 +103,62 @@ def _fit(
     bounds: Bounds | None,
     rest: float | None,
     confidence: float,
+    loss: Loss,
 ) -> FitResult:
     _check(law, rest, confidence)
-    samples = at_temperature(samples, law)
-    check_inside(samples, law)
-    model = model_of(samples, law, rest)
-    search = Search(model, Unknowns(law, free, bounds, translation=samples.translation))
-    count, equations = len(search.unknowns.searched), int(np.sum(model.equations))
-    if equations <= count:
-        fault = f"give {equations} equations for {count} parameters"
-        raise FitError("samples", fault, "record more samples that slide, or free fewer parameters")
-    solution = search.solve()
+
+    def searched(samples: Measurement) -> tuple[Search, Solution]:
+        samples = at_temperature(samples, law)
+        check_inside(samples, law)
+        model = model_of(samples, law, rest)
+        search = Search(model, Unknowns(law, free, bounds, translation=samples.translation), loss=loss)
+        count, equations = len(search.unknowns.searched), int(np.sum(model.equations))
+        if equations <= count:
+            fault = f"give {equations} equations for {count} parameters"
+            raise FitError("samples", fault, "record more samples that slide, or free fewer parameters")
+        return search, search.settle()
+
+    search, solution = searched(samples)
+    r2 = _share(search, solution)
     found = widened(search, solution, estimate(search, solution.u, confidence))
-    return _result(search, solution, found, confidence)
+    doubts = _doubts(search, found)
+    worse = is_worse(r2, int(np.sum(search.model.equations)))
+    # runs of the core for a few percent would take long
+    if worse or (doubts and search.model.exact):
+        doubts += _turned(search)
+        doubts += likely(samples, 1.0 - r2, lambda other: _share(*searched(other)))
+    result = _result(search, solution, found, confidence, r2, doubts)
+    if worse:
+        raise described_by_nothing(r2, doubts, result)
+    return result
+
+
+def _share(search: Search, solution: Solution) -> float:
+    """Share of the variation of the torque that a solution describes."""
+    counts = search.model.equations
+    left, values = search.residuals(solution.u)[counts], search.measured.torque[counts]
+    return search.loss.share(left, values, search.within if np.isfinite(search.within) else 1.0)
+
+
+def _turned(search: Search) -> list[str]:
+    """Signs that noise of the slip turned above a threshold of rest that was given."""
+    slips = noisy(search.measured) if isinstance(search.model, Sliding) else np.zeros(0)
+    if np.all(slips <= search.model.rest):
+        return []
+    count = counted(len(slips), "samples")
+    return [f"likely noise of the slip turned the sign of {count} near rest: leave out `rest`, or give {slips[-1]:.3g}"]
+
+
+def _doubts(search: Search, found: Estimate) -> list[str]:
+    """What says that the law does not describe the samples, whatever its parameters."""
+    counts = search.model.equations
+    slip, torque = search.measured.slip[counts], search.measured.torque[counts]
+    size = float(np.sqrt(np.mean(torque**2)))
+    lines = patterns({"slip": found.felt[np.argsort(slip, kind="stable")], "time": found.felt}, size)
+    described = 1.0 - float(np.mean(found.felt**2)) / size**2
+    if described < DESCRIBED:
+        lines.append(f"the law describes {100 * max(described, 0.0):.2g} % of the squares of the torque")
+    return lines
 
 
 def _check(law: Law, rest: float | None, confidence: float) -> None:
@@ -115,12 +173,13 @@ def _check(law: Law, rest: float | None, confidence: float) -> None:
         raise FitError("confidence", f"is {confidence:g}", "give a share such as 0.95")
 
 
-def _result(search: Search, solution: Solution, found: Estimate, confidence: float) -> FitResult:
+def _result(
+    search: Search, solution: Solution, found: Estimate, confidence: float, r2: float, doubts: Sequence[str]
+) -> FitResult:
     unknowns, samples, equations = search.unknowns, search.measured, search.model.equations
     law = unknowns.law_at(solution.u)
     fitted = search.model.torque(law)
-    residuals, torque = (fitted - samples.torque)[equations], samples.torque[equations]
-    variation = float(np.sum((torque - np.mean(torque)) ** 2))
+    residuals = (fitted - samples.torque)[equations]
     places = [place for place, reason in enumerate(found.reasons) if reason]
     ideas = advice(search, solution.u, found.deviation, places) if places else {}
     values = unknowns.values(solution.u)
@@ -139,13 +198,33 @@ def _result(search: Search, solution: Solution, found: Estimate, confidence: flo
         correlation=found.covariance / np.outer(spread, spread),
         confidence=confidence,
         rms=float(np.sqrt(np.mean(residuals**2))),
-        r2=1.0 - float(np.sum(residuals**2)) / variation if variation > 0.0 else float("nan"),
+        r2=r2,
         alike=found.alike,
         converged=solution.converged,
         faults=tuple(faults(law)),
         advice=tuple(f"{name} {message}; {remedy}" for name, message, remedy in law.advice()),
+        doubts=tuple(doubts),
+        remarks=tuple(_remarks(search, residuals, parameters)),
         rest=search.model.rest,
         samples=samples,
         fitted=fitted,
         equations=equations,
     )
+
+
+def _remarks(search: Search, residuals: Array, parameters: Sequence[Parameter]) -> list[str]:
+    """What to know about samples and search."""
+    model, made = search.model, of_units(parameters)
+    unit, force = ("m/s", "N") if search.measured.translation else ("rad/s", "N m")
+    if isinstance(model, Sliding) and len(model.noisy):
+        made.append(
+            f"the noise of the slip turned the sign of {counted(len(model.noisy), 'samples')} near rest: up to "
+            f"{model.rest:.3g} {unit} they count as at rest; give `rest` for another threshold, or remove an offset"
+        )
+    if not search.loss.is_linear:
+        off = int(np.sum(np.abs(residuals) > 2.0 * search.within))
+        made.append(
+            f"residuals count less from {search.within:.3g} {force} on (loss {search.loss.kind!r}): "
+            f"{counted(off, 'samples')} more than twice as far off"
+        )
+    return made

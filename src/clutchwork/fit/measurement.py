@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.fit.failure import FitError
+from clutchwork.fit.failure import FitError, rising
 
 Array = NDArray[np.float64]
 
@@ -93,7 +93,8 @@ def _sensible(rows: dict[str, Array]) -> None:
     back = np.flatnonzero(np.diff(time) <= 0.0)
     if len(back):
         at = back[0] + 1
-        raise FitError("time", f"does not rise at sample {at} ({time[at]:g} s)", "sort the samples by time")
+        other = rising({name: rows[name] for name in ("slip", "torque")})
+        raise FitError("time", f"does not rise at sample {at} ({time[at]:g} s)", f"sort the samples by time{other}")
     if np.any(load < 0.0):
         at = int(np.argmin(load))
         raise FitError("load", f"is {load[at]:g} N m at sample {at}", "give the load as a magnitude, >= 0")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
 from clutchwork.results.plot.chosen import PICTURES
 from clutchwork.results.plot.figure import figure_of
 from clutchwork.results.plot.style import COLOURS
@@ -34,7 +34,7 @@ def picture(result: Fitted, path: str | Path | None = None) -> Figure:
             axes.set_title(f"{letter})  {axes.get_title()}", loc="left")
             axes.set_title("")
         if path is not None:
-            figure.savefig(target("plot", path, "fit.png", PICTURES))
+            figure.savefig(fitting("plot", path, "fit.png", PICTURES))
     return figure
 
 

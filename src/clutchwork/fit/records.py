@@ -16,10 +16,13 @@ from clutchwork.declare.calls import explained
 from clutchwork.fit.descent import Descent, Ended
 from clutchwork.fit.determined import known
 from clutchwork.fit.driven import Driven, driven
-from clutchwork.fit.failure import FitError, refuse
+from clutchwork.fit.failure import FitError, described_by_nothing, refuse
 from clutchwork.fit.followed import Followed
+from clutchwork.fit.losses import WIDTH, Loss
+from clutchwork.fit.misfit import is_worse
 from clutchwork.fit.numbers import Numbers, numbers
 from clutchwork.fit.record import Record
+from clutchwork.fit.record_readings import readings
 from clutchwork.fit.response_result import ResponseFit
 from clutchwork.fit.traces import label
 from clutchwork.gradients.parameters import changes, parameters
@@ -46,6 +49,8 @@ def fit_records(
     bounds: Mapping[str, Pair] | None = None,
     confidence: float = 0.95,
     starts: int = 1,
+    loss: str = "linear",
+    loss_width: float = WIDTH,
 ) -> ResponseFit:
     """Bounded least squares of measured records over numbers of a driveline; see docs/guide/fit.md.
 
@@ -54,10 +59,13 @@ def fit_records(
     "c1.pressure.values" for all ordinates of a table, "c1.pressure.times[3]" for the time of its third knot; own, names
     of numbers that each record has for itself, such as initial values; bounds, {name: (lower, upper)}, by default those
     of the declaration, and a factor of 1000 either way for numbers that stay above zero; confidence of the intervals;
-    starts, searches from other start values too, up to a factor e away, of which the best one counts.
+    starts, searches from other start values too, up to a factor e away, of which the best one counts; loss, "linear"
+    for least squares, "soft_l1", "huber" or "cauchy" for samples that are off, in which residuals count less from
+    loss_width deviations of the noise of their signal on.
 
     Derivatives are those of `cw.differentiable`, exact through locking and breaking away. Numbers that the samples do
-    not determine are not an error: the result reports them. FitError reports all that is wrong with the input.
+    not determine are not an error: the result reports them. FitError reports all that is wrong with the input, and a
+    fit that is worse than the means of the samples.
     """
     listed = [records] if isinstance(records, Record) else list(records)
     names, owned = _names(free), _names(own)
@@ -66,7 +74,7 @@ def fit_records(
     system = model if isinstance(model, System) else model.assemble()
     found = driven(system, listed, problems)
     refuse(problems)
-    return _solved(found, numbers(found, names, owned, bounds or {}), confidence, starts)
+    return _solved(found, numbers(found, names, owned, bounds or {}), confidence, starts, Loss(loss, loss_width))
 
 
 def _names(given: Sequence[str] | str) -> list[str]:
@@ -102,25 +110,34 @@ def _taken(record: Record, of: str, free: Sequence[str], own: Sequence[str]) -> 
             yield FitError(name, f"is free, and {of} sets it", remedy)
 
 
-def _solved(records: Sequence[Driven], searched: Numbers, confidence: float, starts: int) -> ResponseFit:
-    descent = Descent(records, searched)
+def _solved(records: Sequence[Driven], searched: Numbers, confidence: float, starts: int, loss: Loss) -> ResponseFit:
+    descent = Descent(records, searched, loss)
     ended = descent.solve(starts)
     best = ended[0]
     what = known(descent, best.u, confidence)
+    r2 = _share(descent, best)
+    worse = is_worse(r2, len(np.concatenate(descent.measured)))
+    hints = readings(descent)
+    doubts = [*what.doubts, *(hints if worse or what.doubts else ())]
     values = searched.values(best.u)
     followed = tuple(_followed(record, searched, values[searched.places(k)]) for k, record in enumerate(records))
-    return ResponseFit(
+    notes = [*(note for record in records for note in record.notes), *(hints if not doubts else ())]
+    found = ResponseFit(
         parameters=what.parameters,
         values=_changes(records[0], searched.by[: searched.shared], values[: searched.shared]),
         records=followed,
         rms=_rms(followed),
-        r2=_share(descent, best.squares),
+        r2=r2,
         confidence=confidence,
         converged=best.converged,
         correlation=what.correlation,
         alike=what.alike,
-        remarks=(*(note for record in records for note in record.notes), *_remarks(descent, ended, starts)),
+        doubts=tuple(doubts),
+        remarks=(*notes, *_remarks(descent, ended, starts)),
     )
+    if worse:
+        raise described_by_nothing(r2, [*doubts, *notes], found)
+    return found
 
 
 def _changes(record: Driven, names: Sequence[str], values: Array) -> dict[str, object]:
@@ -141,17 +158,16 @@ def _rms(records: Sequence[Followed]) -> dict[str, float]:
     return {name: float(np.sqrt(np.mean(np.concatenate(of) ** 2))) for name, of in rows.items()}
 
 
-def _share(descent: Descent, squares: float) -> float:
+def _share(descent: Descent, best: Ended) -> float:
     """Share of the variation of the samples that the runs describe."""
-    rows = dict[str, list[tuple[Array, Array]]]()
-    for one in descent.traces:
-        size = np.full(len(one.times), descent.sizes[one.signal]) if one.deviation is None else one.deviation
-        rows.setdefault(one.signal, []).append((one.values, size))
-    variation = 0.0
-    for of in rows.values():
-        values, sizes = (np.concatenate(part) for part in zip(*of, strict=True))
-        variation += float(np.sum(((values - np.mean(values)) / sizes) ** 2))
-    return 1.0 - squares / variation if variation > 0.0 else float("nan")
+    values, weights = (np.concatenate(rows) for rows in (descent.measured, descent.weights))
+    scales = np.ones(len(values)) if descent.within is None else descent.within
+    variation = list[float]()
+    for places in descent.rows.values():
+        own = np.concatenate(places)
+        middle = np.median(values[own]) if descent.within is not None else np.mean(values[own])
+        variation.append(float(np.sum(descent.loss.costs((values[own] - middle) / weights[own], scales[own]))))
+    return 1.0 - best.squares / sum(variation) if sum(variation) > 0.0 else float("nan")
 
 
 def _remarks(descent: Descent, ended: Sequence[Ended], starts: int) -> list[str]:

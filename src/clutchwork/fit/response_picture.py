@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
 from clutchwork.results.plot.chosen import PICTURES
 from clutchwork.results.plot.figure import figure_of
 from clutchwork.results.plot.style import COLOURS
@@ -39,7 +39,7 @@ def picture(records: Sequence[Followed], path: str | Path | None = None) -> Figu
                     axes.set_title(record.label if len(records) > 1 else "", loc="left")
         figure.axes[0].legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=2, borderaxespad=0.0)
         if path is not None:
-            figure.savefig(target("plot", path, "fit.png", PICTURES))
+            figure.savefig(fitting("plot", path, "fit.png", PICTURES))
     return figure
 
 

@@ -38,6 +38,7 @@ class ResponseFit:
     converged: bool
     correlation: Array = field(repr=False)  # of the parameters, those that stay above zero by their logarithm
     alike: Mapping[str, float]  # correlation of neighbouring residuals by signal, where it is not chance
+    doubts: tuple[str, ...] = ()  # why the residuals are not noise
     remarks: tuple[str, ...] = ()  # on how the search went
 
     @property
@@ -52,14 +53,14 @@ class ResponseFit:
 
     @property
     def determined(self) -> bool:
-        """Whether the search ended and the samples determine every parameter."""
-        return self.converged and not self.undetermined
+        """Whether the search ended, what is left is noise, and the samples determine every parameter."""
+        return self.converged and not self.doubts and not self.undetermined
 
     @property
     def message(self) -> str:
         """What stands in the way of using the values, one line each; empty when nothing does."""
         lines = [] if self.converged else ["the search did not converge: start closer to it or free fewer parameters"]
-        return "\n".join([*lines, *(str(one) for one in self.undetermined)])
+        return "\n".join([*lines, *self.doubts, *(str(one) for one in self.undetermined)])
 
     @property
     def notes(self) -> str:

@@ -79,6 +79,8 @@ class FitResult(Fitted):
     faults: tuple[str, ...]  # rules of the law that the fitted values break
     advice: tuple[str, ...]  # what the fitted values allow and is rarely wanted
     rest: float  # slip below which a sample counts as at rest
+    doubts: tuple[str, ...] = ()  # why the residuals are not noise
+    remarks: tuple[str, ...] = ()  # on samples and search
 
     @property
     def against(self) -> float:
@@ -94,20 +96,20 @@ class FitResult(Fitted):
 
     @property
     def determined(self) -> bool:
-        """Whether the search ended, the law is valid and the samples determine every parameter."""
-        return self.converged and not self.faults and not self.undetermined
+        """Whether the search ended, the law is valid, what is left is noise, and every parameter is determined."""
+        return self.converged and not self.faults and not self.doubts and not self.undetermined
 
     @property
     def message(self) -> str:
         """What stands in the way of using the values, one line each; empty when nothing does."""
         lines = [] if self.converged else ["the search did not converge: start closer to it or free fewer parameters"]
         lines += [f"the fitted values are not valid: {fault}" for fault in self.faults]
-        return "\n".join(lines + [str(parameter) for parameter in self.undetermined])
+        return "\n".join([*lines, *self.doubts, *(str(parameter) for parameter in self.undetermined)])
 
     @property
     def notes(self) -> str:
         """What to know about the values, one line each."""
-        lines = list(self.advice)
+        lines = [*self.advice, *self.remarks]
         if self.samples.turned:
             lines.append("the torque was given against the slip, as it acts on the follower; its sign was turned")
         if self.against > AGAINST:

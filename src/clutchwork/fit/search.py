@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.fit.failure import scipy
+from clutchwork.fit.losses import Loss
 
 if TYPE_CHECKING:
     from clutchwork.fit.model import Model
@@ -23,6 +24,8 @@ STEP_EXACT, STEP_RUN = 1e-5, 1e-3
 MOST_ITERATIONS = 200
 # weight of staying at the start value, which alone decides what the samples leave open
 STAY = 1e-6
+# times that the noise is found anew for a loss, and by what share it may still change at the end
+MOST_ROUNDS, SETTLED = 20, 1e-3
 
 
 @dataclass(frozen=True)
@@ -31,15 +34,17 @@ class Solution:
 
     u: Array  # codes
     converged: bool
-    squares: float  # N2 m2, sum over the samples
+    squares: float  # N2 m2, sum over the samples, as they count
 
 
 class Search:
     """Residuals of all samples over the codes of the free parameters, and their derivatives."""
 
-    def __init__(self, model: Model, unknowns: Unknowns, scales: Array | None = None) -> None:
+    def __init__(self, model: Model, unknowns: Unknowns, scales: Array | None = None, loss: Loss | None = None) -> None:
         self.model, self.unknowns, self._scales = model, unknowns, scales
-        self.measured = model.measured
+        self.measured, self.loss = model.measured, loss or Loss()
+        # of the residuals, from where on they count less [N m]
+        self.within = np.inf
         self.step = STEP_EXACT if model.exact else STEP_RUN
         self.logs = [unknowns.items[place].is_log for place in unknowns.searched]
 
@@ -78,6 +83,17 @@ class Search:
         stay = STAY * float(np.sqrt(np.sum(self.measured.torque**2))) * (u - self.unknowns.start) / self.scales
         return np.concatenate([self.residuals(u), stay])
 
+    def settle(self) -> Solution:
+        """The best codes; with a loss other than squares the noise, which it is measured by, is found on the way."""
+        made = self.solve()
+        for _ in range(0 if self.loss.is_linear else MOST_ROUNDS):
+            before, own = self.within, self.residuals(made.u)[self.model.equations]
+            self.within = self.loss.scale(own, self.measured.size)
+            if abs(self.within - before) <= SETTLED * self.within:
+                break
+            made = self.solve(made.u)
+        return made
+
     def solve(self, start: Array | None = None, held: Sequence[int] = ()) -> Solution:
         """The best codes within their bounds.
 
@@ -92,17 +108,20 @@ class Search:
             made[moving] = part
             return made
 
+        robust = np.full(len(self.measured.time), self.within) if np.isfinite(self.within) else None
         found = scipy("optimize").least_squares(
             lambda part: self.tied(full(part)),
             np.clip(whole[moving], lower, upper),
             jac=lambda part: derivatives(self.tied, full(part), self, moving),
             bounds=(lower, upper), method="trf", x_scale="jac", xtol=1e-10, ftol=1e-12, gtol=1e-12,
-            max_nfev=MOST_ITERATIONS,
+            max_nfev=MOST_ITERATIONS, loss=self.loss.searched(robust),
         )  # fmt: skip
         # the search comes close to its bounds and never touches them
         close = 1e-9 * np.maximum(self.scales[moving], np.abs(found.x))
         part = np.where(found.x - lower < close, lower, np.where(upper - found.x < close, upper, found.x))
-        return Solution(full(part), found.status > 0, float(np.sum(self.residuals(full(part)) ** 2)))
+        left = self.residuals(full(part))
+        squares = float(np.sum(left**2 if robust is None else self.loss.costs(left, self.within)))
+        return Solution(full(part), found.status > 0, squares)
 
 
 def derivatives(

@@ -19,8 +19,13 @@ Array = NDArray[np.float64]
 
 # deviations of the noise within which two coefficients count as equal
 DOUBT = 3.0
-# share of the largest slip below which a sample counts as at rest, when none is given
+# share of the largest slip below which a sample counts as at rest, when none is given and no sign is wrong
 REST = 1e-3
+# slips of a wrong sign by noise: share of all that are not larger, share of the largest slip that none is above, share
+# of a usual coefficient that shows its sign
+WRONG, NEAR_REST, SHOWN = 0.1, 0.1, 0.25
+# the noise reaches further than the largest of them
+REACH = 1.25
 
 
 def coefficients(law: Law, slips: Array, temperatures: Array | None = None) -> tuple[Array, Array]:
@@ -50,13 +55,15 @@ class Sliding:
     def __init__(self, measured: Measurement, law: Law, rest: float | None) -> None:
         self.measured = measured
         # a law with a band of slip in which it sticks says no more there
-        self.rest = max(at_rest(measured, rest), float(law.band))
+        self.noisy = noisy(measured) if rest is None else np.zeros(0)
+        noise = REACH * float(np.max(self.noisy, initial=0.0))
+        self.rest = max(at_rest(measured, rest), noise, float(law.band))
         self.slides = np.abs(measured.slip) > self.rest
         if not np.any(self.slides):
             largest = float(np.max(np.abs(measured.slip)))
             fault = f"never exceeds {self.rest:g} rad/s, below which a sample counts as at rest"
             raise FitError("slip", fault, f"lower `rest`; the largest slip is {largest:g} rad/s")
-        self.breaks = break_aways(measured, self.slides)
+        self.breaks = break_aways(measured, self.slides, noisy=len(self.noisy) > 0)
 
     @property
     def equations(self) -> NDArray[np.bool_]:
@@ -100,20 +107,45 @@ def at_rest(measured: Measurement, rest: float | None) -> float:
     return REST * float(np.max(np.abs(measured.slip))) if rest is None else float(rest)
 
 
-def break_aways(measured: Measurement, slides: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def noisy(measured: Measurement) -> Array:
+    """Slips that are not at rest by the default and whose sign is wrong by noise: friction would drive.
+
+    Near rest noise turns signs of many. One of a wrong sign among many right ones that are not larger is off otherwise.
+    """
+    slip, loaded = np.abs(measured.slip), measured.load > 0.0
+    share = np.where(loaded, measured.torque * np.sign(measured.slip) / np.where(loaded, measured.load, 1.0), 0.0)
+    wrong = share < -SHOWN * float(np.median(np.abs(share[loaded])))
+    largest = float(np.max(slip))
+    found = np.sort(slip[wrong & (slip > REST * largest) & (slip <= NEAR_REST * largest)])
+    moving = np.sort(slip[(slip > 0.0) & (share != 0.0)])
+    below = np.searchsorted(moving, found, side="right")
+    known = np.flatnonzero(np.searchsorted(np.sort(slip[wrong]), found, side="right") >= WRONG * below)
+    return found[: known[-1] + 1] if len(known) else found[:0]
+
+
+def break_aways(measured: Measurement, slides: NDArray[np.bool_], *, noisy: bool = False) -> NDArray[np.bool_]:
     """The last samples at rest before it slides off under the torque.
 
     Their coefficient is, up to the noise, at least the one just after, else the peak fell between two samples and is
-    not known.
+    not known. Where the slip is noisy the first samples that slide count as at rest: the peak is before them, and what
+    slides slowly is at rest now and then without a zero of the slip.
     """
     found = np.zeros(len(slides), dtype=bool)
-    last = np.flatnonzero(~slides[:-1] & slides[1:])
-    loaded = (measured.load[last] > 0.0) & (measured.load[last + 1] > 0.0)
-    last = last[loaded]
-    along = np.sign(measured.slip[last + 1])
-    before = along * measured.torque[last] / measured.load[last]
-    after = along * measured.torque[last + 1] / measured.load[last + 1]
-    found[last[(before > 0.0) & (before >= after - DOUBT * noise(measured.torque) / measured.load[last])]] = True
+    doubt = DOUBT * noise(measured.torque)
+    for first in np.flatnonzero(~slides[:-1] & slides[1:]) + 1:
+        apart = np.flatnonzero(slides[:first] | (measured.load[:first] <= 0.0))
+        rests = slice(int(apart[-1]) + 1 if len(apart) else 0, int(first))
+        along = np.sign(measured.slip[first])
+        if rests.start == rests.stop or measured.load[first] <= 0.0:
+            continue
+        if noisy and np.all(along * measured.slip[rests] > 0.0):
+            continue
+        share = along * measured.torque[rests] / measured.load[rests]
+        after = along * measured.torque[first] / measured.load[first]
+        place = int(np.argmax(share))
+        place = place if share[place] - share[-1] > doubt / measured.load[first - 1] else len(share) - 1
+        at = rests.start + place
+        found[at] = share[place] > 0.0 and share[place] >= after - doubt / measured.load[at]
     return found
 
 

@@ -12,7 +12,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.shown import shown
 from clutchwork.declare.quantity import QuantityError, scale_to_si
-from clutchwork.fit.failure import FitError
+from clutchwork.fit.failure import FitError, rising
 from clutchwork.results.forms import Mode
 
 if TYPE_CHECKING:
@@ -84,8 +84,8 @@ def row(record: Record, name: str, given: Any, unit: str, of: str) -> tuple[Arra
     falls = np.flatnonzero(~(np.diff(times) > 0.0)) + 1
     if len(times) < 2 or len(falls):
         where = f" at sample {falls[0]}, {times[falls[0]]:g} s" if len(falls) else ""
-        told = f"does not rise{where}"
-        raise FitError(f"{of}{_of_time(given, name)}", told, "give a row of at least two instants [s]")
+        told, other = f"does not rise{where}", rising({name: found})
+        raise FitError(f"{of}{_of_time(given, name)}", told, f"give a row of at least two instants [s]{other}")
     if not np.all(np.isfinite(times)):
         told = f"is from {times[0]:g} to {times[-1]:g} s"
         raise FitError(f"{of}{_of_time(given, name)}", told, "give finite instants [s]")

@@ -10,9 +10,10 @@ from typing import Any
 from clutchwork.base.above import above
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import Problem, UseError, near
-from clutchwork.base.paths import fitting, made, path_of
+from clutchwork.base.paths import fitting, path_of
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import counted
+from clutchwork.base.writing import put
 from clutchwork.declare.calls import explain, explained, explained_methods
 from clutchwork.gearbox import analysis, checks, motion, store
 from clutchwork.gearbox.definition import Definition
@@ -65,7 +66,7 @@ class Gearbox(Definition):
     def save(self, path: str | Path) -> None:
         """Write a gearbox file in TOML."""
         where = fitting("box.save", path, "gearbox.toml", (".toml",))
-        made(where).write_text(store.toml(plain(self)), encoding="utf-8")
+        put(where, store.toml(plain(self)))
 
     def page(self, path: str | Path) -> Path:
         """Write a page, one HTML file: its reader chooses a gear and sees power flow, levers, speeds and torques."""

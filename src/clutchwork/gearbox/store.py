@@ -16,6 +16,7 @@ from typing import Any
 from clutchwork.base.errors import ModelError, ModelFileError, Problem, near
 from clutchwork.base.regular import read_regular, reason
 from clutchwork.base.shown import listed, shortened, shown
+from clutchwork.files.toml_text import parsed
 from clutchwork.gearbox.checks import problems
 from clutchwork.gearbox.definition import Definition
 from clutchwork.gearbox.reader import Reader
@@ -86,9 +87,7 @@ def _parsed(path: Path, text: str) -> Any:
     try:
         if path.suffix.lower() == ".json":
             return json.loads(text)
-        import tomllib
-
-        return tomllib.loads(text)
+        return parsed(text)
     except RecursionError:
         deep = Problem("file", "", "is nested too deeply", remedy="a gearbox file needs four levels")
         raise ModelError([deep], str(path)) from None

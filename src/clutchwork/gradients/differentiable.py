@@ -249,7 +249,8 @@ def _labels(name: str, one: Output) -> list[str]:
 def _refuse(system: System, outputs: Mapping[str, Output]) -> None:
     """What has no derivative, whatever the numbers."""
     problems = [
-        f"{name} is a Python function, which has no derivative; take signals, and differentiate what you make of them"
+        f"{name} is a Python function, which has no derivative; "
+        "take signals, or cw.squared_jerk, and differentiate what you make of them"
         for name, one in outputs.items()
         if isinstance(one, Computed)
     ]

@@ -117,5 +117,4 @@ def _extreme(primal: Primal, one: Extreme) -> Measure:
 def _jerk(primal: Primal, one: SquaredJerk) -> Measure:
     into, acceleration = primal.functional(), signal_at(primal, one.signal, primal.steps.rows)
     jerk.add_jerk(primal, one.signal, acceleration, into)
-    value, kinks = jerk.value(primal.steps, acceleration), jerk.kinks(primal, acceleration)
-    return Measure(value, (into,), primal.t_end, kinks=kinks)
+    return Measure(primal.jerks[one.signal], (into,), primal.t_end, kinks=jerk.kinks(primal, acceleration))

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE
-from clutchwork.gradients import extremes, jerk
+from clutchwork.gradients import extremes
 from clutchwork.gradients.measures import number_of
 from clutchwork.gradients.steps import Steps
 from clutchwork.sweeps.batch import Wanted
 from clutchwork.sweeps.columns import all_needed, moved
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When
-from clutchwork.sweeps.parts import PARTS
+from clutchwork.sweeps.parts import PARTS, squared_jerk
 
 if TYPE_CHECKING:
     from clutchwork.results.forms import Form
@@ -58,6 +58,14 @@ class Plain:
         events = _events(first[3], len(systems))
         return [Run(int(status[n]), _detail(detail[n]), rows[n], *parts[n], events[n]) for n in range(len(systems))]
 
+    def with_jerks(self, system: bytes, forms: Mapping[str, Form]) -> tuple[Run, dict[str, float]]:
+        """One run in steps, and the squared jerks that are asked for, by the signals that they are made of."""
+        asked = {one.signal: one for one in self.wanted.outputs.values() if isinstance(one, SquaredJerk)}
+        columns, own = over_columns([{name: forms[name] for name in asked}])
+        run = self.runs([system], columns, grid=False, steps=True)[0]
+        steps = Steps.of_parts(run.times)
+        return run, {name: in_steps(one, run, steps, own[0]) for name, one in asked.items()}
+
     def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int) -> Any:
         count = len(systems)
         choice = np.arange(count, dtype=np.int64).reshape(-1, 1)
@@ -85,15 +93,9 @@ class Plain:
 
     def values(self, systems: Sequence[bytes], forms: Sequence[Mapping[str, Form]]) -> Array:
         """Outputs of each of the bytes, with the forms of its signals; NaN for what there is not."""
-        columns = all_needed(form for some in forms for form in some.values())
-        places = {column: place for place, column in enumerate(columns)}
+        columns, own = over_columns(forms)
         runs = self.runs(systems, columns, grid=self.on_grid, steps=self.in_steps)
-        return np.array(
-            [
-                self._of(run, {name: moved(form, places) for name, form in own.items()})
-                for run, own in zip(runs, forms, strict=True)
-            ]
-        )
+        return np.array([self._of(run, some) for run, some in zip(runs, own, strict=True)])
 
     def _of(self, run: Run, forms: Mapping[str, Form]) -> list[float]:
         found = list[float]()
@@ -104,8 +106,7 @@ class Plain:
                 number = number_of(run.events, one, self.wanted.contacts)
                 found.append(float(run.events[number, 0]) if number >= 0 else np.nan)
             elif isinstance(one, IN_STEPS):
-                inside = np.asarray(forms[one.signal](run.rows), dtype=float)[steps.rows]
-                found.append(_in_steps(one, steps, inside) if reached else np.nan)
+                found.append(in_steps(one, run, steps, forms) if reached else np.nan)
             else:
                 found += self._on_grid(one, run.grid, forms, reached)
         return found
@@ -121,10 +122,19 @@ class Plain:
         return [float(values[-1] - values[0] if isinstance(one, Integral) else values[-1])]
 
 
-def _in_steps(one: Any, steps: Steps, values: Array) -> float:
+def over_columns(forms: Sequence[Mapping[str, Form]]) -> tuple[list[int], list[dict[str, Form]]]:
+    """Numbers of a row that signals need, and their forms over these alone."""
+    columns = all_needed(form for some in forms for form in some.values())
+    places = {column: place for place, column in enumerate(columns)}
+    return columns, [{name: moved(form, places) for name, form in some.items()} for some in forms]
+
+
+def in_steps(one: Extreme | SquaredJerk, run: Run, steps: Steps, forms: Mapping[str, Form]) -> float:
+    """An output that is looked for within the steps of a run."""
+    values = np.asarray(forms[one.signal](run.rows), dtype=float)
     if isinstance(one, SquaredJerk):
-        return jerk.value(steps, values)
-    return extremes.value(one, extremes.candidates(one, steps, values))
+        return squared_jerk(run.times, values, steps.rows[:, 0])
+    return extremes.value(one, extremes.candidates(one, steps, values[steps.rows]))
 
 
 def _nothing(columns: Sequence[int]) -> tuple[Array, Array]:

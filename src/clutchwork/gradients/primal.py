@@ -48,6 +48,7 @@ class Primal:
     grazes: Array  # time, kind of guard, component, index, difference
     knots: Knots
     steps: Steps
+    jerks: Mapping[str, float]  # squared jerks of the run without derivatives, by the acceleration
     forms: Mapping[str, Form]  # of the signals that are asked for
     bent: Mapping[str, Array]  # derivatives of signals in all rows by numbers that are in their forms
     numbers: int  # by which is differentiated

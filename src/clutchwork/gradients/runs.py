@@ -43,6 +43,7 @@ class Point(NamedTuple):
     knots: Knots
     steps: Steps
     events: Array  # s, of a run without derivatives
+    jerks: Mapping[str, float]  # squared jerks of that run, by the acceleration
     grid: Array  # s, instants of rows
     notes: tuple[str, ...]  # on what is only just differentiable
 
@@ -95,13 +96,13 @@ class Runs:
         chart, words = self.words.at(x)
         system, slopes = words.tobytes(), chart.slopes(x)
         moving = knots(chart, words, slopes, self.wanted.begin, self.wanted.t_end)
-        steps, events = Steps.of_parts(np.zeros(1)), np.zeros(0)
+        steps, events, jerks = Steps.of_parts(np.zeros(1)), np.zeros(0), dict[str, float]()
         if self.plain.in_steps:
-            run = self.plain.runs([system], [], grid=False, steps=True)[0]
+            run, jerks = self.plain.with_jerks(system, self.signals.at(x))
             self._refuse_stopped(run.status, run.detail)
-            steps, events = Steps.of_parts(run.times).inside(), run.events[:, 0]
+            steps, events = Steps.of_parts(run.times).long().inside(), run.events[:, 0]
         notes = tuple(at_rest(chart, words, slopes, [one.name for one in self.task.parameters], self.wanted.t_end))
-        return self._with_grid(Point(x, system, slopes, moving, steps, events, np.zeros(0), notes))
+        return self._with_grid(Point(x, system, slopes, moving, steps, events, jerks, np.zeros(0), notes))
 
     def forward(self, point: Point) -> Run:
         """A run with derivatives by all numbers."""
@@ -162,6 +163,7 @@ class Runs:
             grazes=grazes,
             knots=point.knots,
             steps=point.steps.on(point.grid),
+            jerks=point.jerks,
             forms=self.signals.at(point.x),
             bent=self.signals.bent(point.x, rows),
             numbers=len(point.x),

@@ -19,7 +19,7 @@ Places = NDArray[np.intp]
 
 # how far rows of a run with derivatives stay away from the ends of a step, of its length, and [s]
 INSIDE, MOST_INSIDE, APART = 1e-3, 0.1, 3e-9
-# steps that are left out, as jumps are [s]
+# steps of a run with derivatives that are left out: the instants of its events are not as exact [s]
 LEAST = 1e-9
 SLOPES = np.arange(1, PARTS + 1)
 
@@ -32,22 +32,28 @@ class Steps:
     length: Array  # s
     share: Array  # of each step: places of its rows in it, from 0 to 1
     rows: Places  # of each step: its rows
+    jumps: NDArray[np.bool_]  # whether a signal, a torque or an acceleration jumps where each begins
 
     @classmethod
     def of_parts(cls, times: Array) -> Steps:
         """From the instants of a run whose steps are cut into equal parts."""
         first = steps_of(times)
-        first = first[times[first + PARTS] - times[first] > LEAST * (1.0 + np.abs(times[first]))]
         shares = np.broadcast_to(np.arange(PARTS + 1) / PARTS, (len(first), PARTS + 1))
         rows = first[:, None] + np.arange(PARTS + 1)
-        return cls(times[first], times[first + PARTS] - times[first], shares, rows)
+        return cls(times[first], times[first + PARTS] - times[first], shares, rows, np.diff(first, prepend=-1) != PARTS)
+
+    def long(self) -> Steps:
+        """Those that a run with derivatives can look into."""
+        kept = np.flatnonzero(self.length > LEAST * (1.0 + np.abs(self.begin)))
+        jumps = np.diff(np.cumsum(self.jumps)[kept], prepend=0) > 0
+        return Steps(self.begin[kept], self.length[kept], self.share[kept], self.rows[kept], jumps)
 
     def inside(self) -> Steps:
         """The same steps with rows that stay away from their ends; their places are not known yet."""
         away = np.clip(APART * (1.0 + np.abs(self.begin)) / self.length, INSIDE, MOST_INSIDE)
         shares = np.tile(np.arange(PARTS + 1) / PARTS, (len(self.begin), 1))
         shares[:, 0], shares[:, -1] = away, 1.0 - away
-        return Steps(self.begin, self.length, shares, self.rows)
+        return Steps(self.begin, self.length, shares, self.rows, self.jumps)
 
     @property
     def room(self) -> Array:
@@ -62,7 +68,7 @@ class Steps:
         ends = [self.begin[0], self.end[-1]]
         known, there = np.r_[ends[0], before, ends[1]], np.r_[ends[0], behind, ends[1]]
         begin, end = np.interp(self.begin, known, there), np.interp(self.end, known, there)
-        return Steps(begin, np.maximum(end - begin, LEAST), self.share, self.rows).inside()
+        return Steps(begin, np.maximum(end - begin, LEAST), self.share, self.rows, self.jumps).inside()
 
     @property
     def times(self) -> Array:
@@ -76,7 +82,7 @@ class Steps:
 
     def on(self, grid: Array) -> Steps:
         """The same steps with the places of their rows on a grid."""
-        return Steps(self.begin, self.length, self.share, np.searchsorted(grid, self.times))
+        return Steps(self.begin, self.length, self.share, np.searchsorted(grid, self.times), self.jumps)
 
     def __len__(self) -> int:
         return len(self.begin)

@@ -10,11 +10,14 @@ from clutchwork.declare import Law, Role, State, component, param
 RING = 1e-3
 
 
-@component(Role.LAW, states=(State("elastic", "1", "elastic coefficient", span=RING),))
+@component(
+    Role.LAW, states=(State("elastic", "1", "elastic coefficient", span=RING),), hooks=("margin", "cross", "turns")
+)
 class Dahl(Law):
     """Elastic deflection that turns into sliding: `d elastic/dt = stiffness slip abs(1 - x)^exponent sign(1 - x)`.
 
-    With `x = elastic sign(slip)/kinetic`; the coefficient is `elastic`. Use it for hysteresis that does not depend on
+    With `x = elastic sign(slip)/kinetic`; the coefficient is `elastic`. With an exponent below 1 it is full within a
+    finite slip and stays so until the slip turns. Use it for hysteresis that does not depend on
     the rate, such as in rolling bearings. It has no static coefficient, and it drifts under a load that swings.
 
     Source: P. R. Dahl 1976, doi:10.2514/3.61511.

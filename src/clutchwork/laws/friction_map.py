@@ -32,6 +32,7 @@ class FrictionMap(Tabulated):
         "coefficient while it slips, a row over the speeds for each temperature",
         above=0.0,
         example=((0.3, 0.28, 0.25), (0.29, 0.27, 0.24), (0.22, 0.2, 0.18)),
+        rows=True,
     )
     temperature: SignalLike | None = signal("K", "temperature of the lining", default=None)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
 from clutchwork.results.plot.chosen import PICTURES
 from clutchwork.results.plot.figure import figure_of
 from clutchwork.results.plot.style import COLOURS
@@ -39,7 +39,7 @@ def picture(lin: Described, path: str | Path | None = None) -> Figure:
             first = first or axes
             _shape(axes, mode, last=place == rows - 1)
         if path is not None:
-            figure.savefig(target("plot", path, "modes.png", PICTURES))
+            figure.savefig(fitting("plot", path, "modes.png", PICTURES))
     return figure
 
 

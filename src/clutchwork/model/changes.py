@@ -156,7 +156,11 @@ def field_of(aim: Target) -> tuple[Any, Spec]:
     thing = aim.owner
     for name in aim.path[:-1]:
         thing = getattr(thing, name)
-    return getattr(thing, aim.path[-1]), _spec(thing, aim.path[-1])
+    value = getattr(thing, aim.path[-1])
+    # angles that nobody gave count from 0
+    if value is None and isinstance(thing, Node) and aim.path[-1] == "angle":
+        value = 0.0
+    return value, _spec(thing, aim.path[-1])
 
 
 def _spec(thing: Any, name: str) -> Spec:

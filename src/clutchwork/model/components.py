@@ -14,9 +14,8 @@ from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.declare.speech import path_of
 from clutchwork.model.fields import is_sound, object_problems
-from clutchwork.model.numbers import At, as_float
+from clutchwork.model.numbers import At
 from clutchwork.model.thermal import Within
-from clutchwork.signals.constant import Constant
 
 
 def component_problems(component: Component, at: At | None = None) -> Iterator[Problem]:
@@ -88,7 +87,7 @@ def _sensible(node: Node | ThermalNode) -> bool:
     """Whether the numbers of a node inside of a composite can be computed with."""
     if isinstance(node, ThermalNode):
         return node.capacity is None or 0.0 < node.capacity < inf
-    return 0.0 <= node.inertia < inf and isfinite(node.speed or 0.0) and isfinite(node.angle)
+    return 0.0 <= node.inertia < inf and isfinite(node.speed or 0.0) and isfinite(node.angle or 0.0)
 
 
 def locked_problems(contact: Any, at: At) -> Iterator[Problem]:
@@ -103,21 +102,9 @@ def locked_problems(contact: Any, at: At) -> Iterator[Problem]:
 
 def component_advice(component: Component) -> Iterator[Problem]:
     """What an element and its friction law allow and is rarely wanted."""
-    yield from _never_presses(component)
     yield from _law_advice(component)
     for entry in component.entries():
         yield from component_advice(entry.made) if entry.made is not None else ()
-
-
-def _never_presses(component: Component) -> Iterator[Problem]:
-    """A constant load below zero: a table may dip below zero by an offset, a constant can only have a wrong sign."""
-    for item, spec in specs(type(component), "signal", "alternative"):
-        given = getattr(component, item.name)
-        load = given.value if isinstance(given, Constant) else given
-        if spec.presses and isinstance(load, Real) and load < 0.0:
-            message = "never presses: a load below zero counts as zero"
-            remedy = "give zero or a positive value"
-            yield Problem(path_of(component), item.name, message, f"{as_float(load):g} {spec.unit}", remedy)
 
 
 def _law_advice(component: Component) -> Iterator[Problem]:
@@ -140,6 +127,19 @@ def _law_advice(component: Component) -> Iterator[Problem]:
         yield place.inner(name).problem(message, value=value, remedy=remedy)
 
 
+def _one_shaft(moving: Mapping[str, Node], within: Within, at: At) -> Iterator[Problem]:
+    """Two ports on one shaft, between which nothing acts."""
+    seen = dict[Any, str]()
+    for name, node in moving.items():
+        # nodes inside of a composite are made anew
+        first = seen.setdefault(node.name if within.holds(node) else id(node), name)
+        if first != name:
+            yield at.problem(
+                f"{first} and {name} are both attached to {shown(node.name)}", remedy="attach them to two shafts"
+            )
+            return
+
+
 def connection_problems(component: Component, nodes: Mapping[int, Node], within: Within) -> Iterator[Problem]:
     """Ports that are on foreign nodes, on one and the same node, or of two kinds of motion; `nodes` by identity."""
     joined = ports(component)
@@ -155,12 +155,9 @@ def connection_problems(component: Component, nodes: Mapping[int, Node], within:
             yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
     if not moving:
         yield at.problem("is attached to the housing alone", remedy="attach a port to a shaft")
-    elif len(joined) == 2 and len({node.name if within.holds(node) else id(node) for node in joined.values()}) == 1:
-        names = " and ".join(joined)
-        yield at.problem(
-            f"{names} are both attached to {shown(next(iter(joined.values())).name)}",
-            remedy="attach them to two shafts",
-        )
+    # members of a planetary gear on one shaft lock it
+    elif "carrier" not in joined:
+        yield from _one_shaft(moving, within, at)
     if len({node.domain for node in moving.values()}) < 2:
         return
     free = [item.name for item, spec in specs(type(component), "port") if not spec.domain]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import MISSING
 from functools import cache
 from numbers import Real
@@ -18,7 +18,7 @@ from clutchwork.declare.speech import kinds_of, say
 from clutchwork.declare.units import has_comma, split
 from clutchwork.declare.wanted import wanted
 from clutchwork.model.numbers import At as At
-from clutchwork.model.numbers import curve_problems, instead, is_right, list_problems
+from clutchwork.model.numbers import as_float, curve_problems, instead, is_right, list_problems
 from clutchwork.model.numbers import number_problems as number_problems
 from clutchwork.model.pools import coefficients
 from clutchwork.signals.bases.extremes import extremes
@@ -113,7 +113,7 @@ def _fields(cls: Any) -> tuple[tuple[str, Any, Spec, type | None], ...]:
 def _plain(spec: Spec) -> type | None:
     if spec.what == "port":
         return None if spec.domain else Node
-    return float if spec.what in NUMBERS else None
+    return float if spec.what in NUMBERS and not (spec.choices or spec.flag) else None
 
 
 def _choice_problems(cls: type, values: Mapping[str, Any], at: At) -> Iterator[Problem]:
@@ -137,7 +137,7 @@ def _choices(cls: Any) -> Inputs:
 
 def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if spec.choices:
-        if value not in spec.choices:
+        if not isinstance(value, str) or value not in spec.choices:
             message = "is an unknown choice" + near(value, spec.choices)
             yield at.problem(message, value=shown(value), remedy=f"choose one of {', '.join(spec.choices)}")
     elif not spec.flag:
@@ -175,8 +175,11 @@ def signal_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         for name, message, remedy in () if found else value.unit_problems((at.unit, *spec.units)):
             yield at.inner(name).problem(message, remedy=remedy)
         yield from () if found else _beyond_bounds(value, spec, at)
+        yield from _never_presses((load for _, load in extremes(value)), at) if spec.presses and not found else ()
     elif (isinstance(value, Real) and not isinstance(value, bool)) or _is_measured(value):
-        yield from number_problems(value, spec, at)
+        found = list(number_problems(value, spec, at))
+        yield from found
+        yield from _never_presses((as_float(value),), at) if spec.presses and not found else ()
     # whether a reference leads to something of that unit is checked where the driveline is known
     elif not is_reference(value):
         remedy = f"give one of {kinds_of(Role.SIGNAL)}"
@@ -185,6 +188,18 @@ def signal_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         if callable(value):
             remedy = "a function is a controller: give cw.Sampled(function, period), with the period in s"
         yield at.problem(f"must be a number{within(at.unit)} or a signal", value=shown(value), remedy=remedy)
+
+
+def _never_presses(loads: Iterable[float], at: At) -> Iterator[Problem]:
+    """A load that is below zero and never above: a signal may dip below zero by an offset."""
+    least = 0.0
+    for load in loads:
+        if load > 0.0:
+            return
+        least = min(least, load)
+    if least < 0.0:
+        message, remedy = "never presses: a load below zero counts as zero", "give zero or a positive value"
+        yield at.problem(message, f"{least:g} {at.unit}".removesuffix(" 1"), remedy)
 
 
 def _is_measured(value: Any) -> bool:

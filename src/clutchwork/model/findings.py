@@ -126,7 +126,8 @@ def _find(model: Model, incomplete: Sequence[str]) -> Findings:
         return Findings([*problems, no_shaft()], advice, None)
     # a sensor may be on a shaft that is not there, and moves nothing
     components = [part for part in sound.components if not problems or not isinstance(part, Sensor)]
-    mechanism = Mechanism((*model.nodes, *sound.nodes), tuple(components), len(sound.nodes))
+    grips = () if problems else tuple(grip for element in model.elements for grip in element.grips())
+    mechanism = Mechanism((*model.nodes, *sound.nodes), tuple(components), len(sound.nodes), grips)
     try:
         made, wrong = kinematics(mechanism, incomplete=frozenset((*incomplete, *touched)))
         if made is None:

@@ -133,7 +133,8 @@ def _choice_problems(model: Mechanism, made: Kinematics, wanted: Sequence[str]) 
     if missing:
         yield Problem("independent", "", f"misses {', '.join(missing)}", remedy=f"{len(free)} speeds are independent")
     heavy = (row for row, inertia in zip(made.speeds, model.inertia, strict=True) if inertia)
-    if len(eliminate(heavy, made.independent, traced=False).solved) < len(free) - len(made.massless):
+    light = made.massless | set(made.followers.values())
+    if len(eliminate(heavy, made.independent, traced=False).solved) < len(free) - len(light):
         yield Problem("independent", "", "mixes shafts with and without inertia", remedy="let the package choose")
 
 

@@ -68,7 +68,8 @@ def unit_problem(value: Any, spec: Spec, at: At) -> Problem:
 
 def is_right(value: Any, spec: Spec) -> bool:
     """Whether a plain number needs no further look, as almost all do."""
-    return type(value) is float and isfinite(value) and spec.allows(value) and not spec.whole
+    sound = type(value) is float and isfinite(value) and spec.allows(value) and not spec.whole
+    return sound and not (spec.presses and value < 0.0)
 
 
 def as_float(value: Real) -> float:
@@ -100,7 +101,14 @@ def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if has_unit(value) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:
         yield at.problem("must be a list of numbers", value=shown(value), remedy=f"write [x, y, ...]: {spec.doc}")
         return
-    rows = [row if hasattr(row, "__len__") and not has_unit(row) else [row] for row in value]
+    # numbers are in rows of their own
+    rows = [row if _is_row(row) else [row] for row in value]
+    wrong = next((n for n, row in enumerate(value) if not has_unit(row) and _is_row(row) is not spec.rows), None)
+    if wrong is not None:
+        place = At(at.path, f"{at.quantity}, number {wrong + 1}", at.unit)
+        message, remedy = ("row of numbers", "[[x, y, ...], ...]") if spec.rows else ("number", "[x, y, ...]")
+        yield place.problem(f"must be a {message}", value=shown(value[wrong]), remedy=f"write {remedy}: {spec.doc}")
+        return
     if len({len(row) for row in rows}) > 1:
         lengths = listed(len(row) for row in rows)
         yield at.problem("has rows of different lengths", value=lengths, remedy="give every row as many numbers")
@@ -117,6 +125,10 @@ def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
             yield from found
             return
         before = float(item)
+
+
+def _is_row(item: Any) -> bool:
+    return hasattr(item, "__len__") and not has_unit(item)
 
 
 def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:

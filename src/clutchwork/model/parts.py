@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import HOUSING, Component, Node, Part, Rate, ThermalNode
 from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import Role, inputs
+from clutchwork.elements.bases.stop import Stop
 from clutchwork.elements.damper import Damper
 from clutchwork.elements.displacement import Displacement
 
@@ -35,6 +36,8 @@ class Parts:
 
 def take_apart(components: Sequence[Component], thermal: Sequence[ThermalNode] = ()) -> Parts:
     """All elements and nodes, those of composites in their place, and a sensor per shaft that is asked."""
+    held = held_positions(components)
+    components = [placed(component, held) for component in components] if held else components
     pieces = [piece for component in components for piece in _pieces(component)]
     elements = [piece for piece in pieces if isinstance(piece, Component)]
     nodes = [*thermal, *(piece for piece in pieces if isinstance(piece, ThermalNode))]
@@ -47,6 +50,22 @@ def take_apart(components: Sequence[Component], thermal: Sequence[ThermalNode] =
     sums = {whole.name: tuple(there.intersection(_full(whole))) for whole in wholes if whole.name in there}
     shafts = tuple(piece for piece in pieces if isinstance(piece, Node))
     return Parts((*elements, *sensors), tuple(nodes), shafts, {name: names for name, names in sums.items() if names})
+
+
+def held_positions(components: Sequence[Component]) -> dict[int, float]:
+    """Where masses start that cranks hold and that have no position of their own, by the identity of the mass [m]."""
+    return {id(node): place for one in components for node, place in one.start_positions() if node.angle is None}
+
+
+def placed(component: Component, held: Mapping[int, float]) -> Component:
+    """The same element; a stop on a mass that a crank holds has the position that follows."""
+    if not is_open(component):
+        return component
+    joined = [ports(component)[name] for name in ("base", "follower")]
+    if held.keys().isdisjoint(map(id, joined)):
+        return component
+    base, follower = (held.get(id(node), float(node.angle or 0.0)) for node in joined)
+    return replace(component, initial_position=follower - base)  # type: ignore[call-arg]
 
 
 def _wholes(component: Component) -> Iterator[Component]:
@@ -110,6 +129,11 @@ def role(component: Any) -> Role:
 def is_stop(component: Component) -> bool:
     """Whether it is a contact that exists at the ends of a gap alone."""
     return "end" in type(component).hooks
+
+
+def is_open(component: Component) -> bool:
+    """Whether it is a stop whose position may follow from what moves a mass."""
+    return isinstance(component, Stop) and component.is_open()
 
 
 def place_of(stop: Component) -> str:

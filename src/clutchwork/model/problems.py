@@ -13,7 +13,7 @@ from clutchwork.declare.speech import path_of, say
 from clutchwork.model.components import component_advice, component_problems, connection_problems
 from clutchwork.model.model import Model
 from clutchwork.model.numbers import At, is_right, number_problems
-from clutchwork.model.parts import Parts, take_apart
+from clutchwork.model.parts import Parts, held_positions, placed, take_apart
 from clutchwork.model.temperatures import temperature_advice
 from clutchwork.model.thermal import Known, Within, node_kind, port_problems, reference_problems, thermal_problems
 
@@ -52,6 +52,11 @@ def part_problems(model: Model, incomplete: Sequence[str] = ()) -> tuple[list[Pr
 def _parts(elements: Sequence[Component], thermal: Sequence[ThermalNode]) -> tuple[Parts, dict[int, list[Problem]]]:
     """The parts of all elements whose values make sense, and the mistakes of the others."""
     found = {id(element): list(component_problems(element)) for element in elements}
+    # a stop on a mass that a crank holds is looked at where it is then
+    held = held_positions([element for element in elements if not found[id(element)]])
+    for element in elements if held else ():
+        if (there := placed(element, held)) is not element:
+            found[id(element)] = list(component_problems(there))
     return take_apart([element for element in elements if not found[id(element)]], thermal), found
 
 
@@ -78,12 +83,12 @@ NODE_FIELDS = {
     Domain.ROTATION: {
         "inertia": Spec("param", "kg m2", "moment of inertia", at_least=0.0),
         "speed": Spec("param", "rad/s", "speed at the start", optional=True),
-        "angle": Spec("param", "rad", "angle at the start"),
+        "angle": Spec("param", "rad", "angle at the start", optional=True),
     },
     Domain.TRANSLATION: {
         "mass": Spec("param", "kg", "mass", at_least=0.0),
         "speed": Spec("param", "m/s", "speed at the start", optional=True),
-        "position": Spec("param", "m", "position at the start"),
+        "position": Spec("param", "m", "position at the start", optional=True),
     },
 }
 

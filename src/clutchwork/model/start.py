@@ -41,7 +41,18 @@ def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], list[tupl
     if problems:
         return [ZERO] * len(made.independent), motions, problems
     speeds, wrong = initial_speeds(model, made, [value(signal, 0.0) for _, signal in motions])
-    return speeds, motions, problems + wrong
+    return speeds, motions, [*problems, *wrong, *_position_problems(model)]
+
+
+def _position_problems(model: Mechanism) -> Iterator[Problem]:
+    """Positions that are given where a crank holds another one."""
+    held = [(one, *place) for one in model.role(Role.TORQUE) for place in one.start_positions()]
+    angles = initial_angles(model) if held else []
+    for component, node, position in held:
+        place = model.places.of(node)
+        if abs(angles[place] - position) > ROUNDING * exact(position):
+            message, remedy = f"is not where {path_of(component)} holds it", f"give {position:.9g} m, or leave it out"
+            yield Problem(model.node_label(place), "position", message, f"{angles[place]:g} m", remedy)
 
 
 def _finite_speed(motion: Motion) -> Signal:
@@ -55,7 +66,11 @@ def _finite_speed(motion: Motion) -> Signal:
 
 def initial_angles(model: Mechanism) -> list[float]:
     """Angle [rad] or position [m] of each node at the start, prescribed ones from their bases on."""
-    angles = [float(node.angle) for node in model.nodes]
+    angles = [float(node.angle or 0.0) for node in model.nodes]
+    for component in model.role(Role.TORQUE):
+        for node, position in component.start_positions():
+            if node.angle is None:
+                angles[model.places.of(node)] = position
     motions = [(motion, motion.start_angle()) for motion in model.role(Role.MOTION)]
     # a base may be prescribed itself
     for _ in motions:
@@ -95,11 +110,11 @@ def initial_speeds(
         elif abs(left.get(KNOWN, ZERO)) > slack:
             problems.append(_problem(model, used, node, row, left[KNOWN]))
     problems += _follow_ratios(model, made, inputs, echelon, used, slack)
-    for component, tie in start_grips(model, made):
+    for name, tie in start_grips(model, made):
         row = _row(tie, inputs, ZERO)
         if echelon.rest(row).keys() - {KNOWN}:
             echelon.add(row)
-            used[path_of(component)] = row
+            used[name] = row
     for node in rest:
         # all speeds are known: those that nobody gave follow
         if len(used) == len(made.independent):

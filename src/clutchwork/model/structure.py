@@ -46,6 +46,7 @@ class Mechanism:
     nodes: tuple[Node, ...]
     components: tuple[Component, ...]
     inner: int = 0  # of the nodes the last ones, which are inside of composites
+    grips: tuple[tuple[str, Node, Node], ...] = ()  # parts that are closed at the start, and what turns together there
 
     def role(self, role: Role) -> list[Any]:
         """The elements of one role, in order."""
@@ -84,6 +85,10 @@ class Mechanism:
         """Rate of each way of an element over the nodes."""
         joined = ports(component)
         return [self._over(joined, way) for way in coefficients(component)]
+
+    def slip(self, base: Node, follower: Node) -> Row:
+        """Speed of one node over that of another, over the nodes."""
+        return self._over({"base": base, "follower": follower}, {"base": MINUS, "follower": ONE})
 
     def _over(self, joined: Mapping[str, Node], coefficients: Mapping[str, Fraction]) -> Row:
         row: Row = {}

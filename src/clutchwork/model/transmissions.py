@@ -86,14 +86,17 @@ def start_rows(model: Mechanism, made: Kinematics) -> Sequence[tuple[Any, Row]]:
     return [(tie.component, made.over(tie.row())) for tie in transmissions(model)]
 
 
-def start_grips(model: Mechanism, made: Kinematics) -> Iterator[tuple[Any, Row]]:
-    """Slips that are zero at the start unless speeds say otherwise: of transmissions that can slip and are locked.
+def start_grips(model: Mechanism, made: Kinematics) -> Iterator[tuple[str, Row]]:
+    """Slips that are zero at the start unless speeds say otherwise, by name.
 
-    And of stops that touch what follows from one, such as a cam.
+    Those of gearboxes in gear, of transmissions that can slip and are locked, and of stops that touch what follows from
+    one, such as a cam.
     """
+    for name, base, follower in model.grips:
+        yield name, made.over(model.slip(base, follower))
     following = set(made.followers.values())
     for contact in model.role(Role.CONTACT) if following else ():
         row = made.over(model.direction(contact))
         touches = contact.locked or (isinstance(contact, Stop) and contact.rests())
         if touches and following & row.keys():
-            yield contact, row
+            yield path_of(contact), row

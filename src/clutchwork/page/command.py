@@ -9,6 +9,7 @@ from typing import Any
 
 from clutchwork.base import shell
 from clutchwork.base.errors import ModelWarning
+from clutchwork.base.writing import put
 from clutchwork.declare.speech import words_of_files
 
 EXAMPLES = (
@@ -72,8 +73,7 @@ def page_command(asked: argparse.Namespace) -> int:
         given = {} if asked.t_end is None else {"t_end": _seconds(asked.t_end, in_si)}
         t_end, options = merged(system.settings, given)
         made = page(system, t_end, options, Wanted(asked.drag, asked.slider, asked.show))
-    out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_text(made, encoding="utf-8")
+    put(out, made)
     if asked.json:
         shell.tell_json({"files": [str(out)], "bytes": len(made.encode())})
     else:

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from clutchwork.base.errors import ClutchworkError
-from clutchwork.base.paths import fitting, made
+from clutchwork.base.paths import fitting
+from clutchwork.base.writing import put
 from clutchwork.diagrams.draw import diagram
 from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.gearbox.state import GearState
@@ -20,9 +21,8 @@ PICTURES = ("stick", "lever")
 
 def page_of_gearbox(box: Gearbox, path: Any) -> Path:
     """What `box.page` does: write the page; its path."""
-    target = made(fitting("box.page", path, "gearbox.html", ENDINGS))
-    target.write_text(gearbox_page(box), encoding="utf-8")
-    return target
+    target = fitting("box.page", path, "gearbox.html", ENDINGS)
+    return put(target, gearbox_page(box))
 
 
 def gearbox_page(box: Gearbox) -> str:

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import ModelWarning, UseError
-from clutchwork.base.paths import made, path_fault
+from clutchwork.base.paths import path_fault
 from clutchwork.base.shown import shown
+from clutchwork.base.writing import put
 from clutchwork.page.data import Wanted, data_of
 from clutchwork.page.html import html
 
@@ -24,10 +25,7 @@ ENDINGS = (".html", ".htm")
 def page_of(run: Trajectory, path: Any, drag: Any, sliders: Any, show: Any) -> Path:
     """What `run.page` does: write the page of a run; its path."""
     refuse("run.page", list(_path_problems(path)), drag=drag, sliders=sliders, show=show)
-    target = made(Path(path))
-    wanted = wanted_of(drag, sliders, show)
-    target.write_text(page(run.system, run.t_end, run.options, wanted), encoding="utf-8")
-    return target
+    return put(Path(path), page(run.system, run.t_end, run.options, wanted_of(drag, sliders, show)))
 
 
 def page(system: System, t_end: float, options: Options, wanted: Wanted) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
 from clutchwork.base.shown import listed, shown
 from clutchwork.base.text import columns
 from clutchwork.declare.calls import explained, explained_methods
@@ -143,13 +143,12 @@ class Events(Sequence[Event]):
     @explained("run.events.to_csv", path="'events.csv'")
     def to_csv(self, path: str | Path) -> None:
         """Write every field of every event; the head of each column has its unit."""
-        import csv
+        from clutchwork.base.writing import put_csv
 
         names = [item.name for item in fields(Event)]
-        with target("run.events.to_csv", path, "events.csv", [".csv"]).open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([f"{name} [{UNITS[name]}]" if name in UNITS else name for name in names])
-            writer.writerows([_exact(value) for value in astuple(event)] for event in self)
+        heads = [f"{name} [{UNITS[name]}]" if name in UNITS else name for name in names]
+        lines = ([_exact(value) for value in astuple(event)] for event in self)
+        put_csv(fitting("run.events.to_csv", path, "events.csv", [".csv"]), [heads, *lines])
 
 
 def from_rows(rows: NDArray[np.float64], contacts: Sequence[str]) -> Events:

@@ -91,10 +91,10 @@ class Exports:
 
         Parameters: path, such as "run.cwrun", whatever its ending.
         """
-        from clutchwork.base.paths import target
+        from clutchwork.base.paths import fitting
         from clutchwork.results.exchange.saved import save
 
-        save(self._recorded, target("run.save", path, "run.cwrun"))
+        save(self._recorded, fitting("run.save", path, "run.cwrun"))
 
     @property
     def _recorded(self) -> Recorded:

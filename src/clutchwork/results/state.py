@@ -69,9 +69,9 @@ class State:
     def save(self, path: str | Path) -> None:
         """Write it to one file, whatever its ending; nothing in it is code."""
         from clutchwork.base import archive
-        from clutchwork.base.paths import target
+        from clutchwork.base.paths import fitting
 
-        archive.write(target("state.save", path, "run.cwstate"), self.parts())
+        archive.write(fitting("state.save", path, "run.cwstate"), self.parts())
 
     def parts(self) -> dict[str, bytes]:
         """What a file holds of it, by the names in PARTS."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
 from clutchwork.declare.node import Law
 from clutchwork.declare.options import Options
 from clutchwork.results.plot.chosen import PICTURES
@@ -114,7 +114,7 @@ class Result:
         with figure_of(self.experiment.height * self.rows) as figure:
             self.experiment.draw(figure, self)
             if path is not None:
-                figure.savefig(target("plot", path, f"{self.experiment.name}.png", PICTURES))
+                figure.savefig(fitting("plot", path, f"{self.experiment.name}.png", PICTURES))
         return figure
 
     def save(self, folder: str | Path) -> list[Path]:

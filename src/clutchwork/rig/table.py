@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,8 +9,9 @@ from typing import Any, TypeAlias
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
 from clutchwork.base.text import columns
+from clutchwork.base.writing import put_csv
 
 Cell: TypeAlias = "float | str"
 
@@ -50,10 +50,8 @@ class Table:
 
     def to_csv(self, path: str | Path) -> None:
         """Write it with the heads `name [unit]` and all digits."""
-        with target("to_csv", path, "table.csv").open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([column.head for column in self.columns])
-            writer.writerows([[repr(c) if isinstance(c, float) else c for c in line] for line in self.lines])
+        lines = [[repr(c) if isinstance(c, float) else c for c in line] for line in self.lines]
+        put_csv(fitting("to_csv", path, "table.csv"), [[column.head for column in self.columns], *lines])
 
     def to_dict(self) -> list[dict[str, Any]]:
         """One mapping `head: value` for each line; NaN becomes None, which JSON knows."""

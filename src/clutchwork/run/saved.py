@@ -38,6 +38,10 @@ from clutchwork.run.simulation import Job
 Array = NDArray[np.float64]
 
 
+# read before the rows, whose size follows from them
+NAMED = tuple(name for name in RUN_PARTS if name not in ("run", "rows"))
+
+
 class RepeatError(ClutchworkError, RuntimeError):
     """A run that cannot be computed again."""
 
@@ -63,8 +67,8 @@ def load_run(path: str | Path) -> Trajectory:
     """
     path_of("cw.load_run", path, "run.cwrun")
     try:
-        about, *parts = archive.read(path, RUN_PARTS, MOST_BYTES)
-        return _made(_about(about, path), parts, path)
+        parts = archive.Parts(path, RUN_PARTS, MOST_BYTES)
+        return _made(_about(parts.probable("run"), path), parts, path)
     except RunFormatError:
         raise
     except (ValueError, TypeError, RecursionError, OSError) as error:
@@ -90,8 +94,8 @@ def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
     return about
 
 
-def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Trajectory:
-    times, rows, events, tape, head, core, row, left, *model = parts
+def _made(about: Mapping[str, Any], parts: archive.Parts, path: str | Path) -> Trajectory:
+    times, events, tape, head, core, row, left, *model = (parts.probable(name) for name in NAMED)
     system, options, end = _system(about, model, path), Options(**about["options"]), _end(about["t_end"])
     # one that was never stepped ends where it begins
     if not options.t_start <= end < inf:
@@ -107,7 +111,7 @@ def _made(about: Mapping[str, Any], parts: list[bytes], path: str | Path) -> Tra
         options=options,
         t_end=end,
         time=time,
-        rows=_rows(system, rows, len(time)),
+        rows=_rows(system, parts, len(time)),
         events=_events(system, json.loads(events)),
         status=str(about["status"]),
         message=str(about["message"]),
@@ -146,11 +150,12 @@ def _system(about: Mapping[str, Any], model: list[bytes], path: str | Path) -> S
         raise RunFormatError(f"{path}: its model cannot be used: {error} ({by}); {remedy}") from None
 
 
-def _rows(system: System, data: bytes, count: int) -> Array:
+def _rows(system: System, parts: archive.Parts, count: int) -> Array:
     wires = wiring(system)
-    if len(data) != 8 * count * wires.row_size:
+    # nothing that does not fit is unpacked
+    if parts.size("rows") != 8 * count * wires.row_size:
         raise ValueError("its signals do not fit its model")
-    rows = np.frombuffer(data, "<f8").astype(float).reshape(count, wires.row_size)
+    rows = np.frombuffer(parts.read("rows"), "<f8").astype(float).reshape(count, wires.row_size)
     if not np.all(np.isin(rows[:, wires.columns["contact_mode"]], list(MODES))):
         raise ValueError("the mode of a contact is none that there is")
     return rows

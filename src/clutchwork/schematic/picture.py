@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.paths import fitting, made
+from clutchwork.base.paths import fitting
 from clutchwork.base.shown import shown
+from clutchwork.base.writing import put
 from clutchwork.declare.calls import explained_methods
 from clutchwork.results.plot.style import RC
 from clutchwork.schematic.look import GREY, LOCKED, NAME, OPEN, SLIPPING, VALUE
@@ -61,7 +62,7 @@ class Schematic:
         kind = kind_of(path)
         if not kind:
             raise UseError("save", [f"{shown(str(path))} does not say the format: end it with .svg, .png or .pdf"])
-        made(path).write_bytes(self._bytes(kind, dpi))
+        put(path, self._bytes(kind, dpi))
 
     def _bytes(self, kind: str, dpi: float = 200.0) -> bytes:
         file = BytesIO()

@@ -1,27 +1,37 @@
-"""How a shift feels: jerk and vibration dose value of the vehicle. docs/theory/shifts.md (9) to (11)."""
+"""How a shift feels: jerk and vibration dose of the vehicle. docs/theory/jerk.md, docs/theory/shifts.md (10)."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.results.felt import WINDOW, felt_jerk
+
 Array = NDArray[np.float64]
 
 # weighting for horizontal vibration of seated people, Wd of ISO 2631-1: limits, transition [Hz] and its quality
 LOW, HIGH, TRANSITION, QUALITY = 0.4, 100.0, 2.0, 0.63
+# how long the weighting remembers [s], to 1e-15 of what was
+MEMORY = 20.0
 
 
-def jerk(acceleration: Array, step: float, cut_off: float) -> Array:
-    """Rate of change of an acceleration [m/s3], low-passed without delay.
+def jerk(speed: Array, step: float, window: float = WINDOW) -> Array:
+    """The jerk that is felt [m/s3]: change of the mean acceleration over a window, docs/theory/jerk.md (1).
 
-    Parameters: acceleration [m/s2] at equal steps [s]; cut_off [Hz] at which the filter halves the power. An event
-    makes the acceleration jump, so that jerk has no value without a cut-off.
+    Parameters: speed [m/s] at equal steps [s]; window [s]. Before the first speed and behind the last one it is taken
+    to go on evenly.
     """
-    return np.gradient(low_pass(acceleration, step, cut_off), step)
+    count = max(1, round(window / step))
+    ahead = speed[0] + (speed[1] - speed[0]) * np.arange(-count, 0)
+    behind = speed[-1] + (speed[-1] - speed[-2]) * np.arange(1, count + 1)
+    return felt_jerk(np.concatenate([ahead, speed, behind]), count * step, count)
 
 
 def low_pass(values: Array, step: float, cut_off: float) -> Array:
-    """Butterworth filter of second order, forward and backward: no delay, the ends continued as they are."""
+    """Butterworth filter of second order, forward and backward: no delay, the ends continued as they are.
+
+    Parameters: values at equal steps [s]; cut_off [Hz], at which the filter halves the power.
+    """
     frequency = np.fft.rfftfreq(3 * len(values), step)
     padded = np.concatenate([np.full(len(values), values[0]), values, np.full(len(values), values[-1])])
     gain = 1.0 / (1.0 + (frequency / cut_off) ** 4)
@@ -30,17 +40,20 @@ def low_pass(values: Array, step: float, cut_off: float) -> Array:
 
 
 def weighted(acceleration: Array, step: float) -> Array:
-    """Acceleration with the weighting Wd of ISO 2631-1 for fore-and-aft vibration [m/s2]: equation (10)."""
-    count = len(acceleration)
-    padded = np.concatenate([np.full(count, acceleration[0]), acceleration, np.full(count, acceleration[-1])])
+    """Acceleration with the weighting Wd of ISO 2631-1 for fore-and-aft vibration [m/s2]: equation (10).
+
+    Before the first value it was as it is there.
+    """
+    count, rest = len(acceleration), int(MEMORY / step)
+    # what comes behind the end goes round to the begin: it is held for a while, and then forgotten
+    changes = acceleration - acceleration[0]
+    padded = np.concatenate([changes, np.full(rest, changes[-1]), np.zeros(rest)])
     s = 2j * np.pi * np.fft.rfftfreq(len(padded), step)
     low, high, turn = (2.0 * np.pi * f for f in (LOW, HIGH, TRANSITION))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        gain = s * s / (s * s + np.sqrt(2.0) * low * s + low * low)
-        gain = gain / (1.0 + np.sqrt(2.0) * s / high + (s / high) ** 2)
-        gain = gain * (1.0 + s / turn) / (1.0 + s / (QUALITY * turn) + (s / turn) ** 2)
-    spectrum = np.fft.rfft(padded - padded[0]) * gain
-    return np.asarray(np.fft.irfft(spectrum, len(padded))[count : 2 * count])
+    gain = s * s / (s * s + np.sqrt(2.0) * low * s + low * low)
+    gain = gain / (1.0 + np.sqrt(2.0) * s / high + (s / high) ** 2)
+    gain = gain * (1.0 + s / turn) / (1.0 + s / (QUALITY * turn) + (s / turn) ** 2)
+    return np.asarray(np.fft.irfft(np.fft.rfft(padded) * gain, len(padded))[:count])
 
 
 def vibration_dose(acceleration: Array, step: float) -> float:

@@ -86,7 +86,8 @@ def _shift(run: Recorded, box: Gearbox, prefix: str, gears: tuple[InGear, InGear
     behind = _first_run(time, off, new.begin, new.end)
     # two phases with nothing between: the longer one is the hand-over
     torque = ahead if ahead[1] - ahead[0] >= behind[1] - behind[0] else behind
-    begin, end = min(torque[0], old.end), max(torque[1], new.begin)
+    # where both carry torque on either side it is all of that
+    begin, end = min(ahead[0], torque[0], old.end), max(torque[1], behind[1], new.begin)
     return Shift(old.gear, new.gear, opens, closes, begin, torque, (old.end, new.begin), end)
 
 

@@ -7,8 +7,9 @@ from math import isnan
 from pathlib import Path
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
 from clutchwork.base.text import columns
+from clutchwork.base.writing import put
 
 HEADS = (
     *("gear", "element", "fault", "makes", "verdict", "deceleration m/s2", "power W", "energy J"),
@@ -82,7 +83,7 @@ class FaultTable:
     def to_csv(self, path: str | Path) -> None:
         """Write it for a spreadsheet."""
         text = "\n".join(",".join(line) for line in self.lines)
-        target("table.to_csv", path, "faults.csv", (".csv",)).write_text(text + "\n", encoding="utf-8")
+        put(fitting("table.to_csv", path, "faults.csv", (".csv",)), text + "\n")
 
     def __str__(self) -> str:
         return columns(self.lines, right=(5, 6, 7, 9))

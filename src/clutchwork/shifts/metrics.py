@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
+from clutchwork.results.felt import WINDOW
 from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.detect import Shift, shifts_of
 from clutchwork.shifts.record import NEUTRAL
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 STEP = 1e-3  # s, of the grid that phases and jerk are looked at on
+# how long a level of the torque is looked at, and how long the element that closes is filled before it carries [s]
+LEVEL, FILLING = 0.2, 0.2
 
 
 @dataclass(frozen=True)
@@ -27,11 +30,11 @@ class ShiftQuality:
 
     Parameters:
         shift: gears, elements and phases
-        peak_jerk: largest absolute jerk of the vehicle, low-passed [m/s3]; NaN where its acceleration is not known
-        rms_jerk: root of the mean of its square, from begin to end and half a second more [m/s3]
+        peak_jerk: largest jerk of the vehicle that is felt, its size [m/s3]; NaN where its acceleration is not known
+        rms_jerk: root of the mean of its square, from 0.4 s before the begin to half a second behind the end
         vibration_dose: vibration dose value of the same stretch [m/s1.75]
-        torque_hole: how far the torque of the output falls below its lower value before and after, in N m
-        hole_share: the same over its value before; NaN out of neutral
+        torque_hole: how far the torque of the output falls below the lower one of its levels before and after, in N m
+        hole_share: the same over its level before; NaN out of neutral
         flare: how far the input runs above the speeds of both gears [rad/s], out of neutral above that of its start
         sag: how far it falls below both [rad/s]
         tie_up: largest torque with which an element that opens works against its direction in the old gear [N m]
@@ -61,31 +64,36 @@ def qualities(
     *,
     torque: str = "",
     acceleration: str = "",
-    cut_off: float = 20.0,
+    window: float = WINDOW,
     after: float = 0.5,
 ) -> list[ShiftQuality]:
     """What every shift of a run was like.
 
     Parameters: torque, signal of the torque behind the output [N m], such as that of a drive shaft; acceleration,
-    signal of the vehicle [m/s2]; cut_off, of the jerk [Hz]; after, time behind a shift that counts for jerk [s].
+    signal of the vehicle [m/s2], whose speed is asked for its jerk; window, over which a jerk is felt [s]; after, time
+    behind a shift that belongs to it [s]. docs/theory/shifts.md (9)
     """
     shifts = shifts_of(run, box, prefix)
-    grids = [_grid(run, shift, after) for shift in shifts]
-    if not grids:
+    if not shifts:
         return []
+    begins = [*(shift.begin for shift in shifts[1:]), float(run.time[-1])]
+    ends = [float(run.time[0]), *(shift.end for shift in shifts)]
+    grids = [
+        _grid(shift, max(shift.begin - FILLING - LEVEL, first), min(shift.end + after, last))
+        for shift, first, last in zip(shifts, ends, begins, strict=False)
+    ]
     # one repetition of the run for all of them
     whole = run.at(np.unique(np.concatenate(grids)))
     columns: dict[str, Array] = {}
     windows = [Window(whole, columns, np.searchsorted(whole.time, grid)) for grid in grids]
     return [
-        _quality(part, shift, box, prefix, torque, acceleration, cut_off)
+        _quality(part, shift, box, prefix, torque, acceleration, window)
         for part, shift in zip(windows, shifts, strict=True)
     ]
 
 
-def _grid(run: Any, shift: Shift, after: float) -> Array:
-    """Equal steps from a tenth of a second before a shift, and its ends [s]; the ends are the last two."""
-    first, last = max(shift.begin - 0.1, float(run.time[0])), min(shift.end + after, float(run.time[-1]))
+def _grid(shift: Shift, first: float, last: float) -> Array:
+    """Equal steps around a shift, between two times, and its ends [s]; the ends are the last two."""
     steps = np.arange(first, last, STEP)
     return np.array([*steps[steps <= last], shift.begin, shift.end])
 
@@ -116,11 +124,12 @@ class Window:
 
 
 def _quality(
-    part: Window, shift: Shift, box: Gearbox, prefix: str, torque: str, acceleration: str, cut_off: float
+    part: Window, shift: Shift, box: Gearbox, prefix: str, torque: str, acceleration: str, window: float
 ) -> ShiftQuality:
     time = part.time
     inside = (time >= shift.begin) & (time <= shift.end)
-    jerks = jerk(part[acceleration], STEP, cut_off) if acceleration else np.array([np.nan])
+    speed = acceleration.removesuffix("acceleration") + "speed"
+    jerks = jerk(part[speed], STEP, window) if acceleration else np.array([np.nan])
     dose = vibration_dose(part[acceleration], STEP) if acceleration else float("nan")
     hole, share = _hole(part[torque], time, shift) if torque else (float("nan"), float("nan"))
     flare, sag = _overshoot(part, shift, box, prefix, inside)
@@ -147,17 +156,20 @@ def _peak(part: Window, name: str, inside: NDArray[np.bool_]) -> float:
 
 
 def _hole(torque: Array, time: Array, shift: Shift) -> tuple[float, float]:
-    """The torque of the output before and after, and how far it falls below both in between."""
-    before = float(np.mean(torque[time < shift.begin])) if np.any(time < shift.begin) else float(torque[0])
-    behind = torque[time > shift.end + 0.2]
-    later = float(np.mean(behind)) if len(behind) else float(torque[-1])
+    """How far the torque of the output falls below the lower of its levels before and after, while it rings too."""
+    shifts = time >= shift.begin - FILLING
+    rests = time > max(shift.end, time[-1] - LEVEL)
+    before, later = _mean(torque[~shifts], torque[0]), _mean(torque[rests], torque[-1])
     # with the sign of the torque before
     sign = 1.0 if before >= 0.0 else -1.0
-    inside = sign * torque[(time >= shift.begin) & (time <= shift.end)]
-    least = float(np.min(inside, initial=sign * before))
+    least = float(np.min(sign * torque[shifts], initial=np.inf))
     hole = max(0.0, min(sign * before, sign * later) - least)
     known = shift.before != NEUTRAL and before != 0.0
     return hole, hole / abs(before) if known else float("nan")
+
+
+def _mean(values: Array, instead: float) -> float:
+    return float(np.mean(values)) if len(values) else float(instead)
 
 
 def _overshoot(part: Window, shift: Shift, box: Gearbox, prefix: str, inside: NDArray[np.bool_]) -> tuple[float, float]:
@@ -176,9 +188,9 @@ def _overshoot(part: Window, shift: Shift, box: Gearbox, prefix: str, inside: ND
 
 
 def _tie_up(part: Window, shift: Shift, prefix: str) -> float:
-    """Torque of elements that open against the direction that they had before, in the torque phase."""
+    """Torque of elements that open against the direction that they had before, from begin to end of the shift."""
     worst, time = 0.0, part.time
-    both = (time >= shift.torque_phase[0]) & (time <= shift.torque_phase[1])
+    both = (time >= shift.begin) & (time <= shift.end)
     for name in shift.opens:
         torque = part[f"{prefix}.{name}.torque"]
         held = time < shift.begin

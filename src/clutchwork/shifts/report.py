@@ -11,8 +11,9 @@ import numpy as np
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
 from clutchwork.base.text import columns
+from clutchwork.base.writing import replaced
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
@@ -82,7 +83,7 @@ def overview(found: Sequence[ShiftQuality], path: str | Path, *, names: Sequence
     """
     if not found:
         raise UseError("cw.shifts.overview", ["there is no shift to draw; give what cw.shifts.qualities returned"])
-    where = target("cw.shifts.overview", path, "shifts.png", (".png", ".svg", ".pdf"))
+    where = fitting("cw.shifts.overview", path, "shifts.png", (".png", ".svg", ".pdf"))
     figures = need("matplotlib.figure", "draw", "cw.shifts.overview")
     figure = figures.Figure(figsize=(max(5.0, 0.55 * len(found) + 2.0), 7.0), layout="constrained")
     axes = figure.subplots(3, 1, sharex=True)
@@ -109,4 +110,5 @@ def overview(found: Sequence[ShiftQuality], path: str | Path, *, names: Sequence
     for one in axes:
         one.margins(y=0.05)
     axes[2].set_xticks(places, labels, rotation=90 if len(found) > 12 else 0)
-    figure.savefig(where, dpi=120)
+    with replaced(where.with_suffix(where.suffix or ".png")) as new:
+        figure.savefig(new, dpi=120)

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError
 from clutchwork.base.shown import shortened
+from clutchwork.base.writing import put
 from clutchwork.studies.fingerprints import of_model, of_output
-from clutchwork.studies.parts import Column, replaced
+from clutchwork.studies.parts import Column
 
 if TYPE_CHECKING:
     from clutchwork.sweeps.order import Order
@@ -54,8 +55,7 @@ class Manifest:
         """Into its folder."""
         columns = [{"name": one.name, "type": one.type, "unit": one.unit} for one in self.columns]
         content = {"format": FORMAT, **vars(self), "columns": columns}
-        with replaced(folder / FILE) as new:
-            new.write_text(json.dumps(content, indent=1), encoding="utf-8")
+        put(folder / FILE, json.dumps(content, indent=1))
 
     @classmethod
     def read(cls, folder: Path) -> Manifest:

@@ -6,16 +6,15 @@ import json
 import os
 import socket
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
-from uuid import uuid4
 
 import numpy as np
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.extras import need
+from clutchwork.base.writing import NEW, replaced
 
 if TYPE_CHECKING:
     from clutchwork.sweeps.result import Sweep
@@ -100,20 +99,6 @@ def worker() -> str:
     return f"{socket.gethostname()} {os.getpid()}"
 
 
-@contextmanager
-def replaced(path: Path) -> Iterator[Path]:
-    """A new file that takes the place of a path once it is whole and on the disk."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    new = path.with_name(f".{path.stem}-{uuid4().hex}.new")
-    try:
-        yield new
-        with new.open("rb") as file:
-            os.fsync(file.fileno())
-        new.replace(path)
-    finally:
-        new.unlink(missing_ok=True)
-
-
 def there(folder: Path, sizes: dict[int, int]) -> dict[int, Written]:
     """Parts that are there and whole, by number.
 
@@ -142,5 +127,5 @@ def _known(path: Path) -> Written | None:
 
 def without_leftovers(folder: Path) -> None:
     """Remove files of workers that died while they wrote."""
-    for path in (folder / DATA).glob(".part-*.new"):
+    for path in (folder / DATA).glob(f".*{NEW}*"):
         path.unlink(missing_ok=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.base.errors import UseError
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
 from clutchwork.results.plot.chosen import PICTURES
 from clutchwork.results.plot.figure import figure_of
 from clutchwork.results.plot.style import COLOURS
@@ -45,7 +45,7 @@ def distributions(study: Recorded, names: Sequence[str], path: str | Path | None
             axes.set_xlabel(f"{name}, {unit}" if unit else name)
             axes.set_ylabel("variants")
         if path is not None:
-            figure.savefig(target("study.plot", path, "study.png", PICTURES))
+            figure.savefig(fitting("study.plot", path, "study.png", PICTURES))
     return figure
 
 
@@ -67,5 +67,5 @@ def indices(found: Indices, path: str | Path | None) -> Figure:
         axes.set_xlabel(f"share of the variance of {found.output}")
         axes.legend(loc="lower right")
         if path is not None:
-            figure.savefig(target("sobol_indices.plot", path, "indices.png", PICTURES))
+            figure.savefig(fitting("sobol_indices.plot", path, "indices.png", PICTURES))
     return figure

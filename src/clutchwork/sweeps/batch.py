@@ -21,7 +21,7 @@ from clutchwork.results.forms import LOCKED
 from clutchwork.sweeps.axes import Plan, systems_of
 from clutchwork.sweeps.columns import all_needed, fixed, moved
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
-from clutchwork.sweeps.parts import PARTS, squared_jerk_of
+from clutchwork.sweeps.parts import PARTS, squared_jerk, steps_of
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -379,7 +379,8 @@ def _from_steps(block: Block, call: Call, forms: Forms, found: Native) -> None:
 def _squared(times: Array, values: Array, starts: Array) -> Array:
     """Squared jerk of each stretch of rows that begins at one of the starts."""
     bounds = pairwise([*starts.tolist(), len(times)])
-    return np.array([squared_jerk_of(times[a:b], values[a:b]) for a, b in bounds], dtype=float)
+    found = [squared_jerk(times[a:b], values[a:b], steps_of(times[a:b])) for a, b in bounds]
+    return np.array(found, dtype=float)
 
 
 def _from_events(block: Block, call: Call, wanted: Wanted, found: Native) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -16,7 +17,7 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.shown import shown
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import instants
-from clutchwork.sweeps.parts import in_parts, squared_jerk_of
+from clutchwork.sweeps import parts
 
 if TYPE_CHECKING:
     from clutchwork.results.events import Event
@@ -132,8 +133,9 @@ class SquaredJerk:
         """Its value in a run; NaN where that did not reach its end."""
         if not run.finished:
             return float("nan")
-        there = run.at(in_parts(run.repeat(None).time))
-        return squared_jerk_of(there.time, there[self.signal])
+        times, begins = parts.in_parts(run.repeat(None).time)
+        there = run.at(times)
+        return parts.squared_jerk(there.time, there[self.signal], begins)
 
 
 @dataclass(frozen=True)
@@ -290,6 +292,9 @@ def _output(one: Any) -> Output:
         return AtEnd(one)
     if callable(one):
         return Computed(one, getattr(one, "__name__", "function"))
+    if hasattr(one, "largest"):
+        # what studies tell apart is the whole of it
+        return Computed(partial(one.largest), one.name)
     if hasattr(one, "needs"):
         # a goal or limit of `calibrate`, which is above this
         rest = "; take cw.squared_jerk of the shaft, or cw.peak of its acceleration" if "jerk" in one.name else ""

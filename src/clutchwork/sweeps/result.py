@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections import Counter
 from dataclasses import dataclass, field
@@ -14,9 +13,10 @@ from numpy.typing import NDArray
 
 from clutchwork.base.errors import ModelError, UnknownName, UseError, near
 from clutchwork.base.extras import need
-from clutchwork.base.paths import target
+from clutchwork.base.paths import fitting
 from clutchwork.base.shown import shown
 from clutchwork.base.text import counted
+from clutchwork.base.writing import put_csv, replaced
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import DONE, INTERRUPTED, STATUSES
 from clutchwork.results.channels import Channels, channels
@@ -316,8 +316,8 @@ class Sweep:
         words = {f"unit {name}": unit for name, unit in units.items()}
         # where pandas looks for `attrs`
         words["PANDAS_ATTRS"] = json.dumps({"units": units})
-        file = target("sweep.to_parquet", path, "sweep.parquet", [".parquet"])
-        need("pyarrow.parquet", "exchange").write_table(table.replace_schema_metadata(words), str(file))
+        with replaced(fitting("sweep.to_parquet", path, "sweep.parquet", [".parquet"])) as new:
+            need("pyarrow.parquet", "exchange").write_table(table.replace_schema_metadata(words), str(new))
 
     @explained("sweep.to_csv", path="'sweep.csv'")
     def to_csv(self, path: str | Path, names: Any = None) -> None:
@@ -327,10 +327,8 @@ class Sweep:
         """
         units, table = self.column_units(names), dict(self.columns(names))
         heads = [f"{name} [{units[name]}]" if units.get(name) else name for name in table]
-        with target("sweep.to_csv", path, "sweep.csv", [".csv"]).open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(heads)
-            writer.writerows(zip(*(column.tolist() for column in table.values()), strict=True))
+        lines = zip(*(column.tolist() for column in table.values()), strict=True)
+        put_csv(fitting("sweep.to_csv", path, "sweep.csv", [".csv"]), [heads, *lines])
 
 
 class SweepInterrupted(KeyboardInterrupt):

@@ -27,6 +27,8 @@ SECRET = "root-secret-4711"
 TABLE = "time,p,q\n0,0,1\n0.5,2e5,3\n0.5,1e5,3\n1,3e5,text\n"
 # codes of the command line for a model that is right, wrong, or cannot be read
 CODES = (0, 3, 4)
+# parts of archives that are JSON
+TEXTS = ("model", "independent", "run", "events")
 
 
 @cache
@@ -53,6 +55,18 @@ def archives(folder: Path) -> tuple[bytes, ...]:
             warnings.simplefilter("ignore")
             cw.Driveline.from_dict(data).assemble().save(folder / f"seed{number}")
         made.append((folder / f"seed{number}").read_bytes())
+    return tuple(made)
+
+
+@cache
+def runs(folder: Path) -> tuple[bytes, ...]:
+    """Saved runs."""
+    made = []
+    for data in models()[3:9]:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            cw.Driveline.from_dict(data).simulate(0.01, max_steps=100).save(folder / "seed run")
+        made.append((folder / "seed run").read_bytes())
     return tuple(made)
 
 
@@ -114,11 +128,19 @@ def saved_system(folder: Path, random: Random) -> None:
     cw.System.load(path).to_bytes()
 
 
+def saved_run(folder: Path, random: Random) -> None:
+    """A damaged file of a run."""
+    whole = random.choice(runs(folder))
+    (folder / "run").write_bytes(mutate.data(whole, random) if random.random() < 0.5 else _repacked(whole, random))
+    run = cw.load_run(folder / "run")
+    assert len(run.time) == len(run.rows)
+
+
 def _repacked(whole: bytes, random: Random) -> bytes:
     with zipfile.ZipFile(io.BytesIO(whole)) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}
     chosen = random.choice(list(parts))
-    if chosen == "content" or random.random() < 0.3:
+    if chosen not in TEXTS or random.random() < 0.3:
         parts[chosen] = mutate.data(parts[chosen], random)
     else:
         parts[chosen] = json.dumps(mutate.tree(json.loads(parts[chosen]), random)).encode()
@@ -135,4 +157,5 @@ CASES: dict[str, Callable[[Path, Random], None]] = {
     "model_file": model_file,
     "csv_file": csv_file,
     "saved_system": saved_system,
+    "saved_run": saved_run,
 }

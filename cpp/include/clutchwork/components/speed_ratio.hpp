@@ -4,6 +4,12 @@
 /// Tables over a ratio of two speeds that ends at 1, as pieces: docs/theory/coupled.md.
 namespace clutchwork {
 
+/// Whether a speed is so small that its square, and with it every torque, is zero; a ratio over it may not be finite.
+template <class S>
+CLUTCHWORK_HOT bool vanishes(const S& speed) {
+  return abs(value(speed)) < 1e-150;
+}
+
 /// A list of numbers in the pool.
 template <class G>
 struct List {

@@ -310,10 +310,39 @@ int steepest(const Workspace<T>& ws) {
   return found;
 }
 
-/// Whether all candidates together hold, where some depend on others and some follow loads: then they do.
-/// docs/theory/load-dependent.md, rule 3
+/// Candidates between prescribed speeds that part slip before the others are asked. A freewheel that is turned backward
+/// ends it (-1: none).
 template <class T>
-bool hold_together(Workspace<T>& ws) {
+int release_driven(Workspace<T>& ws, double tolerance) {
+  int* candidate = ws.decision.candidate;
+  free_motion(ws, candidate, ws.decision.motion);
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (!candidate[c] || !is_rigid(ws, c)) continue;
+    const double parting = value(slip_acceleration(ws, c, ws.decision.motion));
+    if (abs(parting) <= 1e6 * tolerance) continue;
+    if (parting * free_way(ws, c) < 0) return c;
+    release(ws, c, parting > 0 ? forward : backward);
+    candidate[c] = 0, ws.decision.released[c] = 1;
+  }
+  return -1;
+}
+
+/// Whether a carrier of no set holds what it carries, in a decision.
+template <class T>
+bool holds_alone(const Workspace<T>& ws, int a) {
+  const int c = ws.held.contact[a], way = free_way(ws, c);
+  if (is_rigid(ws, c)) return true;
+  double noise = 0;
+  for (int b = 0; b < ws.held.n; ++b) noise = larger(noise, 1e-11 * abs(value(ws.held.carried[b])));
+  const double torque = value(ws.held.carried[a]);
+  return (way < 0 || torque >= -value(usable_capacity(ws, c, forward)) - noise) &&
+         torque <= value(way > 0 ? freewheel_limit(ws, c) : usable_capacity(ws, c, backward)) + noise;
+}
+
+/// Whether all candidates together hold, where some depend on others and some follow loads: then they do. They cannot
+/// where prescribed speeds part them. docs/theory/load-dependent.md, rule 3
+template <class T>
+bool hold_together(Workspace<T>& ws, double tolerance) {
   const auto& sys = ws.sys;
   int *candidate = ws.decision.candidate, *before = ws.coupled.next;
   for (int l = 0; l < sys.loads; ++l) {
@@ -338,6 +367,11 @@ bool hold_together(Workspace<T>& ws) {
         ws.loads.now[l] += ws.loads.by_torque[l * ws.n_directions + sys.elements + h.contact[a]] * h.carried[a];
     }
     holds = value(set_room(ws, 0, h.carried, T(0), ws.loads.now)) >= -1e-11;
+    for (int a = 0; a < h.n; ++a) holds = holds && (h.in_set[a] != 0 || holds_alone(ws, a));
+    for (int a = 0; a < h.n; ++a)
+      ws.geometry.white.add(int(sys.elements) + h.contact[a], h.carried[a], ws.decision.motion);
+    for (int s = 0; s < h.n_spare; ++s)
+      holds = holds && abs(value(slip_acceleration(ws, h.spare[s], ws.decision.motion))) <= 1e6 * tolerance;
   }
   for (int c = 0; !holds && c < sys.contacts; ++c) ws.contact.mode[c] = before[c];
   if (!holds) return false;
@@ -351,7 +385,11 @@ bool hold_together(Workspace<T>& ws) {
 template <class T>
 Verdict settle_coupled(Workspace<T>& ws, int located, double tolerance) {
   int *candidate = ws.decision.candidate, *released = ws.decision.released;
-  if (ws.geometry.redundant && hold_together(ws)) return {Settled::yes};
+  if (ws.geometry.redundant) {
+    const int jammed = release_driven(ws, tolerance);
+    if (jammed >= 0) return {Settled::jams, jammed};
+    if (hold_together(ws, tolerance)) return {Settled::yes};
+  }
   for (int round = 0; round <= 4 * ws.sys.contacts + 4; ++round) {
     BoundedProblem<T> p{};
     CoupledProblem<T> q = pose_coupled(ws, p);

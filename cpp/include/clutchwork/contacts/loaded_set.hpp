@@ -7,6 +7,12 @@
 /// docs/theory/load-dependent.md.
 namespace clutchwork {
 
+/// Loads by the torques of all directions, with what transmissions carry of them.
+template <class T>
+const T* loads_by_shares(const Workspace<T>& ws) {
+  return ws.ratios.n > 0 && !ws.ratios.inside ? ws.loads.beside_torque : ws.loads.by_torque;
+}
+
 /// The largest factor of the load that such a set can hold, for a choice of the lines of each bound. Variables: the
 /// torques of the set, for each member with a load what its two bounds have left, then the factor.
 template <class T>
@@ -26,7 +32,7 @@ struct LoadedLimit {
   T lower(int j) const { return low[j]; }
   T upper(int j) const { return high[j]; }
   int load_of_member(int f) const { return ws.loads.of[member[follower[f]]]; }
-  T share(int l, int j) const { return ws.loads.by_torque[l * ws.n_directions + ws.sys.elements + member[j]]; }
+  T share(int l, int j) const { return loads_by_shares(ws)[l * ws.n_directions + ws.sys.elements + member[j]]; }
 
   /// Row of what the bound of follower f against slip in a direction has left: that, less what the torques of the set
   /// and the factor take of it.
@@ -80,12 +86,37 @@ struct LoadedLimit {
     raise(*this, 50 + 20 * width());
     return x[width() - 1] / size;
   }
-  /// As the price of a contact without load: positive where it slips backward.
+  /// As the price of a contact without load.
   T price_of(int i) const {
     for (int f = 0; f < n_loads; ++f) {
       if (follower[f] == i) return price[set.n + 2 * f + 1] - price[set.n + 2 * f];
     }
     return price[i];
+  }
+  /// What a row of a bound takes of the torque of member j, as in lay_row.
+  T taken(int row, int j) const {
+    const int f = row / 2, direction = row % 2 == 0 ? backward : forward;
+    const Bound<T> bound = bound_of(ws, member[follower[f]], direction, T(0), 0);
+    const T slope = bound.slope[line[row]];
+    return (follower[f] == j ? T(-direction) : T(0)) - slope * share(load_of_member(f), j);
+  }
+  /// How the motion in which the set gives way moves member i, up to its sign: what is left of the prices without what
+  /// the torques do to loads. docs/theory/load-dependent.md (14)
+  T motion_of(int i) const {
+    T sum = T(0);
+    for (int r = 0; r < set.rank; ++r) {
+      T own = price[r];
+      for (int row = 0; row < 2 * n_loads; ++row) own -= price[set.n + row] * taken(row, r);
+      sum += set.column[i * set.rank + r] * own;
+    }
+    return sum;
+  }
+  /// Its sign: members with loads slip the way whose bound has a price, so that those of motion_of are positive where a
+  /// member slips backward.
+  int way_of_motion() const {
+    T work = T(0);
+    for (int f = 0; f < n_loads; ++f) work += price_of(follower[f]) * motion_of(follower[f]);
+    return value(work) < 0 ? -1 : 1;
   }
 };
 

@@ -68,7 +68,16 @@ bool holds_loads(const Workspace<T>& ws) {
   return false;
 }
 
-/// Label each carrier with the lowest one of its set; where some follow loads, which any torque may make, all are one.
+/// Whether the torque of a carrier depends on how spares share it.
+template <class T>
+bool is_shared(const Workspace<T>& ws, int a) {
+  for (int s = 0; s < ws.held.n_spare; ++s) {
+    if (value(ws.held.tie[s * ws.sys.contacts + a]) != 0) return true;
+  }
+  return false;
+}
+
+/// Label each carrier with the lowest one of its set; where some follow loads, these are one with all that is shared.
 template <class T>
 void join_sets(Workspace<T>& ws, int* label) {
   const int nc = int(ws.sys.contacts);
@@ -76,7 +85,8 @@ void join_sets(Workspace<T>& ws, int* label) {
   if (ws.held.n_spare > 0 && holds_loads(ws)) {
     int lowest = -1;
     for (int a = 0; a < ws.held.n; ++a) {
-      if (is_rigid(ws, ws.held.contact[a])) continue;
+      const int c = ws.held.contact[a];
+      if (is_rigid(ws, c) || (ws.loads.of[c] < 0 && !is_shared(ws, a))) continue;
       if (lowest < 0) lowest = a;
       label[a] = lowest;
     }
@@ -318,13 +328,15 @@ LimitLoad<T> limit_of(Workspace<T>& ws, const DependentSet<T>& set) {
   return {set, ws.set.tableau, ws.set.limit_x, ws.set.price, ws.set.basis, ws.set.place};
 }
 
-/// The loads without the torques of the locked contacts, from those with the torques of the carriers.
+/// The loads without the torques of set k, from those with the torques of the carriers.
 template <class T>
-void outer_loads(Workspace<T>& ws, const T* load, const T* carried) {
+void outer_loads(Workspace<T>& ws, int k, const T* load, const T* carried) {
+  const int first = ws.held.set_first[k], end = first + ws.held.set_rank[k];
   for (int l = 0; l < ws.sys.loads; ++l) {
+    const T* by_torque = loads_by_shares(ws) + l * ws.n_directions + ws.sys.elements;
     ws.loads.outer[l] = load[l];
-    for (int a = 0; a < ws.held.n; ++a)
-      ws.loads.outer[l] -= ws.loads.by_torque[l * ws.n_directions + ws.sys.elements + ws.held.contact[a]] * carried[a];
+    for (int i = first; i < end; ++i)
+      ws.loads.outer[l] -= by_torque[ws.held.set_member[i]] * carried[ws.held.set_place[i]];
   }
 }
 
@@ -334,7 +346,7 @@ template <class T>
 [[gnu::noinline]] T set_room(Workspace<T>& ws, int k, const T* carried, T noise, const T* load) {
   const DependentSet<T> set = dependent_set(ws, k, carried, noise);
   if (ws.sys.loads == 0 || !holds_loads(ws)) return limit_of(ws, set).solve() - T(1);
-  outer_loads(ws, load, carried);
+  outer_loads(ws, k, load, carried);
   LoadedLimit<T> limit = loaded_limit(ws, set, ws.held.set_member + ws.held.set_first[k], noise);
   return solve_loaded(limit) - T(1);
 }
@@ -355,7 +367,7 @@ void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
   const int* member = ws.held.set_member + ws.held.set_first[k];
   if (ws.sys.loads > 0 && holds_loads(ws)) {
-    outer_loads(ws, ws.loads.now, carried);
+    outer_loads(ws, k, ws.loads.now, carried);
     LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
     // what holds the largest multiple of the load holds the load in proportion
     const T factor = solve_at_limit(limit);
@@ -386,23 +398,24 @@ template <class T>
 void break_set(Workspace<T>& ws, int k, const T* carried) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
   const int* member = ws.held.set_member + ws.held.set_first[k];
-  auto force = [&](auto&& price) {
+  auto force = [&](auto&& price, auto&& motion) {
     double most = 0;
     for (int i = 0; i < set.n; ++i) most = larger(most, abs(value(price(i))));
     for (int i = 0; i < set.n; ++i) {
-      const double own = value(price(i));
-      if (abs(own) > 1e-9 * most) ws.contact.forced[member[i]] = own > 0 ? backward : forward;
+      if (abs(value(price(i))) > 1e-9 * most) ws.contact.forced[member[i]] = value(motion(i)) > 0 ? backward : forward;
     }
   };
   if (ws.sys.loads > 0 && holds_loads(ws)) {
-    outer_loads(ws, ws.loads.now, carried);
+    outer_loads(ws, k, ws.loads.now, carried);
     LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
     solve_at_limit(limit);
-    return force([&](int i) { return limit.price_of(i); });
+    const T way = T(limit.way_of_motion());
+    return force([&](int i) { return limit.price_of(i); }, [&](int i) { return way * limit.motion_of(i); });
   }
   LimitLoad<T> limit = limit_of(ws, set);
   limit.solve();
-  force([&](int i) { return limit.price[i]; });
+  auto price = [&](int i) { return limit.price[i]; };
+  force(price, price);
 }
 
 /// Torques of the contacts that a decision has locked: what it gave them together, shared as everywhere else.

@@ -8,18 +8,19 @@
 /// Jumps of the ratios of transmissions. docs/theory/varying-ratios.md
 namespace clutchwork {
 
-/// Impulses along both directions of a transmission that give its rates the changes c1 and c2.
+/// Impulses along both directions of a transmission that give its rates, of the means m1 and m2, the changes c1 and c2.
+/// Where one of these follows from the other it is the work of both that is none. docs/theory/varying-ratios.md (12)
 template <class T>
-void impulses_for(T p11, T p12, T p22, T c1, T c2, T& j1, T& j2) {
+void impulses_for(T p11, T p12, T p22, T c1, T c2, T m1, T m2, T& j1, T& j2) {
   const T det = p11 * p22 - p12 * p12;
-  j1 = j2 = T(0);
-  if (value(det) > 1e-20 * value(p11 * p22)) {
+  if (value(det) > 1e-14 * value(p11 * p22)) {
     j1 = (p22 * c1 - p12 * c2) / det, j2 = (p11 * c2 - p12 * c1) / det;
-  } else if (value(p11) > value(p22)) {
-    j1 = c1 / p11;
-  } else if (value(p22) > 0) {
-    j2 = c2 / p22;
+    return;
   }
+  const bool first = value(p11) > value(p22);
+  const T change = first ? c1 : c2, workless = first ? p11 * m2 - p12 * m1 : p12 * m2 - p22 * m1;
+  j1 = j2 = T(0);
+  if (value(workless) != 0) j1 = change * m2 / workless, j2 = -change * m1 / workless;
 }
 
 /// The ratio of a transmission has jumped: the limit of a fast change, in which it acts alone, the others kept. The
@@ -37,7 +38,7 @@ void jump_ratio(Workspace<T>& ws, int a, T ratio) {
   if (!(value(before) > 0) || !(value(after) > 0)) return;
   const T to = r2 * sqrt(before / after);
   T j1, j2, *x = ws.decision.speed;
-  impulses_for(p11, p12, p22, ratio * to - r1, to - r2, j1, j2);
+  impulses_for(p11, p12, p22, ratio * to - r1, to - r2, T(0.5) * (ratio * to + r1), T(0.5) * (to + r2), j1, j2);
   for (int i = 0; i < nv; ++i) x[i] = j1 * x1[i] + j2 * x2[i];
   backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
   for (int k = 0; k < r.rank; ++k) r.share[k] = -(j1 * r.part[d * r.n + k] + j2 * r.part[(d + 1) * r.n + k]);

@@ -275,6 +275,10 @@ void exchange(P& a, P& b) {
   a = b, b = other;
 }
 
+/// Ratios by which the rows of transmissions are written down: those of the present inputs, those before the event, or
+/// those that were written down last.
+enum class Written { now, before, last };
+
 /// While it lives, directions and mobility are what the transmissions leave of them.
 template <class T>
 class BesideRatios {
@@ -291,11 +295,11 @@ class BesideRatios {
   }
 
  public:
-  /// `before`: the ratios are those before the event.
-  explicit BesideRatios(Workspace<T>& ws, bool before = false) : ws_(ws), entered_(ws.ratios.n > 0) {
+  explicit BesideRatios(Workspace<T>& ws, Written which = Written::now) : ws_(ws), entered_(ws.ratios.n > 0) {
     if (!entered_) return;
     Ratios<T>& r = ws.ratios;
-    for (int a = 0; a < r.n; ++a) r.value[a] = before ? r.before[a] : ratio_now(ws, a).v;
+    for (int a = 0; a < r.n && which != Written::last; ++a)
+      r.value[a] = which == Written::before ? r.before[a] : ratio_now(ws, a).v;
     write_rows(ws), span_rows(ws), leave_directions(ws), leave_loads(ws);
     swap();
   }

@@ -144,6 +144,16 @@ void close_stops(Workspace<T>& ws) {
   }
 }
 
+/// Closed stops are exactly at their ends: round-off of the steps since then does not tell that one has left it.
+/// docs/theory/play.md, rule 5
+template <class T>
+void rest_at_ends(Workspace<T>& ws) {
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int side = ws.contact.side[c];
+    if (is_stop(ws, c) && side != 0 && ws.contact.mode[c] == locked) ws.state[place_of(ws, c)] = stop_end(ws, c, side);
+  }
+}
+
 /// Closed stops whose directions vary stay exactly at their ends. docs/theory/varying-ratios.md (18)
 template <class T>
 void stay_at_ends(const Workspace<T>& ws, T* state) {

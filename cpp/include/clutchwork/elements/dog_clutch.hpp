@@ -117,13 +117,19 @@ struct DogClutch : declared::DogClutch {
     if (who == slips) return fast;
     if (at.piece == blocked) return mesh(p, state);
     if (at.piece == apart || at.piece == fast) return meet(p, at, state);
-    if (at.piece == loose) return value(at.state[angle]) > 0 ? ahead : behind;
+    if (at.piece == loose) return next_flank(at);
     if (who == parts) return at.piece <= behind ? at.piece + (slack_ahead - ahead) : at.piece - (slack_ahead - ahead);
     return loose;
   }
   template <class T>
   static bool turns(const Params<T>&, int) {
     return false;
+  }
+  /// A sleeve that is in at the start is in mesh, whatever the slip.
+  template <class T>
+  static int settle(const Params<T>& p, const At<T>& at) {
+    if (at.piece != apart || value(at.state[sleeve]) <= value(p.reach) + 1e-9) return at.piece;
+    return abs(value(at.state[angle])) * 2 <= value(p.gap) ? loose : next_flank(at);
   }
 
  private:
@@ -140,6 +146,11 @@ struct DogClutch : declared::DogClutch {
     return state[angle] = off_centre(p, state), loose;
   }
 
+  /// The flank that the teeth are on, or next to.
+  template <class T>
+  static int next_flank(const At<T>& at) {
+    return value(at.state[angle]) > 0 ? ahead : behind;
+  }
   /// The sleeve at the tips of the teeth: held back, in mesh, or on a tooth. Pointed teeth find the middle of a gap.
   template <class T>
   static int meet(const Params<T>& p, const At<T>& at, T* state) {

@@ -132,6 +132,7 @@ struct EngineTorque : declared::EngineTorque {
   }
 
  private:
+  static constexpr double ripple_band = 1;  // [rad/s]
   // who leaves a piece: where the idle control goes, then what is chosen, then the others
   static constexpr int chosen = idles, burns = chosen + choices, cuts = burns + 1, closer = cuts + 1,
                        wider = closer + 1;
@@ -218,15 +219,22 @@ struct EngineTorque : declared::EngineTorque {
     }
   };
 
-  /// Factor of the burning part over the crank angle.
+  /// Factor of the burning part over the crank angle. A ripple that makes it negative comes in over a band of speeds
+  /// above the one from which on it burns: else it would hold the engine there, switching on and off.
   template <class T, class S>
   static S wave(const Params<T>& p, const At<S>& at) {
     S sum = S(1);
     if (value(p.ripples) == 0) return sum;
     const NumberList orders(p.orders, at.points), sizes(p.amplitudes, at.points), phases(p.phases, at.points);
     const S angle = own(p, at, crank);
-    for (int i = 0; i < orders.count; ++i) sum += S(sizes[i]) * cos(S(orders[i]) * angle + S(phases[i]));
-    return sum;
+    double most = 0;
+    for (int i = 0; i < orders.count; ++i) {
+      sum += S(sizes[i]) * cos(S(orders[i]) * angle + S(phases[i]));
+      most += abs(value(sizes[i]));
+    }
+    const S above = at.rate - S(p.stall_speed);
+    if (most <= 1 || value(above) >= ripple_band) return sum;
+    return S(1) + (sum - S(1)) * above / T(ripple_band);
   }
 
   /// Output of the idle control before it is clipped, and after it.

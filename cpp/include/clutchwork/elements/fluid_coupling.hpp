@@ -23,7 +23,7 @@ struct FluidCoupling : declared::FluidCoupling {
     const S fast = by_base ? at.rates[Way::base] : at.rates[Way::follower], &slip = at.rates[Way::slip];
     torque[Way::base] = torque[Way::follower] = S(0);
     torque[Way::slip] = S(0);
-    if (fast == S(0)) return;
+    if (vanishes(fast)) return;
     const S above = (by_base ? slip : -slip) / fast;
     const S k = over_ratio(ratios, at.piece % ratios.count, above, [&](int i) { return factor(p, at.points, i); });
     torque[Way::slip] = k * fast * abs(fast) * S(by_base ? 1 : -1);

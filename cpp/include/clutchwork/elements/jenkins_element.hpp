@@ -89,7 +89,7 @@ struct JenkinsElement : declared::JenkinsElement {
     const int next = who == turned ? piece_of(segment(at.piece), sticks) : who;
     const At<T> there{at.rate, at.state, at.input, mode(at.piece) == sticks ? next : at.piece, at.points};
     state[friction_torque] = spring(p, there);
-    return mode(at.piece) == sticks ? next : kept(p, at, next);
+    return kept(p, at, next);
   }
   template <class T>
   static bool turns(const Params<T>& p, int piece) {
@@ -104,14 +104,14 @@ struct JenkinsElement : declared::JenkinsElement {
  private:
   static constexpr double after = 1e-4;  // [s]
 
-  /// A piece, and where it slides whether it goes on: the spring would grow faster than the limit. Where the limit
-  /// follows a speed, its guard tells.
+  /// A piece, and where it slides whether it goes on: the spring would grow faster than the limit, however slowly.
+  /// Where the limit follows a speed, its guard tells.
   template <class T>
   static int kept(const Params<T>& p, const At<T>& at, int piece) {
     if (mode(piece) == sticks || follows_speed(p)) return piece;
     const double slope = value(piece_slope(p.limit, at.points, segment(piece)));
     const double faster = side(piece) * value(p.stiffness) - slope;
-    return faster * value(at.rate) >= 0 ? piece : piece_of(segment(piece), sticks);
+    return faster * value(at.rate) > 0 ? piece : piece_of(segment(piece), sticks);
   }
   /// How much faster the spring would grow than the limit, over its stiffness; the drift of the input is that of the
   /// speed.

@@ -103,7 +103,7 @@ struct TorqueConverter : declared::TorqueConverter {
     const List ratios = list_of(p.speed_ratio, at.points);
     const S &w = at.rates[Way::impeller], &t = at.rates[Way::turbine], &slip = at.rates[Way::slip];
     const int n = ratios.count;
-    if (at.piece > 2 * n || (at.piece < n ? w : t) == S(0) || is_leaving(at)) return S(0);
+    if (at.piece > 2 * n || vanishes(at.piece < n ? w : t) || is_leaving(at)) return S(0);
     if (at.piece == 2 * n) {
       // as if the impeller stood
       const int i = ratio_piece(ratios, 0);
@@ -130,7 +130,7 @@ struct TorqueConverter : declared::TorqueConverter {
   static S multiplied(const Params<T>& p, const At<S>& at) {
     const List ratios = list_of(p.speed_ratio, at.points);
     const S& w = at.rates[Way::impeller];
-    if (at.piece >= ratios.count || w == S(0) || is_leaving(at)) return S(1);
+    if (at.piece >= ratios.count || vanishes(w) || is_leaving(at)) return S(1);
     const List m = list_of(p.torque_ratio, at.points);
     return over_ratio(ratios, at.piece, at.rates[Way::slip] / w, [&](int k) { return m[k]; });
   }

@@ -171,7 +171,8 @@ void pose_loads(const FullForm<T>& form, const Whole<S>& e) {
                                                b.piece, points_of(ws), b.sign);
     S given = S(T(0));
     for (int j = 0; j < ws.n_branches; ++j) add_times(by_branch[j], e.torque[j], given);
-    for (int p = 0; p < np; ++p) given += S(ws.loads.by_prescribed[l * np + p] * ws.in.prescribed_slope[p]);
+    for (int p = 0; p < np; ++p)
+      add_times(ws.loads.by_prescribed[l * np + p], slope_of_reference(ws, e, form.n(), int(ws.sys.n_input_refs) + p), given);
     const S slope = bound.slope[line] * S(sign);
     for (int j = 0; j < m; ++j) e.coupling[i * m + j] = slope * S(by_branch[ws.loads.branch[j]]) + S(T(i == j ? 1 : 0));
     e.followed[i] = -(slope * given + bound.offset[line] * S(sign));
@@ -289,7 +290,7 @@ template <class T>
 void evaluate_whole(FullForm<T>& form, Real<T> t, const T* y, T* d, T* rate, T* torque) {
   Workspace<T>& ws = form.ws;
   inputs_at(ws, t);
-  if (ws.ratios.n > 0) input_slopes_at(ws, t);
+  if (ws.ratios.n > 0 || (ws.loads.n_sliding > 0 && ws.sys.prescribed > 0)) input_slopes_at(ws, t);
   Whole<T> e = ws.full.plain;
   e.d = d, e.input = ws.in.u, e.rate = rate, e.torque = torque;
   for (int i = 0; i < form.n(); ++i) e.y[i] = y[i];

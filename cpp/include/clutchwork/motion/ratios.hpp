@@ -2,6 +2,7 @@
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/contacts/ratios.hpp>
+#include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/form.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -344,10 +345,11 @@ void move_followers_whole(const Ratios<T>& r, const Tied<S>& w, S* d) {
   }
 }
 
-/// Speeds y brought onto the ties at the point that was evaluated last, the momentum across them untouched.
+/// Speeds y brought onto the ties at the point that was evaluated last, the momentum across them untouched. A
+/// transmission that nothing can keep there, for what ties its speeds is prescribed; -1: none.
 /// docs/theory/varying-ratios.md (9)
 template <class Form, class T = typename Form::Scalar>
-void settle_ties(Form& form, T* y) {
+int settle_ties(Form& form, T* y) {
   Workspace<T>& ws = form.ws;
   const Ratios<T>& r = ws.ratios;
   const Tied<T>& w = r.plain;
@@ -370,6 +372,45 @@ void settle_ties(Form& form, T* y) {
     if (r.column[a] < 0) continue;
     const T miss = w.ratio[a] * rate(2 * a + 1) - rate(2 * a);
     y[r.column[a]] += miss / share_of_follower(r, w, a, a);
+  }
+  constexpr double most = 1e-6;
+  for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t) {
+    if (value(w.gram[t * r.ties + t]) != 0) continue;
+    const int a = r.tie[t];
+    const double first = value(rate(2 * a)), second = value(w.ratio[a] * rate(2 * a + 1));
+    if (abs(first - second) > 1e3 * slip_tolerance(ws) + most * (abs(first) + abs(second))) return a;
+  }
+  return -1;
+}
+
+/// Locked contacts that share a load pass it on otherwise than the carriers would alone: transmissions take the
+/// difference, at the point that was evaluated last. docs/theory/varying-ratios.md (21)
+template <class Form, class T = typename Form::Scalar>
+[[gnu::noinline]] void carry_shares(Form& form) {
+  Workspace<T>& ws = form.ws;
+  const Ratios<T>& r = ws.ratios;
+  const Tied<T>& w = r.plain;
+  const int ne = int(ws.sys.elements), nv = int(ws.sys.speeds), nz = form.nz();
+  T *torque = ws.reduced.column, *reduced = w.push;
+  for (int i = 0; i < nv; ++i) torque[i] = T(0);
+  for (int k = 0; k < ws.held.n_sets; ++k) {
+    const int first = ws.held.set_first[k];
+    for (int i = first; i < ws.held.set_first[k + 1]; ++i) {
+      const int d = ne + ws.held.set_member[i], own = ws.branch_of[d];
+      T more = ws.out.torque[d];
+      if (own >= 0 && own < ws.n_branches) more -= ws.seen.torque[own];
+      if (i - first < ws.held.set_rank[k]) more -= ws.seen.carried[ws.held.set_place[i]];
+      add_direction(ws, d, more, torque);
+    }
+  }
+  for (int i = 0; i < nz; ++i) reduced[i] = T(0);
+  for (int i = 0; i < nv; ++i) ws.rows.expansion.add(i, torque[i], reduced);
+  for (int t = 0; t < r.ties; ++t) w.wanted[t] = T(0);
+  carry(r, w, reduced, nz);
+  for (int a = 0; a < r.n; ++a) {
+    const int d = first_of(ws, a), k = r.place[2 * a];
+    ws.seen.torque[k] += w.torque[a], ws.seen.torque[k + 1] -= w.ratio[a] * w.torque[a];
+    ws.out.torque[d] = ws.seen.torque[k], ws.out.torque[d + 1] = ws.seen.torque[k + 1];
   }
 }
 

@@ -78,6 +78,28 @@ void start_contacts(Workspace<T>& ws) {
   }
 }
 
+/// Prescribed speeds that are integrals begin where the run does, with the value that they have at 0.
+template <class T>
+void begin_sums(Workspace<T>& ws) {
+  const auto& sys = ws.sys;
+  for (int p = 0; p < sys.prescribed && ws.options.t_start != 0; ++p) {
+    const int i = sys.prescribed_input[p];
+    auto& signal = ws.in.signal[i];
+    if (sys.prescribed_sums[p] == 0 || signal.set > 0 || is_held(ws, i)) continue;
+    auto value_at = [&](double t) { return signal.segment = 0, seek(ws, i, t), signal_value(ws, i, t); };
+    const auto gained = value_at(ws.options.t_start) - value_at(0);
+    const auto [start, coef] = segments_of(ws, i);
+    const std::int64_t first = sys.input_first[i];
+    for (std::int64_t k = 0; k < start.n; ++k) {
+      ws.in.set_time[first + k] = start.times[k];
+      Given<T>* to = ws.in.set_coef + segment_size * (first + k);
+      for (int c = 0; c < segment_size; ++c) to[c] = coef[segment_size * k + c];
+      to[0] -= gained;
+    }
+    signal.set = int(start.n), signal.segment = 0;
+  }
+}
+
 /// State at the start. False when the mass matrix is not positive definite.
 template <class T>
 bool start(Workspace<T>& ws) {
@@ -86,9 +108,11 @@ bool start(Workspace<T>& ws) {
   ws.time = ws.options.t_start;
   ws.statistics = {};
   ws.events.n = 0;
+  ws.out.skipped = false;
   ws.contact.failed = -1;
   ws.params_changed = false;
   take_initial(ws);
+  begin_sums(ws);
   load_inputs(ws, ws.time);
   shared_inputs(ws, ws.state);
   present_rates(ws);

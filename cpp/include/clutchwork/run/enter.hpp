@@ -120,18 +120,18 @@ bool count_reduced(Workspace<T>& ws) {
 
 /// The locked contacts, sorted by what transmissions leave of their directions.
 template <class T>
-void list_locked_now(Workspace<T>& ws) {
-  const BesideRatios<T> beside(ws);
+void list_locked_now(Workspace<T>& ws, bool again) {
+  const BesideRatios<T> beside(ws, again ? Written::last : Written::now);
   list_locked(ws);
 }
 
 /// Reduced motion of the present modes; the state goes to ws.reduced.y. False: the inertias differ too much to tell
-/// them apart.
+/// them apart. `again`: the phase has begun before, and its locked contacts are sorted by the ratios of that instant.
 template <class T>
-bool enter_mode(Workspace<T>& ws) {
+bool enter_mode(Workspace<T>& ws, bool again = false) {
   const auto& sys = ws.sys;
   relax_open(ws);
-  list_locked_now(ws);
+  list_locked_now(ws, again);
   pack_branches(ws);
   list_laws(ws);
   list_processes(ws);

@@ -133,12 +133,11 @@ void fill_contacts(const Workspace<T>& ws, const Snapshot<T>& shot, R* row) {
   }
 }
 
-/// Torques of all directions, and work up to the share x of the fitted part of the step, of length h; x < 0: nothing is
-/// fitted.
+/// Torques of all directions, and work; `fitted`: with that since the start of the step.
 template <class T, class R>
-void fill_work(const Workspace<T>& ws, double x, double h, R* row) {
+void fill_work(const Workspace<T>& ws, bool fitted, R* row) {
   const int ne = int(ws.sys.elements), nd = ws.n_directions;
-  auto since = [&](int i) { return x < 0 ? T(0) : fitted_work(ws, i, x, h); };
+  auto since = [&](int i) { return fitted ? ws.out.since[i] : T(0); };
   for (int d = 0; d < nd; ++d) {
     const std::int64_t k = d < ne ? ws.row.element_torque + d : ws.row.contact_torque + d - ne;
     const std::int64_t w = d < ne ? ws.row.element_work + d : ws.row.contact_work + d - ne;
@@ -162,11 +161,12 @@ void fill_numbers(Form& form, Step<Form>& step, double s, double s_end, R* row) 
   const auto& sys = ws.sys;
   for (int n = 0; n < sys.nodes; ++n) ws.out.angle[n] = ws.angle[n];
   if (ws.options.angles && s > 0) angles_at(form, step, s, ws.out.angle);
+  const bool fitted = ws.options.work && s > 0;
+  if (fitted) work_until(form, step, s, s_end);
   const Snapshot<T> shot = take_snapshot(form, step, s);
   fill_nodes(ws, shot, row);
   for (int i = 0; i < sys.states; ++i) row[ws.row.state + i] = shown<R>(shot.y[form.nz() + i]);
-  const bool fitted = ws.options.work && s > 0;
-  fill_work(ws, fitted ? s / s_end : -1.0, s_end * step.h, row);
+  fill_work(ws, fitted, row);
   for (int i = 0; i < sys.supplies; ++i) {
     row[ws.row.supply_power + i] = shown<R>(supply_power(ws, i, shot.y + form.nz()));
   }
@@ -198,6 +198,14 @@ bool fill_row(Form& form, Step<Form>& step, double s, double s_end, Sink& sink) 
 template <class Form>
 Status emit_parts(Form& form, Step<Form>& step, double s_end, double end, Sink& sink) {
   const std::int64_t parts = s_end > 0 ? sink.steps : 1;
+  auto& out = form.ws.out;
+  if (sink.steps > 1) {
+    // a step whose parts the time cannot tell apart has none, and what starts behind it is where it begins
+    if (parts == 1 && out.skipped) end = out.shown;
+    if (parts > 1) out.skipped = end - step.t <= 1e-12 * (1 + abs(end));
+    if (parts > 1 && out.skipped) return Status::running;
+    out.shown = end;
+  }
   for (std::int64_t k = 1; k <= parts; ++k) {
     const double t = k == parts ? end : step.t + s_end * double(k) / double(parts) * step.h;
     // as a grid with this instant has it, but for the bare steps
@@ -253,20 +261,34 @@ Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
   return emit(form, step, 0.0, step.t, sink);
 }
 
+/// Whether accelerations or torques in the last row are others than in the row before it, by more than round-off; of a
+/// shaft without inertia, before it that of the interpolant, by more than that may miss.
+template <class T>
+bool row_jumps(const Workspace<T>& ws, const Sink& sink) {
+  if (sink.at < 2) return true;
+  const double *behind = sink.rows + ws.row.size * (sink.at - 1), *before = behind - ws.row.size;
+  auto jumps = [&](std::int64_t first, std::int64_t count, auto&& missed) {
+    double size = 0;
+    for (std::int64_t i = first; i < first + count; ++i) size = larger(size, larger(abs(before[i]), abs(behind[i])));
+    bool any = false;
+    for (std::int64_t i = 0; i < count; ++i) any = any || abs(behind[first + i] - before[first + i]) > missed(i) * size;
+    return any;
+  };
+  const auto round_off = [](std::int64_t) { return 1e-9; };
+  const auto of_node = [&](std::int64_t n) { return value(ws.sys.inertia[n]) > 0 ? 1e-9 : 1e-4; };
+  return jumps(ws.row.acceleration, ws.sys.nodes, of_node) ||
+         jumps(ws.row.element_torque, ws.sys.elements, round_off) ||
+         jumps(ws.row.contact_torque, ws.sys.contacts, round_off);
+}
+
 /// Take the integrals over the step up to s into the state.
 template <class Form>
 void accumulate(Form& form, Step<Form>& step, double s) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
-  const int nd = ws.n_directions;
   if (ws.options.angles) angles_at(form, step, s, ws.angle);
   if (!ws.options.work) return;
-  for (int d = 0; d < nd; ++d) ws.work[d] += fitted_work(ws, d, 1.0, s * step.h);
-  for (int p = 0; p < ws.sys.prescribed; ++p) ws.prescribed_work[p] += fitted_work(ws, nd + p, 1.0, s * step.h);
-  const int first = nd + int(ws.sys.prescribed);
-  for (int i = 0; i < ws.sys.supplies; ++i) ws.supplied[i] += fitted_work(ws, first + i, 1.0, s * step.h);
-  const int last = first + int(ws.sys.supplies);
-  for (int m = 0; m < ws.sys.meters; ++m) ws.metered[m] += fitted_work(ws, last + m, 1.0, s * step.h);
+  for (int i = 0; i < fitted_powers(ws); ++i) work_of(ws, i) += fitted_work(ws, i, 1.0, s * step.h);
 }
 
 }  // namespace clutchwork

@@ -10,6 +10,7 @@
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/massless.hpp>
 #include <clutchwork/run/processes.hpp>
 #include <clutchwork/run/settle.hpp>
 #include <clutchwork/run/snapshot.hpp>
@@ -32,6 +33,24 @@ void export_state(Form& form, const T* y) {
   present_rates(ws);
 }
 
+/// Whether torques that have jumped are beyond what locked contacts hold, or take a load to the other line of the bound
+/// with which its contact slips: where they were looked at last. docs/theory/events.md, rule 16
+template <class T>
+bool is_beyond(Workspace<T>& ws) {
+  for (int a = 0; a < ws.held.n; ++a) {
+    const T torque = ws.here.multiplier[a], capacity = ws.here.capacity[a];
+    if (!is_rigid(ws, ws.held.contact[a]) && ws.held.in_set[a] == 0 && margin(ws, a, torque, capacity) < 0) return true;
+  }
+  for (int k = 0; k < ws.held.n_sets; ++k) {
+    if (value(ws.here.room[k]) < 0) return true;
+  }
+  const double noise = ws.loads.n_sliding > 0 ? 1e-12 * torque_size(ws) : 0;
+  for (int i = 0; i < ws.loads.n_sliding; ++i) {
+    if (value(ws.here.clearance[ws.loads.sliding[i]]) < -noise) return true;
+  }
+  return false;
+}
+
 /// After a knot: right limits of the signals; true when the modes must be decided again. docs/theory/events.md, rule 1
 template <class T>
 bool knot_decides(Workspace<T>& ws) {
@@ -50,13 +69,8 @@ template <class T>
 bool knot_lets_go(Workspace<T>& ws) {
   for (int a = 0; a < ws.held.n; ++a) {
     if (is_rigid(ws, ws.held.contact[a])) return true;
-    const T torque = ws.here.multiplier[a], capacity = ws.here.capacity[a];
-    if (ws.held.in_set[a] == 0 && margin(ws, a, torque, capacity) < 0) return true;
   }
-  for (int k = 0; k < ws.held.n_sets; ++k) {
-    if (value(ws.here.room[k]) < 0) return true;
-  }
-  return ws.held.n_driven > 0;
+  return ws.held.n_driven > 0 || is_beyond(ws);
 }
 
 /// The law of a contact goes to its next piece; it may move its states. False: it does so without end.
@@ -71,7 +85,9 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   // a state that starts to slide does so the way the contact slips, however small the slip
   if (who == turned) {
     heading = -heading;
-  } else if (b.law >= 0 && law_runs_on(b, who)) {
+  } else if (b.law < 0) {
+    heading = value(rate_of(ws, b.direction)) < 0 ? backward : forward;
+  } else if (law_runs_on(b, who)) {
     heading = value(state[b.state + who]) < 0 ? backward : forward;
   }
   ws.piece[b.direction] = b.piece;

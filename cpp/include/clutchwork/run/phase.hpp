@@ -10,6 +10,7 @@
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/massless.hpp>
 #include <clutchwork/run/moving.hpp>
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/pace.hpp>
@@ -107,8 +108,11 @@ class Phase : public Pace<typename Form::Scalar> {
     if constexpr (Form::full) {
       if (ws_.ratios.n > 0) prepare_ratios(form_);
       if (fresh) keep_ties(form_, step_, ws_.time, step_.y0());
+      if (ws_.ratios.jammed >= 0) return jam();
     }
-    if constexpr (!Form::small) balance_massless(form_, step_);
+    if constexpr (!Form::small) {
+      if (balance_massless(form_, step_) && event && may_decide_again()) return decide_again();
+    }
     if constexpr (has_tangents<T>) {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
     }
@@ -165,6 +169,17 @@ class Phase : public Pace<typename Form::Scalar> {
     over_ = true;
   }
 
+  /// Speeds without inertia have jumped to their balance: the modes were decided with other torques. Once at an
+  /// instant.
+  bool may_decide_again() const { return ws_.sys.contacts > 0 && ws_.guard.balanced_at != ws_.time; }
+  void decide_again() {
+    ws_.guard.balanced_at = ws_.time;
+    export_state(form_, step_.y0());
+    for (int c = 0; c < ws_.sys.contacts; ++c) ws_.happened.mode[c] = ws_.contact.mode[c];
+    ws_.happened.contact = -1;
+    over_ = true;
+  }
+
   // -------------------------------------------------------------------------------------------------- room for a step
 
   /// Whether the phase goes on: no knot that changes the modes, not at the end, room and budget left.
@@ -186,20 +201,25 @@ class Phase : public Pace<typename Form::Scalar> {
     export_state(form_, step_.y0());
     note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
-    const bool jumps = sink_.steps > 0 && ws_.time < t_end_ && any_jumps(ws_);
+    const bool jumps = (!Form::small || sink_.steps > 0) && any_jumps(ws_);
     if (knot_decides(ws_)) return hand_over(Cause::input);
+    if constexpr (!Form::small) {
+      if (jumps && balance_massless(form_, step_)) export_state(form_, step_.y0());
+    }
     look_here();
     if (knot_lets_go(taken_form().ws)) return hand_over(Cause::input);
     if constexpr (has_tangents<T>) {
       if (leave_event(form_, step_)) balance_massless(form_, step_), look_here();
     }
-    if (jumps) show_jump();
+    show_behind(jumps);
   }
 
-  /// The row behind a jump of a signal: in steps both sides have one.
-  void show_jump() {
+  /// In steps both sides of an instant have a row where a signal, a torque or an acceleration jumps.
+  void show_behind(bool jumps) {
+    if (sink_.steps == 0 || ws_.time >= t_end_) return;
     const Status shown = emit_start(form_, step_, sink_, true);
     if (shown != Status::running) return leave(shown);
+    if (!jumps && !row_jumps(ws_, sink_)) --sink_.at;
     look_here();
   }
 
@@ -242,6 +262,8 @@ class Phase : public Pace<typename Form::Scalar> {
       land(hit.s);
     } else if (misses_rest(hit)) {
       retake();
+    } else if (Form::full && hit.what == Hit::nothing && taken_form().ws.ratios.jammed >= 0) {
+      jam();
     } else if (reach(hit.s)) {
       hit.what == Hit::nothing ? accept() : meet(hit);
     }
@@ -249,6 +271,13 @@ class Phase : public Pace<typename Form::Scalar> {
 
   void reject() {
     if (!shorten()) collapse();
+  }
+
+  /// A transmission whose speeds are prescribed otherwise than its ratio says.
+  void jam() {
+    ws_.detail.component = first_of(ws_, ws_.ratios.jammed);
+    ws_.ratios.jammed = -1;
+    leave(Status::jammed);
   }
 
   /// Whether the step must be repeated to end where a guard was hit, because its own estimate does not speak for that
@@ -302,7 +331,9 @@ class Phase : public Pace<typename Form::Scalar> {
   }
 
   /// Derivatives along the step up to the share s, in as many parts as they need.
-  bool follow(double s) {
+  bool follow(double s)
+    requires has_tangents<T>
+  {
     varied_.rest();
     for (double at = 0; at < s;) {
       const double to = varied_.follow(at, s);
@@ -316,7 +347,9 @@ class Phase : public Pace<typename Form::Scalar> {
     if (s >= 1 && varied_.was_moved()) look_at_end();
     return true;
   }
-  bool write_part(double end) {
+  bool write_part(double end)
+    requires has_tangents<T>
+  {
     const bool rows = end > step_.t && sink_.at < sink_.count && sink_.times[sink_.at] <= end;
     if (ws_.options.work) fit_power(form_, step_, 1.0);
     const Status shown = rows ? emit(form_, step_, 1.0, end, sink_) : Status::running;
@@ -403,7 +436,9 @@ class Phase : public Pace<typename Form::Scalar> {
   }
 
   /// Slopes of the speeds without inertia, which no equation of motion gives.
-  void slope_at_end() {
+  void slope_at_end()
+    requires has_tangents<T>
+  {
     if (step_.h > 0) return interpolate_slope(form_, step_, 1.0, step_.k(2));
     for (int i = 0; i < form_.n(); ++i) step_.k(2)[i] = T(0);
   }
@@ -432,6 +467,8 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (!law) pass_line(form_, *guard);
     look_on();
+    if (law && is_beyond(taken_form().ws)) return hand_over(Cause::other_event), true;
+    show_behind(false);
     if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(taken_form(), hit.index));
     h_ = ws_.last_step;
     return true;
@@ -446,6 +483,8 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (moved) return false;
     look_on();
+    if (is_beyond(ws_)) return hand_over(Cause::other_event), true;
+    show_behind(false);
     h_ = ws_.last_step;
     return true;
   }

@@ -5,6 +5,7 @@
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/massless.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Everything at one point of a step.
@@ -30,6 +31,18 @@ struct Snapshot {
   T *y, *d, *rate, *v, *dv;
 };
 
+/// Accelerations of speeds without inertia: inside of a step those of the interpolant.
+template <class Form, class T = typename Form::Scalar>
+void see_massless(Form& form, Step<Form>& step, double s, const Snapshot<T>& shot) {
+  if (!any_massless(form)) return;
+  if (step.h == 0) return change_massless(form, step.t, shot.y, shot.d, step.k(6), step.k(7));
+  T* slope = step.u();
+  interpolate_slope(form, step, s, slope);
+  for (int i = 0; i < form.nz(); ++i) {
+    if (is_massless(form.ws, i)) shot.d[i] = slope[i];
+  }
+}
+
 /// State, torques of all directions and accelerations at s; output torques go to ws.out.torque.
 template <class Form, class T = typename Form::Scalar>
 Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
@@ -50,15 +63,13 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
   multipliers(ws, ws.seen.torque, true, ws.seen.carried);
   if (sys.loads > 0) loads_seen(ws);
   locked_torques(ws, ws.seen.carried, [&](int c, T x) { ws.out.torque[ne + c] += x; });
+  if constexpr (Form::full) {
+    if (ws.ratios.n > 0 && ws.held.n_sets > 0) carry_shares(form);
+  }
   if (sys.loads > 0) loads_of_all(ws, ws.out.torque, ws.loads.now);
   expand(form, shot.y, shot.v);
-  bool algebraic = false;
-  for (int i = 0; i < nv; ++i) algebraic = algebraic || sys.massless[i] != 0;
-  if (algebraic && step.h > 0) {
-    interpolate_slope(form, step, s, shot.d);
-  } else {
-    form.solve_mass(shot.d);
-  }
+  form.solve_mass(shot.d);
+  if constexpr (!Form::small) see_massless(form, step, s, shot);
   expand(form, shot.d, shot.dv, false);
   for (int i = 0; i < nv; ++i) {
     for (int p = 0; p < sys.prescribed; ++p)

@@ -12,53 +12,14 @@
 /// What one step needs besides its integrator: both ends, its length, its errors.
 namespace clutchwork {
 
-/// Speeds without inertia: Newton on their balance of torques. docs/theory/reduction.md
-template <class T>
-void balance_massless(SparseForm<T>& form, Step<SparseForm<T>>& step) {
-  Workspace<T>& ws = form.ws;
-  const int nz = form.nz();
-  bool any = false;
-  for (int i = 0; i < nz; ++i) any = any || ws.rows.mass.first[i] == ws.rows.mass.first[i + 1];
-  for (int round = 0; any && round < 8; ++round) {
-    linearize(form, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
-    T* stiff = ws.stages.stiff;
-    for (int k = 0; k < ws.n_branches; ++k) stiff[k] = ws.jacobian.partial[k].by_rate;
-    // a huge inertia holds all other speeds
-    if (!form.factor(T(1e30), stiff)) return;
-    T* b = step.slope();
-    for (int i = 0; i < nz; ++i) b[i] = ws.rows.mass.first[i] == ws.rows.mass.first[i + 1] ? step.f0()[i] : T(0);
-    form.solve(b);
-    for (int i = 0; i < nz; ++i) step.y0()[i] += b[i];
-  }
-}
-
-/// The same in the full form, the states held.
-template <class T>
-void balance_massless(FullForm<T>& form, Step<FullForm<T>>& step) {
-  Workspace<T>& ws = form.ws;
-  const int nz = form.nz();
-  const auto massless = [&](int i) { return ws.rows.mass.first[i] == ws.rows.mass.first[i + 1]; };
-  bool any = false;
-  for (int i = 0; i < nz; ++i) any = any || massless(i);
-  for (int round = 0; any && round < 8; ++round) {
-    linearize(form, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
-    // a huge inertia holds all other speeds
-    if (!form.factor_whole(T(1e30), nz)) return;
-    T* b = step.slope();
-    for (int i = 0; i < nz; ++i) b[i] = massless(i) ? step.f0()[i] : T(0);
-    form.solve_whole(b, nz);
-    for (int i = 0; i < nz; ++i) step.y0()[i] += b[i];
-  }
-}
-
-/// Speeds at y brought onto the ties of transmissions, closed stops on them to their ends.
-/// docs/theory/varying-ratios.md (9)
+/// Speeds at y brought onto the ties of transmissions, closed stops on them to their ends; ratios.jammed tells whether
+/// that can be. docs/theory/varying-ratios.md (9)
 template <class T>
 void keep_ties(FullForm<T>& form, Step<FullForm<T>>& step, Real<T> t, T* y) {
   Workspace<T>& ws = form.ws;
   if (ws.ratios.n == 0) return;
   evaluate(form, t, y, step.slope());
-  settle_ties(form, y);
+  ws.ratios.jammed = settle_ties(form, y);
   stay_at_ends(ws, y + form.nz());
 }
 

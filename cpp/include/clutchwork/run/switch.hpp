@@ -141,6 +141,7 @@ Status decide(Workspace<T>& ws, bool at_start) {
     ws.loads.jammed = -1;
     if (c < 0 || !stop_jammed(ws, c)) return status;
     ws.happened.cause = Cause::jam, ws.happened.contact = c;
+    ws.contact.impulse[c] = at_start;
     status = settle(ws, -1);
   }
   if (status == Status::running && stops_short(ws, located)) {
@@ -179,7 +180,7 @@ template <class T>
 void jump(Workspace<T>& ws) {
   if (ws.ratios.n == 0) return prescribed_jump(ws);
   {
-    const BesideRatios<T> beside(ws, true);
+    const BesideRatios<T> beside(ws, Written::before);
     prescribed_jump(ws);
   }
   jump_ratios(ws, slip_tolerance(ws));
@@ -198,6 +199,7 @@ Status switch_modes(Workspace<T>& ws) {
   if (ws.statistics.events > ws.options.max_events) return Status::too_many_events;
 
   forget_forced(ws);
+  rest_at_ends(ws);
   if (ws.happened.cause == Cause::slip_zero && located >= 0) ws.contact.forced[located] = 0;
   if (!at_start) jump(ws);
   const BesideRatios<T> beside(ws);

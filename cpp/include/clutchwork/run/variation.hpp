@@ -3,9 +3,11 @@
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/integrator/rodas5p.hpp>
 #include <clutchwork/run/mirror.hpp>
+#include <clutchwork/run/output.hpp>
+#include <clutchwork/run/step.hpp>
 #include <clutchwork/run/step_calls.hpp>
 #include <clutchwork/workspace.hpp>
-/// Steps of a run with derivatives: a plain step, and the derivatives along it. docs/theory/gradients.md (16)
+/// Steps of a run with derivatives: a plain step, and the derivatives along it. docs/theory/gradients.md (17)
 namespace clutchwork {
 
 template <class Form>
@@ -293,7 +295,7 @@ class Variation {
   double step1(int i) const { return const_cast<Step<Plain>&>(step).y1()[i]; }
 
   /// Error of the derivatives in units of the tolerance, each direction of the largest size that it has had.
-  /// docs/theory/gradients.md (17)
+  /// docs/theory/gradients.md (18)
   double error_of(const T* missed, const T* end) {
     constexpr int seen = T::seen;
     double sum[seen] = {}, worst = 0;

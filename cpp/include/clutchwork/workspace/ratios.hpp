@@ -48,6 +48,7 @@ struct Ratios {
   T* whole = nullptr;   ///< mobility of each direction before the span was taken off
   T* part = nullptr;    ///< directions x n: parts of a direction along the span
   bool inside = false;  ///< a decision is made
+  int jammed = -1;      ///< transmission that nothing can keep at its ratio, -1: none
 
   // of a phase
   int more_rows = 0;  ///< of the form, behind those of the rates: locked contacts whose directions vary

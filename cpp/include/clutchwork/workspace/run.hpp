@@ -54,6 +54,7 @@ struct Guards {
   int reversals = 0;     ///< of slips that chatter
   int strained = 0;      ///< explicit steps in a row at the limit of their stability
   std::int64_t reversals_since = 0;
+  double balanced_at = -infinity;  ///< [s] where speeds without inertia have jumped last, with a decision
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
@@ -86,13 +87,18 @@ struct Output {
   T *v = nullptr, *dv = nullptr, *turned = nullptr;  ///< of each speed: value, time derivative, angle since the start
   T *angle = nullptr, *prescribed_angle = nullptr;
   T* power = nullptr;                     ///< of each direction, source, supply and meter, as cubics
+  T* since = nullptr;                     ///< work of each of them since the start of the step
+  int is_rough = -1;                      ///< whether the cubics miss much inside of the step; -1: not known
   T *whole = nullptr, *halves = nullptr;  ///< work of each branch over a step and its halves
+  double shown = 0;                       ///< [s] last row in a step
+  bool skipped = false;                   ///< the last step was too short for rows
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.torque, n.directions), a.scratch(p.v, n.speeds), a.scratch(p.dv, n.speeds), a.scratch(p.turned, n.speeds);
     a.scratch(p.angle, n.nodes), a.scratch(p.prescribed_angle, n.prescribed);
-    a.scratch(p.power, 4 * (n.directions + n.prescribed + n.supplies + n.meters)), a.scratch(p.whole, n.directions);
+    a.scratch(p.power, 4 * (n.directions + n.prescribed + n.supplies + n.meters));
+    a.scratch(p.since, n.directions + n.prescribed + n.supplies + n.meters), a.scratch(p.whole, n.directions);
     a.scratch(p.halves, n.directions);
   }
 };

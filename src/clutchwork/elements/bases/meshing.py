@@ -75,6 +75,7 @@ class Lossy(Heating):
         "rows of speed of the input [rad/s], efficiency where the input drives, efficiency where the output drives,"
         " friction [N m] at the input of either",
         default=None,
+        rows=True,
     )
     tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
     locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from clutchwork.declare import Component, Node, Signal, family, port
+from typing import ClassVar
+
+from clutchwork.declare import Component, Found, Node, Signal, family, port
+from clutchwork.declare.node import is_reference
+from clutchwork.declare.schema import specs
+from clutchwork.elements.bases.ratios import angle_of
 from clutchwork.signals.constant import Constant
 
 
@@ -18,8 +23,21 @@ class MotionError(ValueError):
 class Motion(Component):
     """A motion that is given, whatever torque it takes."""
 
+    # whether its speed is an integral, which begins with that of the shaft wherever a run does
+    integrates: ClassVar[bool] = False
+
     shaft: Node = port("shaft whose motion is given")
     base: Node | None = port("member that takes the reaction and that the motion is measured from", default=None)
+
+    def problems(self) -> Found:
+        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        given = ((item.name, getattr(self, item.name)) for item, _ in specs(type(self), "signal"))
+        remedy = "give a number or a signal, or join them by a gear"
+        return [
+            (name, "follows another part, and a motion is given over time", remedy)
+            for name, value in given
+            if is_reference(value)
+        ]
 
     def speed_signal(self) -> Signal:
         """The speed that the shaft is given, over time; `MotionError` where it has none."""
@@ -31,8 +49,9 @@ class Motion(Component):
 
     def _started(self) -> tuple[float, float]:
         """Angle and speed from the base at the start, as shaft and base say."""
-        angle, speed = (self.base.angle, self.base.speed or 0.0) if self.base else (0.0, 0.0)
-        return self.shaft.angle - angle, (speed if self.shaft.speed is None else self.shaft.speed) - speed
+        base = (self.base.speed or 0.0) if self.base else 0.0
+        speed = base if self.shaft.speed is None else self.shaft.speed
+        return angle_of(self.shaft) - angle_of(self.base), speed - base
 
     def _unit(self, rotation: str) -> str:
         """A unit of the shaft, or of a mass."""

@@ -20,6 +20,10 @@ class Stop(Heating):
     friction: ClassVar[Law] = Coulomb(static=0.1, kinetic=0.1)  # type: ignore[misc]
     tolerance: ClassVar[float] = 0.0
 
+    def is_open(self) -> bool:
+        """Whether its position at the start may follow from what moves a mass."""
+        return False
+
     def rests(self) -> bool:
         """Whether it is at an end at the start."""
         raise NotImplementedError

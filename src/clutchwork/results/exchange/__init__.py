@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import ClutchworkError, near
-from clutchwork.base.paths import fitting, made
+from clutchwork.base.paths import fitting
 from clutchwork.base.shown import shown
+from clutchwork.base.writing import replaced
 
 if TYPE_CHECKING:
     from clutchwork.results.exchange.content import Content
@@ -54,7 +55,9 @@ def write(
     path = fitting(f"run.to_{form}" if form else "run.write", path, f"run{example}")
     found = _format(path, form)
     make = _writer(found)
-    make(content(run, names, dt, times, units), made(path))
+    chosen = content(run, names, dt, times, units)
+    with replaced(path) as new:
+        make(chosen, new)
 
 
 def _format(path: Path, form: str) -> str:

@@ -30,7 +30,7 @@ def write(content: Content, path: Path) -> None:
     size = 8 * len(content.time) * (len(fields) + 1)
     if size > MOST_BYTES:
         remedy = "choose signals with names=, or a coarser raster with dt="
-        raise TooLargeError(f"{path} would have {size} bytes, a MAT file has at most {MOST_BYTES}: {remedy}")
+        raise TooLargeError(f"it would have {size} bytes, a MAT file has at most {MOST_BYTES}: {remedy}")
     data: dict[str, Any] = {"time": content.instants.values}
     data |= {fields[signal.name]: _values(signal) for signal in content.signals()}
     unit = content.made.unit

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from io import BytesIO
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
-from matplotlib import rc_context
+from matplotlib import rc_context, rcParams
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from clutchwork.base.writing import replaced
 from clutchwork.results.plot.style import settings
 
 # of the screen of a notebook, which may have twice as many
@@ -36,10 +39,17 @@ class Picture(Figure):
         """Width in a notebook [px]."""
         return round(self.get_figwidth() * DOTS)
 
-    def savefig(self, *args: Any, **named: Any) -> None:
-        """Write it, in the look in which it was drawn."""
+    def savefig(self, fname: Any, **named: Any) -> None:
+        """Write it to a path or a stream, in the look in which it was drawn."""
         with rc_context(settings(self.formulas)):
-            super().savefig(*args, **named)
+            if not isinstance(fname, str | PathLike):
+                super().savefig(fname, **named)
+                return
+            path = Path(fname)
+            # as matplotlib does
+            path = path if path.suffix or "format" in named else path.with_suffix(f".{rcParams['savefig.format']}")
+            with replaced(path) as new:
+                super().savefig(new, **named)
 
     def png(self) -> bytes:
         """The picture, sharp on a screen with small pixels too."""

@@ -10,8 +10,8 @@ import numpy as np
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.paths import made
 from clutchwork.base.shown import shown
+from clutchwork.base.writing import replaced
 from clutchwork.results.plot.chosen import PAGES, Asked, Chosen, asked, panels, usual_groups
 from clutchwork.results.plot.curves import WORDS, Array, Curve, Panel, Side, panels_of, thinned, units_of
 from clutchwork.results.plot.measured import samples, with_samples
@@ -44,7 +44,8 @@ def explore(run: Recorded, chosen: Chosen, points: int | None) -> Any:
     figure = _figure(view, panels_of(view.runs, groups, extra, call, shown_in), points)
     if wanted.path is not None:
         # with all that it needs, so that it opens without a network
-        figure.write_html(str(made(wanted.path)), include_plotlyjs=True, include_mathjax=False, config=CONFIG)
+        with replaced(wanted.path) as new:
+            figure.write_html(str(new), include_plotlyjs=True, include_mathjax=False, config=CONFIG)
     return figure
 
 

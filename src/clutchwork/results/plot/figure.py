@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clutchwork.base.extras import need
-from clutchwork.base.paths import made
 from clutchwork.results.plot.style import MILLIMETRE, WIDTH, settings
 
 if TYPE_CHECKING:
@@ -31,5 +30,5 @@ def figure_of(height: float, *, formulas: bool = True, width: float = WIDTH) -> 
 def written(figure: Picture, path: Path | None) -> Picture:
     """The same figure, written to a path where there is one; folders are made."""
     if path is not None:
-        figure.savefig(made(path))
+        figure.savefig(path)
     return figure

@@ -1,0 +1,161 @@
+#pragma once
+#include <clutchwork/components/pieces.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/motion/form.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/watch.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// Speeds without inertia: where their torques balance, and how they change. docs/theory/reduction.md, shafts without
+/// inertia
+namespace clutchwork {
+
+/// A huge inertia holds all other speeds.
+inline constexpr double held_inertia = 1e30;
+
+template <class T>
+bool is_massless(const Workspace<T>& ws, int i) {
+  return ws.rows.mass.first[i] == ws.rows.mass.first[i + 1];
+}
+template <class Form>
+bool any_massless(const Form& form) {
+  for (int i = 0; i < form.nz(); ++i) {
+    if (is_massless(form.ws, i)) return true;
+  }
+  return false;
+}
+
+/// b := change of the speeds by which b is missing in the balance of torques that was linearized last. False: it is
+/// singular.
+template <class Form, class T = typename Form::Scalar>
+bool solve_held(Form& form, T* b) {
+  Workspace<T>& ws = form.ws;
+  if constexpr (Form::full) {
+    if (!form.factor_whole(T(held_inertia), form.nz())) return false;
+    form.solve_whole(b, form.nz());
+  } else {
+    T* stiff = ws.stages.stiff;
+    for (int k = 0; k < ws.n_branches; ++k) stiff[k] = ws.jacobian.partial[k].by_rate;
+    if (!form.factor(T(held_inertia), stiff)) return false;
+    form.solve(b);
+  }
+  return true;
+}
+
+/// Whether a rate is on the present piece of a branch, within what counts as zero.
+template <class T>
+bool is_on_piece(const Workspace<T>& ws, const Branch<T>& b, int edges, double rate) {
+  const int interval = b.piece % (edges + 1);
+  const double zero = slip_tolerance(ws);
+  return (interval == 0 || rate >= edge_at(ws, b.direction, interval - 1) - zero) &&
+         (interval == edges || rate <= edge_at(ws, b.direction, interval) + zero);
+}
+
+/// The elements that feel a speed without inertia go to the pieces that hold their rates at y; whether any does.
+template <class Form, class T = typename Form::Scalar>
+bool follow_pieces(Form& form, const T* y) {
+  Workspace<T>& ws = form.ws;
+  const Compressed<T>& rows = ws.rows.rate;
+  bool moved = false;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    Branch<T>& b = ws.branch[k];
+    bool feels = false;
+    for (int e = rows.first[k]; e < rows.first[k + b.ways]; ++e) feels = feels || is_massless(ws, rows.col[e]);
+    if (b.law >= 0 || !feels) continue;
+    T rate[most_ways];
+    for (int w = 0; w < b.ways; ++w) rate[w] = form.rate(k + w, y) + offset_rate(ws, k + w);
+    const int before = b.piece, edges = edge_count(ws, b.direction);
+    if (edges > 0 && !is_on_piece(ws, b, edges, value(rate[0])))
+      b.piece += piece_of(ws, b.direction, value(rate[0])) - b.piece % (edges + 1);
+    if (is_settling(b.kind)) b.piece = settled_piece(ws, b, rate);
+    ws.piece[b.direction] = b.piece;
+    moved = moved || b.piece != before;
+  }
+  return moved;
+}
+
+/// What is missing in the balance at y, whose pieces hold; `moved`: others do than before.
+template <class Form>
+double imbalance(Form& form, Step<Form>& step, bool& moved) {
+  auto& ws = form.ws;
+  moved = follow_pieces(form, step.y0()) || moved;
+  linearize(form, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
+  double square = 0;
+  for (int i = 0; i < form.nz(); ++i) {
+    if (is_massless(ws, i)) square += value(step.f0()[i]) * value(step.f0()[i]);
+  }
+  return square;
+}
+
+/// Speeds without inertia to where their torques balance, from the present ones on: Newton over the pieces of their
+/// elements, with shorter steps where a whole one misses. True where they have jumped. docs/theory/reduction.md (9)
+template <class Form>
+bool balance_massless(Form& form, Step<Form>& step) {
+  constexpr int least = 8, most = 64, halvings = 30;
+  constexpr double small = 1e-9, jump = 1e-4;
+  using T = typename Form::Scalar;
+  auto& ws = form.ws;
+  if (!any_massless(form)) return false;
+  const int nz = form.nz();
+  T *b = step.slope(), *y = step.y0();
+  for (int i = 0; i < nz; ++i) step.y1()[i] = y[i];
+  double fastest = 0, change = infinity, way = 0;
+  for (int i = 0; i < nz; ++i) fastest = larger(fastest, abs(value(y[i])));
+  bool moved = false;
+  double missing = imbalance(form, step, moved);
+  for (int round = 0; round < least || (round < most && change > small * (1 + fastest)); ++round) {
+    change = 0;
+    for (int i = 0; i < nz; ++i) b[i] = is_massless(ws, i) ? step.f0()[i] : T(0);
+    if (!solve_held(form, b)) break;
+    for (int i = 0; i < nz; ++i) change = larger(change, abs(value(b[i])));
+    for (int i = 0; i < nz; ++i) y[i] += b[i];
+    const bool close = change <= small * (1 + fastest);
+    double share = 1, left = imbalance(form, step, moved);
+    for (int k = 0; k < halvings && !close && !(left < missing); ++k) {
+      share *= 0.5;
+      for (int i = 0; i < nz; ++i) y[i] -= T(share) * b[i];
+      left = imbalance(form, step, moved);
+    }
+    missing = left;
+  }
+  for (int i = 0; i < nz; ++i) way = larger(way, abs(value(y[i] - step.y1()[i])));
+  expand(form, y, ws.v);
+  if (moved) list_lines(ws);
+  return way > jump * (1 + fastest);
+}
+
+/// Rates of change of the speeds without inertia along the motion, of which d has the others and those of the states:
+/// their balance at (t, y) holds on. docs/theory/reduction.md (9)
+template <class Form, class T = typename Form::Scalar>
+void change_massless(Form& form, double t, const T* y, T* d, T* b, T* dt) {
+  Workspace<T>& ws = form.ws;
+  const int nz = form.nz(), n = form.n();
+  linearize(form, t, y, b, dt, ws.here);
+  for (int i = 0; i < nz; ++i) b[i] = T(0);
+  if constexpr (Form::full) {
+    for (int i = 0; i < nz; ++i) {
+      for (int j = nz; j < n; ++j) b[i] += ws.full.jacobian[i * n + j] * d[j];
+    }
+  } else {
+    const int nx = int(ws.sys.shared);
+    for (int k = 0; k < ws.n_branches; ++k) {
+      T drift = T(0);
+      for (int s = ws.branch[k].state; s < ws.branch[k].state + ws.branch[k].states; ++s)
+        drift += ws.jacobian.f_state[s] * d[nz + s];
+      for (int j = 0; j < nx; ++j) drift += ws.shared.torque_by[k * nx + j] * d[n - nx + j];
+      form.push(k, drift, b);
+    }
+  }
+  for (int i = 0; i < nz; ++i) {
+    b[i] = is_massless(ws, i) ? b[i] + dt[i] : T(0);
+    if (is_massless(ws, i)) d[i] = T(0);
+  }
+  form.add_mass_times(T(held_inertia), d, b);
+  if (!solve_held(form, b)) return;
+  for (int i = 0; i < nz; ++i) {
+    if (is_massless(ws, i)) d[i] = b[i];
+  }
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,120 @@
+"""Random models of everything that is declared: every row keeps all laws, and twins of a model agree with it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from support.amount import amount
+from support.any_model import elements, judge, model, rows
+from support.any_model.values import Plain
+from support.sweep import simulate, sweep
+
+BENCH: Plain = {
+    "name": "bench",
+    "shaft": [{"name": f"s{k}", "inertia": 0.1 * k + 0.1} for k in range(4)],
+    "mass": [{"name": "m0", "mass": 3.0}, {"name": "m1", "mass": 4.0}],
+    "thermal": [{"name": "plates", "capacity": 100.0}],
+    "ambient": [{"name": "air"}],
+    "element": [],
+    "simulation": {"t_end": 0.1},
+}
+NODES = {"rotation": ["s0", "s1", "s2", "s3"], "translation": ["m0", "m1"], "thermal": ["plates", "air"]}
+# draws of one kind until the checks of the package take one
+TRIES = 200
+
+
+@pytest.mark.parametrize("kind", elements.kinds()[0])
+def test_every_kind_is_drawn(kind: str) -> None:
+    """What is declared is drawn, from its declaration alone."""
+    rng = np.random.default_rng(1)
+    for _ in range(TRIES):
+        one = elements.drawn(rng, "e", kind, NODES, 0.1, {})
+        if one is not None and not model.refused({**BENCH, "element": [one]}):
+            return
+    pytest.fail(f"{kind} is never drawn: give it an example in its declaration, or a line in RECIPES")
+
+
+def faults_of_rows(seed: int) -> str:
+    return "; ".join(f"{fault.key}: {fault.words}" for fault in judge.faults(model.model(seed), seed, 0))
+
+
+def faults_of_twins(seed: int) -> str:
+    return "; ".join(f"{fault.key}: {fault.words}" for fault in judge.faults(model.model(seed), seed, 2))
+
+
+@pytest.mark.random
+def test_rows_of_random_models() -> None:
+    """Balance of torques, capacities, signs, ratios, motions, energies, laws, both limits, events."""
+    sweep(faults_of_rows, amount(300))
+
+
+@pytest.mark.random
+def test_twins_of_random_models() -> None:
+    """Scaled, mirrored, split, in another order, continued, saved, by other methods and at other tolerances."""
+    sweep(faults_of_twins, range(1000, 1000 + amount(60)))
+
+
+@cache
+def _run() -> Any:
+    """A clutch that locks and lets go, springs, a gear and a prescribed speed."""
+    d = cw.Driveline("checked")
+    a, b, c, e = (d.shaft(name, inertia=0.3, **({"speed": 30.0} if name == "a" else {})) for name in "abce")
+    d.add(cw.Torque("drive", shaft=a, torque=cw.Sine(amplitude=40.0, frequency=4.0)))
+    law = cw.Coulomb(static=0.13, kinetic=0.1)
+    d.add(cw.Clutch("clutch", base=a, follower=b, friction=law, gain=1.0, normal_force=200.0))
+    d.add(cw.SpringDamper("spring", base=b, follower=c, stiffness=300.0, damping=1.0))
+    d.add(cw.Gear("gear", input=c, output=e, ratio=2.0))
+    d.add(cw.Damper("damper", base=d.housing, follower=e, damping=0.5))
+    f = d.shaft("f", inertia=0.1)
+    d.add(cw.PrescribedSpeed("pull", shaft=f, speed=cw.Sine(amplitude=3.0, frequency=2.0)))
+    d.add(cw.Damper("between", base=f, follower=a, damping=0.1))
+    return simulate(d, 0.5)
+
+
+def test_a_right_run_has_no_fault() -> None:
+    assert not rows.faults(_run())
+    kinds = {event.after for event in _run().events.of("clutch")}
+    assert {"locked", "forward", "backward"} & kinds
+
+
+# the part of the rows that is changed, its place, and the kinds of fault that must be seen
+CHANGES = [
+    ("acceleration", 0, "balance"),
+    ("element_torque", 0, "balance"),
+    ("contact_torque", 0, "balance"),
+    ("contact_capacity", 0, "capacity"),
+    ("speed", 1, "creeps"),
+    ("speed", 3, "ratio"),
+    ("speed", 4, "motion"),
+    ("state", 0, "law"),
+    ("element_work", 0, "energy"),
+    ("angle", 1, "twist"),
+    ("angle", 0, "integral"),
+]
+
+
+@pytest.mark.parametrize(("part", "place", "kind"), CHANGES)
+def test_a_wrong_row_is_seen(part: str, place: int, kind: str) -> None:
+    """A number of the second half of the rows is changed: the check that looks at it sees it."""
+    run = _run()
+    changed = run.rows.copy()
+    column = run.wiring.columns[part].start + place
+    changed[len(changed) // 2 :, column] = 0.3 * changed[len(changed) // 2 :, column] - 0.7
+    found = {fault.kind for fault in rows.faults(replace(run, rows=changed))}
+    assert kind in found, found
+
+
+def test_a_wrong_state_is_seen() -> None:
+    """Locked where it slips, and slipping the other way."""
+    run = _run()
+    column = run.wiring.columns["contact_mode"].start
+    for factor, kind in ((0.0, "creeps"), (-1.0, "mode")):
+        changed = run.rows.copy()
+        changed[:, column] *= factor
+        assert kind in {fault.kind for fault in rows.faults(replace(run, rows=changed))}

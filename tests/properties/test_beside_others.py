@@ -1,0 +1,235 @@
+"""Contacts, ratios and loads beside what acts on them: random models, whose rows and runs keep their laws."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from support.amount import amount
+
+Rng = np.random.Generator
+MODELS = 40
+
+
+def uniform(rng: Rng, low: float, high: float) -> float:
+    return float(rng.uniform(low, high))
+
+
+def coulomb(rng: Rng) -> cw.Coulomb:
+    kinetic = uniform(rng, 0.05, 0.1)
+    return cw.Coulomb(static=kinetic * uniform(rng, 1.0, 1.5), kinetic=kinetic)
+
+
+def sine(rng: Rng, size: float) -> cw.Sine:
+    return cw.Sine(
+        amplitude=uniform(rng, 0.3, 1) * size, frequency=uniform(rng, 1, 8), offset=uniform(rng, -size, size)
+    )
+
+
+def pressed(rng: Rng) -> dict[str, Any]:
+    return {"friction": coulomb(rng), "gain": 1.0, "normal_force": uniform(rng, 50, 1500)}
+
+
+def tied(rng: Rng) -> cw.Driveline:
+    """Two shafts tied by a transmission, contacts on both of them and between them."""
+    d = cw.Driveline("tied")
+    a, b = d.shaft("a", inertia=uniform(rng, 0.1, 2)), d.shaft("b", inertia=uniform(rng, 0.1, 2))
+    if rng.random() < 0.5:
+        d.add(cw.UniversalJoint("tie", base=a, follower=b, bend_angle=uniform(rng, 0.1, 0.6)))
+    else:
+        d.add(cw.VariableRatio("tie", input=a, output=b, ratio=uniform(rng, 0.3, 3)))
+    kinds = rng.choice(["a", "b", "ab"], size=2, replace=False)
+    for kind in kinds:
+        if kind == "ab":
+            d.add(cw.Clutch("on_ab", base=a, follower=b, **pressed(rng)))
+        else:
+            d.add(cw.Brake(f"on_{kind}", shaft=a if kind == "a" else b, **pressed(rng)))
+    d.add(cw.Torque("load_a", shaft=a, torque=sine(rng, 30)))
+    d.add(cw.Torque("load_b", shaft=b, torque=sine(rng, 30)))
+    return d
+
+
+def ports(run: Any, shaft: str) -> Any:
+    """What acts on a shaft of `tied`."""
+    names = {"a": ("tie.base.torque", "tie.input.torque"), "b": ("tie.follower.torque", "tie.output.torque")}[shaft]
+    total = run[f"load_{shaft}.torque"] + next(run[name] for name in names if name in run.names)
+    if f"on_{shaft}.torque" in run.names:
+        total = total + run[f"on_{shaft}.torque"]
+    if "on_ab.torque" in run.names:
+        total = total + run["on_ab.torque"] * (-1 if shaft == "a" else 1)
+    return total
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_transmissions_balance_what_locked_contacts_share(seed):
+    d = tied(np.random.default_rng(seed))
+    run = d.simulate(0.4, output="steps")
+    for shaft in "ab":
+        inertia = {node.name: node.inertia for node in d.nodes}[shaft]
+        miss = ports(run, shaft) - inertia * run[f"{shaft}.acceleration"]
+        assert np.max(abs(miss)) <= 1e-7 * np.max(abs(run[f"load_{shaft}.torque"])), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_state_beside_a_transmission_goes_on_to_the_same_bits(seed):
+    rng = np.random.default_rng(seed)
+    d = tied(rng)
+    d.add(cw.Torque("push", shaft=d.mass("apart", mass=1.0), torque=sine(rng, 1)))
+    whole = d.simulate(0.2, output="steps")
+    for at in rng.choice(np.unique(whole.time)[1:-1], 3):
+        rest = d.simulate(0.2, start=whole.state(at=float(at)), output="steps")
+        assert np.array_equal(rest.rows[-1], whole.rows[-1]), (seed, at)
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_ratio_that_jumps_draws_its_energy_from_prescribed_speeds(seed):
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("jump")
+    a, b, c = (d.shaft(name, inertia=uniform(rng, 0.1, 2)) for name in "abc")
+    first, second = (a, b) if rng.random() < 0.5 else (b, a)
+    # both signs of a ratio, and a set whose ring goes on where the carrier is prescribed
+    jumps = [(0.03, uniform(rng, 0.3, 2)), (0.03, uniform(rng, 0.3, 2)), (0.06, uniform(rng, 0.3, 2))]
+    d.add(cw.VariableGear("gear", input=first, output=second, ratio=cw.Table(jumps)))
+    d.add(
+        cw.Planetary("set", sun=b, carrier=d.housing if rng.random() < 0.3 else a, ring=c, ratio=uniform(rng, 1.5, 3))
+    )
+    d.add(cw.PrescribedSpeed("given", shaft=a, speed=uniform(rng, -5, 5)))
+    energy = d.simulate(0.1, rtol=1e-10).energy
+    assert abs(energy.residual) <= 1e-8 * energy.turnover, seed
+
+
+@pytest.mark.parametrize("speed", [cw.Sine(amplitude=3.0, frequency=2.0), cw.Ramp(height=2.0, duration=0.3), 1.0])
+def test_a_ratio_of_zero_against_a_motion_jams(speed):
+    d = cw.Driveline("zero")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.VariableGear("gear", input=a, output=b, ratio=0.0))
+    d.add(cw.PrescribedAcceleration("given", shaft=a, acceleration=speed))
+    with pytest.warns(cw.StoppedEarly, match="break the ratio of a transmission at 'gear'"):
+        run = d.simulate(0.2)
+    assert run.status == "jammed"
+
+
+def limited(rng: Rng) -> cw.Driveline:
+    """A limited slip with a prescribed side; each of the others may have a brake."""
+    d = cw.Driveline("limited")
+    a, b, c = (d.shaft(name, inertia=uniform(rng, 0.3, 2)) for name in "abc")
+    d.add(cw.Differential("df", carrier=b, left=c, right=a, bias=uniform(rng, 1.5, 5)))
+    for shaft in (b, c):
+        if rng.random() < 0.6:
+            d.add(
+                cw.Brake(
+                    f"on_{shaft.name}", shaft=shaft, friction=coulomb(rng), gain=1.0, normal_force=uniform(rng, 0, 300)
+                )
+            )
+    course = rng.integers(3)
+    if course == 0:
+        d.add(
+            cw.PrescribedSpeed(
+                "given", shaft=a, speed=cw.Sine(amplitude=uniform(rng, 1, 10), frequency=uniform(rng, 1, 4))
+            )
+        )
+    elif course == 1:
+        d.add(cw.PrescribedAcceleration("given", shaft=a, acceleration=uniform(rng, -20, 20)))
+    else:
+        d.add(cw.PrescribedSpeed("given", shaft=a, speed=cw.Ramp(height=uniform(rng, -20, 20), duration=0.3)))
+    return d
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_loads_beside_prescribed_speeds(seed):
+    """Every step follows the prescribed acceleration, no row is above a capacity, and friction takes power."""
+    rng = np.random.default_rng(seed)
+    d = limited(rng)
+    run, fine = d.simulate(0.4, rtol=1e-8), d.simulate(0.4, max_step=2e-4)
+    assert run.status == "done", seed
+    size = np.max(abs(run["a.speed"]))
+    for shaft in "bc":
+        assert abs(run[f"{shaft}.speed"][-1] - fine[f"{shaft}.speed"][-1]) <= 1e-5 * size, seed
+    for name in ("df", "on_b", "on_c"):
+        if f"{name}.torque" not in run.names:
+            continue
+        torque = run[f"{name}.torque"]
+        assert np.max(run[f"{name}.power"]) <= 1e-9 * (1 + np.max(abs(torque)) * size), seed
+        if name != "df":
+            assert np.max(abs(torque) - run[f"{name}.capacity"]) <= 1e-9 * np.max(abs(torque)), seed
+
+
+def test_contacts_between_prescribed_speeds_never_hold():
+    """Whatever is locked elsewhere: beside it a differential is held between shafts that rest."""
+    for seed in range(MODELS):
+        rng = np.random.default_rng(seed)
+        d = cw.Driveline("apart")
+        a, b, c = (d.shaft(name, inertia=uniform(rng, 0.3, 2)) for name in "abc")
+        d.add(cw.Differential("df", carrier=c, left=a, right=d.housing, bias=uniform(rng, 1.5, 5)))
+        d.add(cw.BearingFriction("on_b", shaft=b, friction=cw.Coulomb(static=0.5, kinetic=0.4), torque=1.0))
+        d.add(cw.BearingFriction("on_c", shaft=c, friction=coulomb(rng), torque=1.0))
+        d.add(cw.PrescribedSpeed("given", shaft=b, speed=cw.Ramp(height=uniform(rng, -20, 20), duration=0.5)))
+        run = d.simulate(0.1, output="steps")
+        assert np.allclose(abs(run["on_b.torque"]), 0.4), seed
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_torque_that_jumps_takes_loads_along(seed):
+    """Teeth that skip let go at once: the friction of the differential beside them never drives, in no row."""
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("skips")
+    a, b = d.shaft("a", inertia=uniform(rng, 0.3, 2)), d.shaft("b", inertia=0.02, speed=uniform(rng, -200, -50))
+    dog = {"teeth": 8, "gap": 0.02, "stiffness": uniform(rng, 200, 2000), "command": 1.0, "speed": 1e3, "engaged": True}
+    d.add(cw.DogClutch("dog", base=d.housing, follower=b, **dog))
+    d.add(cw.SpringDamper("k", base=b, follower=d.housing, stiffness=uniform(rng, 100, 3000), damping=0.1))
+    d.add(cw.Differential("df", carrier=a, left=b, right=d.housing, bias=uniform(rng, 2, 6)))
+    run = d.simulate(0.1, output="steps")
+    assert run.status == "done", seed
+    assert np.max(run["df.power"]) <= 1e-9 * np.max(abs(run["df.power"])), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_impacts_beside_a_closed_stop_do_not_depend_on_the_method(seed):
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("row")
+    a, b, c = (
+        d.shaft(name, inertia=uniform(rng, 0.1, 1), speed=speed)
+        for name, speed in zip("abc", (59.91, 60, 60), strict=True)
+    )
+    d.add(cw.Backlash("ab", base=a, follower=b, gap=0.15, restitution=0.6))
+    d.add(cw.Backlash("bc", base=b, follower=c, gap=0.5, restitution=0.2, initial_twist=-0.24, rest_speed=1e-3))
+    d.add(cw.Torque("load", shaft=c, torque=cw.Sine(amplitude=1.0, frequency=20.0, offset=-2.4)))
+    runs = [d.simulate(0.6, method=method) for method in ("auto", "rodas5p", "dopri5")]
+    for one, other in itertools.pairwise(runs):
+        assert [(e.element, e.after) for e in one.events] == [(e.element, e.after) for e in other.events], seed
+        assert other["bc.heat"][-1] == pytest.approx(one["bc.heat"][-1], rel=1e-4), seed
+
+
+def self_locking(rng: Rng) -> cw.Driveline:
+    """A gear that may lock itself among rigid gears, a clutch across them and a brake."""
+    d = cw.Driveline("worm")
+    a = d.shaft("a", inertia=10 ** uniform(rng, -3, 0.5), speed=uniform(rng, -60, 60))
+    b, c, e = (d.shaft(name, inertia=10 ** uniform(rng, -3, 0.5)) for name in "bce")
+    loss = [[0.0, uniform(rng, 0.4, 0.8), uniform(rng, -0.6, 0.3), 0.0, 0.0]]
+    d.add(
+        cw.LossyGear(
+            "lossy", input=a, output=b, ratio=float(rng.choice([-1, 1])) * uniform(rng, 1, 20), loss_table=loss
+        )
+    )
+    d.add(cw.Gear("gear", input=b, output=c, ratio=uniform(rng, 0.5, 4)))
+    d.add(cw.Clutch("across", base=a, follower=c, friction=coulomb(rng), gain=1.0, normal_force=sine(rng, 800)))
+    d.add(cw.Brake("brake", shaft=b, friction=coulomb(rng), gain=1.0, normal_force=uniform(rng, 0, 500)))
+    d.add(cw.SpringDamper("k", base=c, follower=e, stiffness=uniform(rng, 50, 5000), damping=uniform(rng, 0, 5)))
+    d.add(cw.Torque("drive", shaft=a, torque=sine(rng, 60)))
+    d.add(cw.Torque("load", shaft=e, torque=sine(rng, 150)))
+    return d
+
+
+@pytest.mark.random
+def test_a_self_locking_gear_in_a_redundant_set():
+    for seed in range(amount(200)):
+        run = self_locking(np.random.default_rng(seed)).simulate(0.5, max_steps=100_000)
+        assert run.status == "done", (seed, run.message)
+        assert abs(run.energy.residual) <= 1e-5 * run.energy.turnover, seed
+        for name in ("across", "brake"):
+            over = abs(run[f"{name}.torque"]) - run[f"{name}.capacity"]
+            assert np.max(over) <= 1e-6 * (1 + np.max(run[f"{name}.capacity"])), (seed, name)

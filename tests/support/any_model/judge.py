@@ -1,0 +1,63 @@
+"""All that is wrong with a model: its rows, how it ends, how it follows its tolerance, and its twins."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import clutchwork as cw
+from support.any_model import agree, rows
+from support.any_model.elements import declared
+from support.any_model.seen import Fault
+from support.any_model.values import Plain
+
+# how a run may end early where there is a cause, by what must be in the model
+CAUSES = {"jammed": ("prescribed",), "unbalanced": ("prescribed",), "out_of_table": ("",), "fault": ("",), "chatter": ("",)}
+
+
+def faults(made: Plain, seed: int, depth: int = 2, only: str = "") -> list[Fault]:
+    """What is wrong with a model.
+
+    Parameters: seed, of what is chosen at random; depth, 0 its rows, 1 its tolerances too, 2 its twins too; only, the
+    kind of fault that is looked for, which may leave out others.
+    """
+    try:
+        base = agree.run(made)
+    except (cw.Interrupted, KeyboardInterrupt):
+        raise
+    except cw.ClutchworkError as error:
+        return [Fault("raises", type(error).__name__, str(error)[:300])]
+    except Exception as error:
+        return [Fault("raises", type(error).__name__, str(error)[:300])]
+    found = [*ending(made, base), *rows.faults(base)]
+    if depth and base.status == "done" and not explodes(base):
+        try:
+            found += agree.faults(made, base, seed, depth, only)
+        except cw.ClutchworkError as error:
+            found.append(Fault("raises", f"{type(error).__name__} in a twin", str(error)[:300]))
+    return found
+
+
+def ending(made: Plain, base: Any) -> list[Fault]:
+    """A run that ends early without a cause."""
+    if base.status == "done":
+        return []
+    if explodes(base):
+        return []
+    kinds = [one["type"] for one in made["element"]]
+    roles = " ".join(kinds) + " " + " ".join(getattr(declared(kind), "kind", "") for kind in kinds)
+    laws = [one["friction"]["type"] for one in made["element"] if isinstance(one.get("friction"), dict)]
+    if "naive_sign" in laws and base.status in ("chatter", "too_many_steps", "too_many_events", "zeno"):
+        return []
+    if any(word in roles for word in CAUSES.get(base.status, ())):
+        return []
+    return [Fault("status", base.status, base.message[:300])]
+
+
+def explodes(base: Any) -> bool:
+    """Whether speeds grow without bound, as those of a torque that rises with the square of the speed do."""
+    speed = base.rows[:, base.wiring.columns["speed"]]
+    if len(speed) < 2:
+        return False
+    return bool(np.abs(speed[-1]).max(initial=0.0) > max(1e4, 100.0 * np.abs(speed[0]).max(initial=0.0)))

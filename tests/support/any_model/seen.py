@@ -1,0 +1,123 @@
+"""A run, and what the checks of its rows need of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.wiring import HOUSING, Branch
+from clutchwork.declare.node import Work
+
+Array = NDArray[np.float64]
+
+
+class Fault(NamedTuple):
+    """A kind of fault, whose it is, and in words how much."""
+
+    kind: str
+    of: str
+    words: str
+
+    @property
+    def key(self) -> str:
+        """What faults of one cause have in common."""
+        return f"{self.kind} {self.of}".strip()
+
+
+class Seen:
+    """A run and what the checks need of it, found once."""
+
+    def __init__(self, run: Any) -> None:
+        self.run, self.wiring, self.rows, self.time = run, run.wiring, run.rows, run.time
+        self.inertia = np.array([node.inertia for node in self.wiring.nodes])
+        self.rtol = float(run.options.rtol)
+
+    def part(self, name: str) -> Array:
+        """Columns of a part of the rows."""
+        found: Array = self.rows[:, self.wiring.columns[name]]
+        return found
+
+    @cached_property
+    def speed(self) -> Array:
+        """Speeds of all nodes."""
+        return self.part("speed")
+
+    @cached_property
+    def fastest(self) -> Array:
+        """The largest speed of each node over the run, at least a little."""
+        own: Array = np.abs(self.speed).max(axis=0, initial=0.0)
+        # round-off of the others reaches those at rest
+        return own + 1e-5 * own.max(initial=0.0) + 1e-4
+
+    def scale(self, branch: Branch) -> float:
+        """The largest speed at the ends of a branch."""
+        ends = [self.fastest[node] * abs(factor) for node, factor in branch.direction.items() if node != HOUSING]
+        return max(ends, default=1.0)
+
+    @cached_property
+    def elements(self) -> Array:
+        """Directions of torque elements over the nodes, a column each."""
+        found: Array = self.wiring.spread(self.wiring.elements)
+        return found
+
+    @cached_property
+    def contacts(self) -> Array:
+        """Directions of contacts over the nodes."""
+        found: Array = self.wiring.spread(self.wiring.contacts)
+        return found
+
+    @cached_property
+    def rigid(self) -> Array:
+        """Directions of gear rows and prescribed motions."""
+        wiring = self.wiring
+        gears = np.zeros((len(wiring.nodes), len(wiring.gears)))
+        for column, row in enumerate(wiring.gears):
+            for node, factor in row.ports.values():
+                if node != HOUSING:
+                    gears[node, column] += factor
+        return np.hstack([gears, wiring.spread(wiring.motions)])
+
+    @cached_property
+    def terms(self) -> Array:
+        """Size of all torques at each node, rows by nodes; nodes that are joined rigidly share the largest."""
+        size: Array = np.abs(self.part("element_torque")) @ np.abs(self.elements).T
+        size = size + np.abs(self.part("contact_torque")) @ np.abs(self.contacts).T
+        size = size + np.abs(self.part("acceleration")) * self.inertia
+        reached = (np.abs(self.rigid) > 0).astype(float)
+        joined = np.eye(len(self.inertia)) + reached @ reached.T
+        groups = np.linalg.matrix_power(joined, max(1, len(self.inertia))) > 0
+        return np.max(np.where(groups[None], size[:, None, :], 0.0), axis=2)
+
+    def numbers(self, work: Work) -> list[list[int]]:
+        """Places of the ways of each torque element whose work is of a sort."""
+        groups: dict[str, list[int]] = {}
+        for number, branch in enumerate(self.wiring.elements):
+            if branch.component.work == work and not branch.hidden:
+                groups.setdefault(branch.component.name, []).append(number)
+        return list(groups.values())
+
+    @cached_property
+    def kinds(self) -> dict[str, str]:
+        """Kind of every element of the model by name."""
+        return {element.name: element.kind for element in self.run.system.source.elements}
+
+    def kind(self, branch: Branch) -> str:
+        """Kind of the element of the model that a branch belongs to, with its own where it is a part."""
+        words = branch.component.name.split(".")
+        wholes = (".".join(words[:count]) for count in range(len(words), 0, -1))
+        own = branch.component.kind
+        of = next((self.kinds[whole] for whole in wholes if whole in self.kinds), own)
+        return own if own == of else f"{of}/{own}"
+
+    def worst(self, kind: str, of: str, bad: Array, words: Callable[[int], str]) -> Iterator[Fault]:
+        """A fault where any of the rows is bad: of the worst one, in words, with its time and how many are."""
+        if bad.max(initial=0.0) > 0.0:
+            at = int(np.argmax(bad))
+            yield Fault(kind, of, f"{words(at)} at {self.time[at]:.9g} s, {int((bad > 0.0).sum())} rows")
+
+
+Check = Callable[[Seen], Iterator[Fault]]
