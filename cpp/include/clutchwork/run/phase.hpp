@@ -246,7 +246,8 @@ class Phase : public Pace<typename Form::Scalar> {
   /// Whether a step counts.
   CLUTCHWORK_INLINE bool judge(double error, bool finite) {
     error_ = finite ? error : infinity;
-    if (error_ <= 1 && ws_.options.work && rates_bend(ws_)) error_ = larger(error_, work_error(taken_form(), taken_step()));
+    if (error_ <= 1 && ws_.options.work && rates_bend(ws_))
+      error_ = larger(error_, work_error(taken_form(), taken_step()));
     if (!(error_ <= 1)) {
       reject();
       return false;

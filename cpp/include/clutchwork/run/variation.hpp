@@ -207,7 +207,8 @@ class Variation {
     for (int a = 0; a < ws_.held.n; ++a) to.multiplier[a] = T(from.multiplier[a]);
   }
 
-  /// Derivatives of the slopes at the share s of the present part of the step, whose state has the derivatives of `y`, into `d`.
+  /// Derivatives of the slopes at the share s of the present part of the step, whose state has the derivatives of `y`,
+  /// into `d`.
   void slopes_at(double s, const T* y, T* d) {
     double *point = step.point(), *velocity = step.slope();
     T* whole = step_.point();
