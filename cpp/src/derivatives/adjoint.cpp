@@ -2,8 +2,11 @@
 
 #include <clutchwork/components/taped.hpp>
 
+#include <cmath>
 #include <cstring>
 #include <new>
+// the image of a run is plain: what the core has of that is compiled here too
+#define CLUTCHWORK_COMPONENTS
 #include "../system_checks.hpp"
 #include "lifted.hpp"
 
@@ -12,6 +15,7 @@ using namespace clutchwork;
 /// A run that notes on a tape how its numbers came about, and where it lives.
 struct cw_adjoint {
   Workspace<Taped> ws;
+  Workspace<double> image;
   System plain;
   const unsigned char* system;
   Tape tape;
@@ -26,8 +30,9 @@ std::int64_t lay_out_run(cw_adjoint& run, unsigned char* memory) {
   Arena numbers(memory);
   lift(run.ws, run.plain, numbers);
   run.ws.row = RowLayout(run.plain);
-  const std::int64_t size = (numbers.size() + 63) / 64 * 64;
-  return size + carve(run.ws, memory == nullptr ? nullptr : memory + size);
+  std::int64_t size = (numbers.size() + 63) / 64 * 64;
+  size = (size + carve(run.ws, memory == nullptr ? nullptr : memory + size) + 63) / 64 * 64;
+  return size + carve_image(run.ws, run.image, run.plain, memory == nullptr ? nullptr : memory + size);
 }
 
 /// The tape of a run is that of this thread while it lives.
@@ -77,7 +82,12 @@ std::int64_t cw_adjoint_seed(cw_adjoint* run, std::int64_t word) {
   if (run == nullptr || run->ws.started) return -1;
   Taped* number = number_at(run->ws, run->plain, run->system, word);
   if (number == nullptr) return -1;
-  if (number->id == 0) number->id = run->tape.note(0, 0, 0, 0);
+  if (number->id == 0) {
+    number->id = run->tape.note(0, 0, 0, 0);
+    // of what the number is, and never the same for two
+    const double turn = 0.6180339887498949 * double(word + 1), share = turn - std::floor(turn);
+    number->probe = (share < 0.5 ? -0.5 - share : share) * (number->v != 0 ? number->v : 1.0);
+  }
   return number->id;
 }
 

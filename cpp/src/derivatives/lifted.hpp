@@ -27,6 +27,15 @@ void lift(Workspace<T>& ws, const System& from, Arena& arena) {
   ws.moved.points = copied(from.points, 3 * from.n_points);
 }
 
+/// The image of a run without derivatives; returns the size that it needs.
+template <class T>
+std::int64_t carve_image(Workspace<T>& ws, Workspace<double>& image, const System& plain, unsigned char* memory) {
+  image.sys = plain;
+  image.row = ws.row;
+  ws.moved.plain = &image;
+  return carve(image, memory);
+}
+
 /// The number of a lifted model at a word of the bytes of the plain one, null where none is.
 template <class T>
 T* number_at(Workspace<T>& ws, const System& plain, const unsigned char* bytes, std::int64_t word) {

@@ -3,6 +3,8 @@
 
 #include <cstring>
 #include <new>
+// the image of a run is plain: what the core has of that is compiled here too
+#define CLUTCHWORK_COMPONENTS
 #include "../system_checks.hpp"
 #include "lifted.hpp"
 #include "tangents.hpp"
@@ -14,6 +16,7 @@ template <int N, int R>
 struct TangentRun {
   using Number = Tangent<N, R>;
   Workspace<Number> ws;
+  Workspace<double> image;
   System plain;
   const unsigned char* system;
 };
@@ -31,8 +34,9 @@ struct TangentCalls {
     Arena numbers(memory);
     lift(run.ws, run.plain, numbers);
     run.ws.row = RowLayout(run.plain);
-    const std::int64_t size = (numbers.size() + 63) / 64 * 64;
-    return size + carve(run.ws, memory == nullptr ? nullptr : memory + size);
+    std::int64_t size = (numbers.size() + 63) / 64 * 64;
+    size = (size + carve(run.ws, memory == nullptr ? nullptr : memory + size) + 63) / 64 * 64;
+    return size + carve_image(run.ws, run.image, run.plain, memory == nullptr ? nullptr : memory + size);
   }
 
   static std::int64_t size(const void* system, std::int64_t bytes) {

@@ -8,7 +8,7 @@ namespace clutchwork {
 template <int N, int R = 2>
 struct Tangent {
   typedef double Part __attribute__((vector_size(8 * R)));
-  static constexpr int kept = N, parts = N / R;
+  static constexpr int kept = N, seen = N, parts = N / R;
   alignas(8 * R) Part part[parts]{};
   double v = 0;
 
@@ -75,6 +75,7 @@ struct Tangent {
   /// One derivative.
   double& slope(int i) { return reinterpret_cast<double*>(part)[i]; }
   double slope(int i) const { return reinterpret_cast<const double*>(part)[i]; }
+  double seen_slope(int i) const { return slope(i); }
   /// What a row keeps of the derivatives.
   friend CLUTCHWORK_HOT void keep(const Tangent& x, double* to) {
     for (int i = 0; i < N; ++i) to[i] = x.slope(i);

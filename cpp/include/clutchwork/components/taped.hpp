@@ -59,11 +59,11 @@ class Tape {
   bool full_ = false;
 };
 
-/// A value and its number on the tape, 0: a constant.
+/// A value and its number on the tape, 0: a constant; and its derivative in one direction, by which steps are chosen.
 struct Taped {
-  double v = 0;
+  double v = 0, probe = 0;
   std::int32_t id = 0;
-  static constexpr int kept = 1;
+  static constexpr int kept = 1, seen = 1;
 
   Taped() = default;
   CLUTCHWORK_HOT Taped(double x) : v(x) {}
@@ -71,13 +71,17 @@ struct Taped {
   /// f with derivatives by one number, and by two.
   static CLUTCHWORK_HOT Taped chain(const Taped& a, double f, double by_a) {
     Taped r(f);
-    if (a.id != 0 && by_a != 0) r.id = Tape::current()->note(a.id, by_a, 0, 0);
+    if (a.id == 0 || by_a == 0) return r;
+    r.id = Tape::current()->note(a.id, by_a, 0, 0), r.probe = a.probe * by_a;
     return r;
   }
   static CLUTCHWORK_HOT Taped chain(const Taped& a, double by_a, const Taped& b, double by_b, double f) {
     Taped r(f);
     const std::int32_t first = by_a != 0 ? a.id : 0, second = by_b != 0 ? b.id : 0;
-    if ((first | second) != 0) r.id = Tape::current()->note(first, by_a, second, by_b);
+    if ((first | second) == 0) return r;
+    r.id = Tape::current()->note(first, by_a, second, by_b);
+    if (first != 0) r.probe += a.probe * by_a;
+    if (second != 0) r.probe += b.probe * by_b;
     return r;
   }
 
@@ -113,6 +117,7 @@ struct Taped {
   friend CLUTCHWORK_HOT bool operator==(const Taped& a, const Taped& b) { return a.v == b.v; }
   friend CLUTCHWORK_HOT bool operator!=(const Taped& a, const Taped& b) { return a.v != b.v; }
 
+  double seen_slope(int) const { return probe; }
   friend CLUTCHWORK_HOT double value(const Taped& x) { return x.v; }
   friend CLUTCHWORK_HOT Taped without_value(const Taped& x) { return chain(x, 0, 1); }
   friend CLUTCHWORK_HOT bool is_zero(const Taped& x) { return x.v == 0 && x.id == 0; }

@@ -304,7 +304,7 @@ double guard_rate(Form& form, Step<Form>& step, const Hit& hit, const T* velocit
   T* probe = step.k(1);
   double rate = 0;
   for (double share = 1; share > 0.5 * closest; share *= 0.1) {
-    const double reach = 0.01 * share * larger(step.h, 1e-12);
+    const double reach = 0.01 * share * larger(form.ws.moved.span, 1e-12);
     bool own = true;
     auto plain = [&](double along) {
       for (int i = 0; i < form.n(); ++i) probe[i] = T(value(step.y0()[i]) + along * reach * value(velocity[i]));

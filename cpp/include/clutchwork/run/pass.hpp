@@ -52,9 +52,8 @@ bool is_beyond(Workspace<T>& ws) {
 }
 
 /// After a knot: right limits of the signals; true when the modes must be decided again. docs/theory/events.md, rule 1
-template <class Form>
-bool pass_knot(Form& form, Step<Form>& step, bool jumps) {
-  auto& ws = form.ws;
+template <class T>
+bool knot_decides(Workspace<T>& ws) {
   keep_prescribed(ws);
   keep_ratios(ws);
   load_inputs(ws, ws.time);
@@ -62,11 +61,12 @@ bool pass_knot(Form& form, Step<Form>& step, bool jumps) {
   bool decide = refresh_loads(ws) || ratios_jump(ws);
   for (int p = 0; p < ws.sys.prescribed; ++p)
     decide = decide || value(ws.in.prescribed[p] - ws.in.prescribed_before[p]) != 0;
-  if (decide) return true;
-  if constexpr (!Form::small) {
-    if (jumps && balance_massless(form, step)) export_state(form, step.y0());
-  }
-  look(form, step, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
+  return decide;
+}
+
+/// The same for what is held, where the motion has been looked at.
+template <class T>
+bool knot_lets_go(Workspace<T>& ws) {
   for (int a = 0; a < ws.held.n; ++a) {
     if (is_rigid(ws, ws.held.contact[a])) return true;
   }

@@ -20,10 +20,16 @@
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/step_calls.hpp>
 #include <clutchwork/run/stiffness.hpp>
+#include <clutchwork/run/variation.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// One smooth phase: from an event to the next one.
 namespace clutchwork {
+
+/// A plain phase has no variation.
+struct NoVariation {
+  NoVariation(auto&, auto&) {}
+};
 
 /// Integration until an event, the end time, or a full buffer.
 template <class Form>
@@ -47,11 +53,12 @@ class Phase : public Pace<typename Form::Scalar> {
   Form form_;
   Step<Form> step_;
   const StepCalls<Form> calls_;
+  [[no_unique_address]] std::conditional_t<has_tangents<T>, Variation<Form>, NoVariation> varied_;
 
  public:
   template <class Integrator>
   Phase(Workspace<T>& ws, double t_end, Sink& sink, Tag<Integrator>)
-      : Base(ws, t_end, sink), form_(ws), step_(form_), calls_(step_calls<Integrator>(form_)) {
+      : Base(ws, t_end, sink), form_(ws), step_(form_), calls_(phase_calls<Integrator>(form_)), varied_(form_, step_) {
     Base::rows_ = step_.k(0), Base::width_ = form_.n();
     step_.calls = &calls_;
   }
@@ -116,20 +123,42 @@ class Phase : public Pace<typename Form::Scalar> {
     look_here();
     // kept, so that a run takes the same steps whether or not it is asked for a row here
     if (event) ws_.last_step *= calls_.restart;
-    h_ = ws_.last_step > 0 ? ws_.last_step : first_step(form_, step_, t_end_ - ws_.time);
+    h_ = ws_.last_step > 0 ? ws_.last_step : first_step(taken_form(), taken_step(), t_end_ - ws_.time);
   }
 
  private:
+  // the form and the step in which the run goes on and guards are sought: of a run with derivatives its plain image
+  CLUTCHWORK_INLINE auto& taken_form() {
+    if constexpr (has_tangents<T>)
+      return varied_.form;
+    else
+      return form_;
+  }
+  CLUTCHWORK_INLINE auto& taken_step() {
+    if constexpr (has_tangents<T>)
+      return varied_.step;
+    else
+      return step_;
+  }
+
   CLUTCHWORK_INLINE void look_here() {
-    calls_.look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here);
+    if constexpr (has_tangents<T>)
+      varied_.reflect_here();
+    else
+      calls_.look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here);
   }
   CLUTCHWORK_INLINE void look_at_end() {
-    calls_.look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
+    if constexpr (has_tangents<T>)
+      varied_.look_at_end(end_of_step());
+    else
+      calls_.look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
   }
 
   /// The same where the phase goes on behind an event.
   CLUTCHWORK_INLINE void look_on() {
-    if constexpr (has_tangents<T>) leave_event(form_, step_);
+    if constexpr (has_tangents<T>) {
+      if (leave_event(form_, step_)) balance_massless(form_, step_);
+    }
     look_here();
   }
 
@@ -173,12 +202,14 @@ class Phase : public Pace<typename Form::Scalar> {
     note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
     const bool jumps = (!Form::small || sink_.steps > 0) && any_jumps(ws_);
-    if (pass_knot(form_, step_, jumps)) return hand_over(Cause::input);
+    if (knot_decides(ws_)) return hand_over(Cause::input);
+    if constexpr (!Form::small) {
+      if (jumps && balance_massless(form_, step_)) export_state(form_, step_.y0());
+    }
+    look_here();
+    if (knot_lets_go(taken_form().ws)) return hand_over(Cause::input);
     if constexpr (has_tangents<T>) {
-      if (leave_event(form_, step_)) {
-        if constexpr (!Form::small) balance_massless(form_, step_);
-        look_here();
-      }
+      if (leave_event(form_, step_)) balance_massless(form_, step_), look_here();
     }
     show_behind(jumps);
   }
@@ -198,17 +229,25 @@ class Phase : public Pace<typename Form::Scalar> {
   CLUTCHWORK_INLINE bool take_step() {
     plan_step();
     step_.t = ws_.time;
-    const double error = calls_.advance(form_, step_, reach_);
-    if (!judge(error, all_finite(form_.n(), step_.y1()))) return false;
-    if constexpr (Form::full) keep_ties(form_, step_, end_of_step(), step_.y1());
+    const double error = advance();
+    if (!judge(error, all_finite(form_.n(), taken_step().y1()))) return false;
+    if constexpr (Form::full) keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
     look_at_end();
     return true;
+  }
+
+  CLUTCHWORK_INLINE double advance() {
+    if constexpr (has_tangents<T>)
+      return varied_.advance(reach_);
+    else
+      return calls_.advance(form_, step_, reach_);
   }
 
   /// Whether a step counts.
   CLUTCHWORK_INLINE bool judge(double error, bool finite) {
     error_ = finite ? error : infinity;
-    if (error_ <= 1 && ws_.options.work && rates_bend(ws_)) error_ = larger(error_, work_error(form_, step_));
+    if (error_ <= 1 && ws_.options.work && rates_bend(ws_))
+      error_ = larger(error_, work_error(taken_form(), taken_step()));
     if (!(error_ <= 1)) {
       reject();
       return false;
@@ -219,14 +258,14 @@ class Phase : public Pace<typename Form::Scalar> {
 
   /// What happens inside a step, and where the run goes on from.
   [[gnu::noinline]] void settle_step() {
-    const Hit hit = find_hit(form_, step_);
+    const Hit hit = find_hit(taken_form(), taken_step());
     if (must_land(hit)) {
       land(hit.s);
     } else if (misses_rest(hit)) {
       retake();
-    } else if (Form::full && hit.what == Hit::nothing && ws_.ratios.jammed >= 0) {
+    } else if (Form::full && hit.what == Hit::nothing && taken_form().ws.ratios.jammed >= 0) {
       jam();
-    } else if (write(hit.s)) {
+    } else if (reach(hit.s)) {
       hit.what == Hit::nothing ? accept() : meet(hit);
     }
   }
@@ -246,7 +285,7 @@ class Phase : public Pace<typename Form::Scalar> {
   /// point. docs/theory/events.md, rule 7
   CLUTCHWORK_INLINE bool must_land(const Hit& hit) {
     if (hit.what == Hit::nothing || landings_ >= most_landings || hit.s <= 0 || hit.s >= 1) return false;
-    return !(error_until(form_, step_, hit.s) <= most_cut_error);
+    return !(error_until(taken_form(), taken_step(), hit.s) <= most_cut_error);
   }
 
   /// Repeat the step so that it ends there.
@@ -260,15 +299,18 @@ class Phase : public Pace<typename Form::Scalar> {
   /// The derivatives are those of the other end.
   void look_back() {
     ws_.in.time = -infinity;
-    look_here();
+    if constexpr (has_tangents<T>)
+      varied_.look_here();
+    else
+      look_here();
   }
 
   /// Whether a step towards rest has run over a change of the coefficient: the two solutions whose difference is its
   /// error may agree by chance. docs/theory/events.md, rule 7
   bool misses_rest(const Hit& hit) {
-    if (!calls_.stiff || hit.what != Hit::nothing || !nears_rest(ws_)) return false;
-    fit(form_, step_);
-    const double missed = error_until(form_, step_, inner);
+    if (!calls_.stiff || hit.what != Hit::nothing || !nears_rest(taken_form().ws)) return false;
+    fit(taken_form(), taken_step());
+    const double missed = error_until(taken_form(), taken_step(), inner);
     if (missed > most_inner_error) return error_ = missed, true;
     look_at_end();
     return false;
@@ -278,6 +320,43 @@ class Phase : public Pace<typename Form::Scalar> {
     --ws_.statistics.steps;
     look_back();
     reject();
+  }
+
+  /// To the share s of the step, with rows and integrals, and with derivatives where there are some. False: the run
+  /// cannot go on.
+  CLUTCHWORK_INLINE bool reach(double s) {
+    if constexpr (has_tangents<T>)
+      return follow(s);
+    else
+      return write(s);
+  }
+
+  /// Derivatives along the step up to the share s, in as many parts as they need.
+  bool follow(double s)
+    requires has_tangents<T>
+  {
+    varied_.rest();
+    for (double at = 0; at < s;) {
+      const double to = varied_.follow(at, s);
+      if (to < 0) return leave(Status::step_collapse), false;
+      const double end = to == s ? time_at(s) : step_.t + step_.h;
+      if constexpr (Form::full) keep_ties(form_, step_, end, step_.y1());
+      if (!write_part(end)) return false;
+      for (int i = 0; to < s && i < form_.n(); ++i) step_.y0()[i] = step_.y1()[i];
+      at = to;
+    }
+    if (s >= 1 && varied_.was_moved()) look_at_end();
+    return true;
+  }
+  bool write_part(double end)
+    requires has_tangents<T>
+  {
+    const bool rows = end > step_.t && sink_.at < sink_.count && sink_.times[sink_.at] <= end;
+    if (ws_.options.work) fit_power(form_, step_, 1.0);
+    const Status shown = rows ? emit(form_, step_, 1.0, end, sink_) : Status::running;
+    if (shown != Status::running) return leave(shown), false;
+    accumulate(form_, step_, 1.0);
+    return true;
   }
 
   /// Rows and integrals of the step up to the share s. False: a row is not finite, or the caller wants to stop.
@@ -299,6 +378,7 @@ class Phase : public Pace<typename Form::Scalar> {
   CLUTCHWORK_INLINE void accept() {
     for (int i = 0; i < form_.n(); ++i) {
       step_.y0()[i] = step_.y1()[i];
+      if constexpr (has_tangents<T>) continue;
       step_.f0()[i] = step_.f1()[i];
       step_.dt0()[i] = step_.dt1()[i];
     }
@@ -306,7 +386,14 @@ class Phase : public Pace<typename Form::Scalar> {
     ws_.here = ws_.there;
     ws_.there = edge;
     move_on();
-    if (ws_.guard.n_undirected > 0) direct_open(form_, ws_.here);
+    if constexpr (has_tangents<T>) varied_.accept();
+    if (ws_.guard.n_undirected > 0) {
+      const int before = ws_.guard.n_undirected;
+      direct_open(form_, ws_.here);
+      if constexpr (has_tangents<T>) {
+        if (ws_.guard.n_undirected != before) look_here();
+      }
+    }
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) leave(Status::chatter);
     if (!calls_.stiff && !over_ && ws_.options.method == Method::auto_) watch_strain();
   }
@@ -329,14 +416,16 @@ class Phase : public Pace<typename Form::Scalar> {
     ws_.last_step = hit.s * reach_ > 1e-9 * larger(1e-3, planned) ? planned : larger(4 * h_, planned);
     // the run keeps its last step alone, and may be left here to make room for rows
     before_ = 0, landings_ = 0, rejected_ = false;
-    note_before(form_, step_, hit.s);
-    interpolate(form_, step_, hit.s, step_.u());
+    // a run with derivatives has a step that ends there
+    const double at = has_tangents<T> ? 1.0 : hit.s;
+    note_before(form_, step_, at);
+    interpolate(form_, step_, at, step_.u());
     ws_.time = smaller(ws_.time + hit.s * reach_, stop_);
     forget_forced(ws_);
     if (hit.what == Hit::set) force_set(hit);
-    if constexpr (has_tangents<T>) interpolate_slope(form_, step_, hit.s, step_.k(2));
+    if constexpr (has_tangents<T>) slope_at_end();
     for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = step_.u()[i];
-    if constexpr (has_tangents<T>) move_to_hit(form_, step_, hit);
+    if constexpr (has_tangents<T>) ws_.moved.span = planned, move_to_hit(form_, step_, hit);
     if (hit.what == Hit::gap) land_on_end(form_, step_, hit);
     ws_.in.time = -infinity;
     if constexpr (Form::full) keep_ties(form_, step_, ws_.time, step_.y0());
@@ -347,9 +436,22 @@ class Phase : public Pace<typename Form::Scalar> {
     if (!passes(hit) && !over_) settle_later(hit);
   }
 
+  /// Slopes of the speeds without inertia, which no equation of motion gives.
+  void slope_at_end()
+    requires has_tangents<T>
+  {
+    if (step_.h > 0) return interpolate_slope(form_, step_, 1.0, step_.k(2));
+    for (int i = 0; i < form_.n(); ++i) step_.k(2)[i] = T(0);
+  }
+
   /// A set at its limit load: its contacts slip the way in which it gives way, seen just behind the limit.
   void force_set(const Hit& hit) {
-    torques_at(form_, step_, larger(hit.s, 1e-6));
+    auto& ws = taken_form().ws;
+    torques_at(taken_form(), taken_step(), larger(hit.s, 1e-6));
+    if constexpr (has_tangents<T>) {
+      for (int a = 0; a < ws_.held.n; ++a) ws_.seen.carried[a] = T(ws.seen.carried[a]);
+      for (int l = 0; l < ws_.sys.loads; ++l) ws_.loads.now[l] = T(ws.loads.now[l]);
+    }
     break_set(ws_, hit.index, ws_.seen.carried);
   }
 
@@ -366,9 +468,9 @@ class Phase : public Pace<typename Form::Scalar> {
     }
     if (!law) pass_line(form_, *guard);
     look_on();
-    if (law && is_beyond(ws_)) return hand_over(Cause::other_event), true;
+    if (law && is_beyond(taken_form().ws)) return hand_over(Cause::other_event), true;
     show_behind(false);
-    if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(form_, hit.index));
+    if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(taken_form(), hit.index));
     h_ = ws_.last_step;
     return true;
   }

@@ -86,4 +86,14 @@ StepCalls<Form> step_calls(const Form& form) {
   }
 }
 
+/// Those of a phase; one with derivatives takes plain steps: run/variation.hpp.
+template <class Integrator, class Form>
+StepCalls<Form> phase_calls(const Form& form) {
+  using Calls = PlainCalls<Form, Integrator>;
+  if constexpr (has_tangents<typename Form::Scalar>)
+    return {nullptr, Calls::fit, nullptr, observe_inside<Form>, Integrator::stiff, Integrator::restart};
+  else
+    return step_calls<Integrator>(form);
+}
+
 }  // namespace clutchwork

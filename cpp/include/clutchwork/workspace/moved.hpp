@@ -6,6 +6,9 @@
 /// How the instants of events move with the numbers of the model: docs/theory/gradients.md
 namespace clutchwork {
 
+template <class T>
+struct Workspace;
+
 /// A guard that was hit: how fast it passed zero, over its own size. docs/theory/gradients.md (6)
 struct Graze {
   double time;       ///< [s]
@@ -31,6 +34,10 @@ struct Moved {
   T* points = nullptr;  ///< of the curves
   T* row = nullptr;     ///< one row of output
   int n = 0;
+  Workspace<double>* plain = nullptr;  ///< its image without derivatives
+  double span = 0;                     ///< [s] steps that are taken where an event is met
+  double pace = infinity;              ///< [s] that a step of the derivatives may take
+  double size[T::seen] = {};           ///< largest that each direction has had, over the size of the motion
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& s) {

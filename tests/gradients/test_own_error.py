@@ -1,0 +1,65 @@
+"""Derivatives have an error control of their own: docs/theory/gradients.md (20) and (21).
+
+From rest and in steady motion steps of a run are long, and say nothing of how derivatives swing.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from support import free_numbers, random_drivelines
+from support.amount import amount
+
+TOLERANCES = {1e-6: 1e-4, 1e-9: 1e-7}
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("steady", [0.0, 50.0])
+def test_the_derivative_of_two_discs_by_their_twist_is_that_of_the_closed_form(rtol: float, steady: float) -> None:
+    d = cw.Driveline("twist")
+    a, b = d.shaft("a", inertia=0.3, speed=steady), d.shaft("b", inertia=0.7, speed=steady)
+    d.add(cw.SpringDamper("k", base=a, follower=b, stiffness=400.0, damping=0.5))
+    function = cw.differentiable(d, 0.5, of="b.speed", by="k.initial_twist", rtol=rtol)
+    # u'' + 2 damping u' + square u = 0 for the twist u, u(0) = 1
+    mass = 1 / (1 / 0.3 + 1 / 0.7)
+    damping, square = 0.5 / (2 * mass), 400.0 / mass
+    omega = math.sqrt(square - damping**2)
+    rate = -square / omega * math.exp(-damping * 0.5) * math.sin(omega * 0.5)
+    forward, back = function.gradient().matrix[0, 0], function.vjp(function.x0, [1.0])
+    assert abs(forward) == pytest.approx(abs(mass / 0.7 * rate), rel=max(20 * rtol, 1e-10))
+    assert np.ravel(back[1] if isinstance(back, tuple) else back)[0] == pytest.approx(
+        forward, rel=max(20 * rtol, 1e-10)
+    )
+
+
+@pytest.mark.random
+def test_derivatives_of_random_drivelines_have_the_tolerance_of_the_run() -> None:
+    within = {rtol: list[bool]() for rtol in TOLERANCES}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for seed in range(amount(4)):
+            system = random_drivelines.describe(seed).driveline().assemble()
+            speeds = [f"{node.name}.speed" for node in system.nodes if not node.fixed]
+            run = cw.simulate(system, 2.0, rtol=1e-8)
+            scales = np.array([np.abs(run[name]).max() for name in speeds])
+            for one in free_numbers.some(system, np.random.default_rng(seed), 2):
+                try:
+                    found = [
+                        cw.differentiable(system, 2.0, of=speeds, by=one.name, rtol=rtol, atol=rtol / 100)
+                        .gradient()
+                        .matrix[:, 0]
+                        for rtol in (*TOLERANCES, 1e-12)
+                    ]
+                except cw.NoGradient:
+                    continue
+                size = abs(one.start) or one.scale
+                of = np.maximum(scales, np.abs(found[-1]) * size)
+                for (rtol, allowed), matrix in zip(TOLERANCES.items(), found[:-1], strict=True):
+                    within[rtol] += list(np.abs(matrix - found[-1]) * size / of <= allowed)
+    assert min(len(each) for each in within.values()) > 10
+    assert all(np.mean(each) >= 0.9 for each in within.values())
