@@ -1,6 +1,6 @@
 """Limits of a clutch that pass zero: it opens and closes whether or not a phase begins where it is open.
 
-A torque of zero with knots makes phases begin anywhere; nothing else may follow from it. What the clutch holds is within
+A torque of zero with knots makes phases begin anywhere; nothing else may follow from it. What it holds is within
 its limits, which are signals.
 """
 
