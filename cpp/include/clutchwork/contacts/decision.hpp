@@ -271,6 +271,19 @@ int weakest_beside(Workspace<T>& ws, const BoundedProblem<T>& p, const CoupledPr
   return first;
 }
 
+/// Of the candidates that follow loads and let go one that still moves within its own tolerance (-1: none).
+template <class T>
+int moving_on(const Workspace<T>& ws, const BoundedProblem<T>& p, const CoupledProblem<T>& q, int located,
+              double tolerance) {
+  for (int a = 0; a < q.n; ++a) {
+    const int c = ws.decision.list[a];
+    if (ws.loads.of[c] < 0 || q.sliding[a] != 0 || p.bound[a] == 0 || is_tied(ws, c)) continue;
+    const bool slips = abs(value(rate_of(ws, int(ws.sys.elements) + c))) > tolerance;
+    if (slips && abs(value(p.slope[a])) > slope_noise(ws, p, a, located, tolerance)) return a;
+  }
+  return -1;
+}
+
 /// Modes and lines of the contacts that follow loads.
 template <class T>
 void settle_loads(Workspace<T>& ws, const BoundedProblem<T>& p, const CoupledProblem<T>& q, int located,
@@ -402,6 +415,13 @@ Verdict settle_coupled(Workspace<T>& ws, int located, double tolerance) {
       release(ws, c, value(p.slope[weak]) > 0 ? forward : backward);
       candidate[c] = 0;
       released[c] = released[c] == 0 ? 1 : 2;
+      continue;
+    }
+    const int moving = moving_on(ws, p, q, located, tolerance);
+    if (moving >= 0) {
+      const int c = ws.decision.list[moving];
+      release(ws, c, value(p.slope[moving]) > 0 ? forward : backward);
+      candidate[c] = 0, released[c] = 2;
       continue;
     }
     const int back = turned_back(ws, p);

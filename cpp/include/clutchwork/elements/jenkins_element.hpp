@@ -54,14 +54,16 @@ struct JenkinsElement : declared::JenkinsElement {
   }
   template <class T, class S>
   static S heat(const Params<T>& p, const At<S>& at) {
-    return spring(p, at) * at.rate * (T(1) - growth(p, at) / p.stiffness);
+    S slides = at.rate * (T(1) - growth(p, at) / p.stiffness);
+    // what the speed does to the limit winds the spring
+    if (mode(at.piece) != sticks && follows_speed(p)) slides -= follows(p, at) / p.stiffness;
+    return spring(p, at) * slides;
   }
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     rates[friction_torque] = growth(p, at) * at.rate;
     // what the speed does to the limit: while it slides the state is shown and nothing else, so it may come after
-    if (mode(at.piece) != sticks && follows_speed(p))
-      rates[friction_torque] += (spring(p, at) - at.state[friction_torque]) / T(after);
+    if (mode(at.piece) != sticks && follows_speed(p)) rates[friction_torque] += follows(p, at);
     if (count(p) > 1) rates[twist] = at.rate;
   }
 
@@ -103,6 +105,12 @@ struct JenkinsElement : declared::JenkinsElement {
 
  private:
   static constexpr double after = 1e-4;  // [s]
+
+  /// Rate at which the state comes after a limit that a speed changes.
+  template <class T, class S>
+  static S follows(const Params<T>& p, const At<S>& at) {
+    return (spring(p, at) - at.state[friction_torque]) / T(after);
+  }
 
   /// A piece, and where it slides whether it goes on: the spring would grow faster than the limit, however slowly.
   /// Where the limit follows a speed, its guard tells.
