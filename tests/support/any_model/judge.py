@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,12 @@ def faults(made: Plain, seed: int, depth: int = 2, only: str = "") -> list[Fault
     Parameters: seed, of what is chosen at random; depth, 0 its rows, 1 its tolerances too, 2 its twins too; only, the
     kind of fault that is looked for, which may leave out others.
     """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return _faults(made, seed, depth, only)
+
+
+def _faults(made: Plain, seed: int, depth: int, only: str) -> list[Fault]:
     try:
         base = agree.run(made)
     except (cw.Interrupted, KeyboardInterrupt):
