@@ -63,6 +63,10 @@ class TestTransformations:
         np.testing.assert_allclose(gradient, MATRIX[2], rtol=1e-9, atol=1e-6)
 
 
+def one_output(name):
+    return cw.to_jax(cw.differentiable(F.system, 2.5, of=F.task.outputs[name], by=F.by))
+
+
 def test_one_run_gives_values_and_derivatives(g, monkeypatch):
     runs = []
     gradient = type(F.engine).gradient
@@ -72,13 +76,24 @@ def test_one_run_gives_values_and_derivatives(g, monkeypatch):
 
 
 def test_what_has_no_gradient(g):
-    why = r"lock\(c1\) does not happen before 2.5 s"
+    why, locks = r"lock\(c1\) does not happen before 2.5 s", one_output("lock(c1)")
     with pytest.raises(cw.NoGradient, match=why):
-        jax.jacrev(g)(SLOW)
+        jax.jacrev(locks)(SLOW)
     with pytest.raises(RuntimeError, match=why):
-        jax.jit(jax.jacfwd(g))(SLOW)
-    many = jax.vmap(jax.jacrev(g))(np.array([SLOW, F.x0]))
-    np.testing.assert_array_equal(np.isnan(many).any(axis=(1, 2)), [True, False])
+        jax.jit(jax.jacfwd(locks))(SLOW)
+
+
+@pytest.mark.parametrize("mode", [jax.jacfwd, jax.jacrev])
+def test_a_value_without_a_derivative_takes_no_other_with_it(g, mode):
+    lines, lost = np.array([SLOW, F.x0]), np.array([F.of[number] == "lock(c1)" for number in range(len(F.of))])
+    for found in (mode(g)(SLOW), jax.jit(mode(g))(SLOW), jax.vmap(mode(g))(lines)[0]):
+        np.testing.assert_array_equal(np.isnan(found).all(axis=1), lost)
+        np.testing.assert_allclose(found[~lost], F.jacobian(SLOW)[~lost], **CLOSE)
+    np.testing.assert_allclose(jax.vmap(mode(g))(lines)[1], MATRIX, **CLOSE)
+    # a loss that uses others has its gradient, under vmap too
+    others = jax.grad(lambda x: g(x)[~lost].sum())
+    np.testing.assert_allclose(others(SLOW), F.jacobian(SLOW)[~lost].sum(axis=0), **CLOSE)
+    np.testing.assert_allclose(jax.vmap(others)(lines)[0], others(SLOW), **CLOSE)
 
 
 def test_what_is_refused(g):

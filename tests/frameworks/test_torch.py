@@ -75,11 +75,16 @@ def test_one_value():
 
 
 def test_what_has_no_gradient(h):
-    x = torch.tensor(SLOW, requires_grad=True)
+    locks = cw.to_torch(cw.differentiable(F.system, 2.5, of=F.task.outputs["lock(c1)"], by=F.by))
     with pytest.raises(cw.NoGradient, match=r"lock\(c1\) does not happen before 2.5 s"):
-        h(x).sum().backward()
+        locks(torch.tensor(SLOW, requires_grad=True)).sum().backward()
+    lost = np.array([name == "lock(c1)" for name in F.of])
+    # others keep theirs
+    x = torch.tensor(SLOW, requires_grad=True)
+    h(x)[torch.tensor(~lost)].sum().backward()
+    np.testing.assert_allclose(x.grad, F.jacobian(SLOW)[~lost].sum(axis=0), **CLOSE)
     many = torch.func.vmap(torch.func.jacrev(h))(torch.tensor(np.array([SLOW, F.x0])))
-    np.testing.assert_array_equal(np.isnan(many.numpy()).any(axis=(1, 2)), [True, False])
+    np.testing.assert_array_equal(np.isnan(many.numpy()).any(axis=2), [lost, np.zeros_like(lost)])
 
 
 def test_what_is_refused(h):

@@ -1,4 +1,4 @@
-"""Derivatives have an error control of their own: docs/theory/gradients.md (17) and (18).
+"""Derivatives have an error control of their own: docs/theory/gradients.md (20) and (21).
 
 From rest and in steady motion steps of a run are long, and say nothing of how derivatives swing.
 """

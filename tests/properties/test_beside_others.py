@@ -24,9 +24,9 @@ def coulomb(rng: Rng) -> cw.Coulomb:
     return cw.Coulomb(static=kinetic * uniform(rng, 1.0, 1.5), kinetic=kinetic)
 
 
-def sine(rng: Rng, size: float) -> cw.Sine:
+def sine(rng: Rng, size: float, low: float = -1.0) -> cw.Sine:
     return cw.Sine(
-        amplitude=uniform(rng, 0.3, 1) * size, frequency=uniform(rng, 1, 8), offset=uniform(rng, -size, size)
+        amplitude=uniform(rng, 0.3, 1) * size, frequency=uniform(rng, 1, 8), offset=uniform(rng, low, 1) * size
     )
 
 
@@ -216,7 +216,7 @@ def self_locking(rng: Rng) -> cw.Driveline:
         )
     )
     d.add(cw.Gear("gear", input=b, output=c, ratio=uniform(rng, 0.5, 4)))
-    d.add(cw.Clutch("across", base=a, follower=c, friction=coulomb(rng), gain=1.0, normal_force=sine(rng, 800)))
+    d.add(cw.Clutch("across", base=a, follower=c, friction=coulomb(rng), gain=1.0, normal_force=sine(rng, 800, 0.0)))
     d.add(cw.Brake("brake", shaft=b, friction=coulomb(rng), gain=1.0, normal_force=uniform(rng, 0, 500)))
     d.add(cw.SpringDamper("k", base=c, follower=e, stiffness=uniform(rng, 50, 5000), damping=uniform(rng, 0, 5)))
     d.add(cw.Torque("drive", shaft=a, torque=sine(rng, 60)))

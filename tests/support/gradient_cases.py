@@ -116,6 +116,7 @@ def checked(case: Case, seed: int, count: int) -> Report:
             made.refused += none.problems
             continue
         made.noted += found.notes
+        made.refused += found.problems
         for line in by_differences.compared(function, found.matrix, scales):
             _noted(made, function.of, line)
     return made
@@ -123,6 +124,9 @@ def checked(case: Case, seed: int, count: int) -> Report:
 
 def _noted(made: Report, names: tuple[str, ...], line: by_differences.Compared) -> None:
     for name, missed, doubt in zip(names, line.missed, line.doubt, strict=True):
+        if np.isnan(missed):
+            # it is among those that are refused
+            continue
         if not doubt < DOUBTFUL:
             made.doubtful += 1
             continue

@@ -107,8 +107,11 @@ class Descent:
             block = np.zeros((len(self.measured[number]), len(u)))
             self.points += 1
             try:
-                matrix = function.jacobian(values[places])
-                block[:, places] = matrix * rates[places] / self.weights[number][:, None]
+                found = function.gradient(values[places])
+                exact = found.matrix * rates[places] / self.weights[number][:, None]
+                self.fallen += found.problems[:1]
+                missing = np.isnan(exact)
+                block[:, places] = np.where(missing, self.differences(number, u), exact) if missing.any() else exact
             except (NoGradient, ModelError) as why:
                 self.fallen += [str(problem) for problem in why.problems[:1]]
                 block[:, places] = self.differences(number, u)

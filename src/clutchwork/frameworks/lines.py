@@ -24,7 +24,7 @@ def values(f: Differentiable, x: Array) -> Array:
 def values_and_matrix(f: Differentiable, x: Array) -> tuple[Array, Array]:
     """Values (..., of) and derivatives (..., of, by).
 
-    NoGradient for one line whose derivatives do not exist, NaN for one of many.
+    NaN for a derivative that does not exist; NoGradient for one line that has none at all, NaN for one of many.
     """
     if x.ndim == 1:
         return _at_one(f, x)

@@ -26,7 +26,8 @@ def to_torch(f: Differentiable) -> Callable[[Any], Any]:
     `torch.func.grad`, `jacrev`, `jacfwd`, `jvp`, `vjp` and `vmap`, which runs on threads; runs stay on the CPU, values
     come back to the device of x. x (..., by) is float64 in SI, in the order of `f.by`; the values (..., of) are in the
     order of `f.of`. ImportError without PyTorch; UseError for float32, another shape and second derivatives;
-    `NoGradient` where a derivative does not exist, and NaN for one line of many. docs/guide/frameworks.md
+    a derivative that does not exist is NaN, where it is used. `NoGradient` where there is none at all, and NaN for one
+    line of many; `f.gradient(x).problems` says why. docs/guide/frameworks.md
     """
     torch = need("torch", "torch", CALL)
     if not isinstance(f, Differentiable):
@@ -52,6 +53,12 @@ def _numbers(x: Any) -> Any:
 def _first(x: Any, axis: int | None) -> Any:
     """Lines along the first axis, however `vmap` holds them."""
     return x if axis is None else x.movedim(axis, 0)
+
+
+def _product(torch: Any, matrix: Any, vector: Any) -> Any:
+    """Matrix times vector, where anything times zero is zero: a derivative that is missing counts where it is used."""
+    beside = vector[..., None, :]
+    return torch.where(beside == 0.0, beside, matrix * beside).sum(-1)
 
 
 @cache
@@ -104,11 +111,11 @@ def _functions() -> tuple[Any, Any]:
         @staticmethod
         def backward(ctx: Any, weights: Any) -> Any:
             matrix = Matrix.apply(ctx.f, *ctx.saved_tensors)
-            return None, (weights[..., None, :] @ matrix)[..., 0, :]
+            return None, _product(torch, matrix.transpose(-1, -2), weights)
 
         @staticmethod
         def jvp(ctx: Any, _f: Any, change: Any) -> Any:
             matrix = Matrix.apply(ctx.f, *ctx.saved_tensors)
-            return (matrix @ change[..., None])[..., 0]
+            return _product(torch, matrix, change)
 
     return Values, Matrix

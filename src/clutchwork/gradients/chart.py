@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import ModelError
 from clutchwork.gradients.assembled import Assembled
 from clutchwork.gradients.discovery import identity, tables, together
 from clutchwork.gradients.packed import Structure
@@ -76,8 +77,11 @@ class Chart:
         return own is not None and own.tobytes() == words.tobytes()
 
     def words(self, x: Array) -> Array | None:
-        """The words at a point; None where the structure is another one there."""
-        assembled = self.assembled.words(x[self.bound])
+        """The words at a point; None where the structure is another one there, or numbers only fit together."""
+        try:
+            assembled = self.assembled.words(x[self.bound])
+        except ModelError:
+            return None
         if assembled is None:
             return None
         words = assembled.copy()

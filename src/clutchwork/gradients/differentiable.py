@@ -18,6 +18,7 @@ from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.options import Options
 from clutchwork.gradients.exact import Exact
 from clutchwork.gradients.parameters import parameters
+from clutchwork.gradients.settled import SIDES
 from clutchwork.gradients.task import Found, Task
 from clutchwork.results.channels import channels
 from clutchwork.results.gradient import Gradient
@@ -77,7 +78,8 @@ class Differentiable:
     def value_and_jacobian(self, x: Any) -> tuple[Array, Array]:
         """Values, and their derivatives: a line for each value, a column for each number.
 
-        NoGradient, a ValueError, where one does not exist, with time, element and remedy.
+        NaN for a derivative that does not exist, of which `f.gradient(x).problems` says why; NoGradient, a ValueError,
+        where there is none at all.
         """
         found = self._found(self._point(x))
         return found.values.copy(), found.matrix.copy()
@@ -89,7 +91,8 @@ class Differentiable:
     def vjp(self, x: Any, weights: Any) -> tuple[Array, Array]:
         """Values, and the derivatives of their weighted sum, whose cost does not grow with the number of numbers.
 
-        Parameters: weights, one for each value.
+        Parameters: weights, one for each value; one whose weight is 0 needs no derivatives. NoGradient, a ValueError,
+        where a derivative of another one does not exist.
         """
         given = _line(weights, len(self.of), "weights", "value")
         return self.engine.product(self._point(x), given)
@@ -116,7 +119,7 @@ class Differentiable:
             return self.task_values(points)
 
     def batch_jacobian(self, x: Any) -> tuple[Array, Array]:
-        """Values and derivatives for many lines of numbers, on threads; NaN for what does not exist.
+        """Values and derivatives for many lines of numbers, on threads; NaN for each that does not exist.
 
         ModelError as in `batch`.
         """
@@ -127,7 +130,17 @@ class Differentiable:
         """Values and derivatives with their names and units, by default at the numbers of the driveline."""
         point = self.x0 if x is None else self._point(x)
         found = self._found(point)
-        return Gradient(self.of, self.by, found.values, point, found.matrix, self.of_units, self.by_units, found.notes)
+        return Gradient(
+            self.of,
+            self.by,
+            found.values,
+            point,
+            found.matrix,
+            self.of_units,
+            self.by_units,
+            found.notes,
+            found.problems,
+        )
 
     def __repr__(self) -> str:
         return (
@@ -196,6 +209,7 @@ def differentiable(
     *,
     of: Mapping[str, Asked] | Sequence[Asked] | Asked,
     by: Sequence[str] | str,
+    side: str | None = None,
     threads: int | None = None,
     options: Options | None = None,
     **changes: Unpack[OptionFields],
@@ -207,22 +221,27 @@ def differentiable(
     by, names of numbers as in `System.changed`: "c1.gain", "engine.inertia", of a table "c1.pressure.values", all
     ordinates, "c1.pressure.values[3]", the third one, "c1.pressure.values[2:]", all from the second on, and
     "c1.pressure.times[3]", the time of the third knot;
-    threads, how many runs of a batch go at once.
+    side, "left" or "right", which derivatives are given where those from both sides differ: as a number gets less, or
+    grows; threads, how many runs of a batch go at once.
 
     Derivatives follow the events: locking, breaking away and every kink move with the numbers, which differentiating
     the steps of a solver misses. UseError names all that cannot be differentiated; where a derivative does not exist
-    at a point, `NoGradient` says why. docs/guide/gradients.md
+    at a point it is NaN, and `f.gradient(x).problems` says why. docs/guide/gradients.md
     """
     system = model_of("differentiable", model, options)
     given = {**changes} if t_end is None else {**changes, "t_end": t_end}
     end, chosen = merged(system.settings, given, options)
     plain = chosen.changed({"dt": None, "times": None})
     refuse_endless(system.inputs, plain.t_start, end, plain.max_steps)
-    return made(system, of, by, end, plain, threads)
+    return made(system, of, by, end, plain, threads, side)
 
 
-def made(system: System, of: Any, by: Any, t_end: float, options: Options, threads: int | None) -> Differentiable:
+def made(
+    system: System, of: Any, by: Any, t_end: float, options: Options, threads: int | None, side: Any = None
+) -> Differentiable:
     """The function for what is asked for."""
+    if side is not None and side not in SIDES:
+        raise UseError("gradient", [f"side is {shown(side)}: give 'left' or 'right', or leave it out"])
     try:
         outputs = asked(of)
         _refuse(system, outputs)
@@ -234,7 +253,7 @@ def made(system: System, of: Any, by: Any, t_end: float, options: Options, threa
     known = channels(system, options.angles, options.work)
     labels = [(label, unit_of(one, known)) for name, one in outputs.items() for label in _labels(name, one)]
     names, units = zip(*labels, strict=True)
-    task = Task(system, outputs, chosen, t_end, options, threads_of(threads, "gradient"), names)
+    task = Task(system, outputs, chosen, t_end, options, threads_of(threads, "gradient"), names, side)
     by_units = tuple(one.unit for one in chosen)
     return Differentiable(task, Exact(task), names, tuple(one.name for one in chosen), units, by_units)
 

@@ -2,30 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import cached_property
+from dataclasses import replace
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
-from clutchwork.gradients.grazing import crowded, decided, noted, refused, struck_together, together
-from clutchwork.gradients.measures import Asked, Measure, measures
-from clutchwork.gradients.primal import Primal
-from clutchwork.gradients.runs import Run, Runs
+from clutchwork.gradients.bends import Bends, bends_of, spread
+from clutchwork.gradients.doubts import Doubt, Doubts
+from clutchwork.gradients.grazing import noted, together
+from clutchwork.gradients.lines import Line, lines, without_derivatives
+from clutchwork.gradients.measures import Asked, measures
+from clutchwork.gradients.runs import Point, Run, Runs
+from clutchwork.gradients.settled import NEARER, STEP, Beside, Settling
 from clutchwork.gradients.task import Found, Task
-from clutchwork.gradients.traces import at_events, at_knots, merged, traces_of
 from clutchwork.results.gradient import NoGradient
-from clutchwork.sweeps.outputs import AtTimes, Integral, Output
+from clutchwork.sweeps.outputs import Integral
 
 Array = NDArray[np.float64]
 
 # variants of one call without derivatives
 MOST_AT_ONCE = 256
-# derivatives of equal extremes are one where they differ by less, of their size
-ALIKE = 1e-6
+# directions that a run carries at the cost of one
+AT_ONCE = 8
 # a run is followed back from so many numbers on, and from so many more for each result
 FOLLOWED_FROM, FOLLOWED_FOR_EACH = 12, 4
 
@@ -47,6 +50,8 @@ class Exact:
         kept = {one.name: wanted.kept_as(one) for one in wanted.outputs.values() if isinstance(one, Integral)}
         return Asked(wanted.contacts, kept, wanted.begin)
 
+    # ---------------------------------------------------------------------------------------------------------- values
+
     def values(self, x: Array) -> Array:
         """Values for each line of numbers, NaN where there is none."""
         found = [self._values(x[first : first + MOST_AT_ONCE]) for first in range(0, len(x), MOST_AT_ONCE)]
@@ -64,144 +69,177 @@ class Exact:
         systems = [self.runs.words.bytes_at(line) for line in x]
         return self.runs.plain.values(systems, [self.runs.signals.at(line) for line in x])
 
+    # ----------------------------------------------------------------------------------------------------- derivatives
+
     def gradient(self, x: Array) -> Found:
-        """Values and derivatives at a point; NoGradient names all that do not exist."""
-        labels, outputs = self.task.labels, self.task.outputs
-        if self._is_followed_back(x, len(labels)):
-            run, found = self._run(x, len(labels))
-            return self._found(run, *self._measured(x, run, labels, found))
-        run = self.runs.forward(self.runs.point(x))
-        # of signals at instants all rows at once
-        single = {name: one for name, one in outputs.items() if not isinstance(one, AtTimes)}
-        found = measures(run.primal, single, self._asked)
-        _refuse(list(self._problems(x, run, list(single), found, outputs.values())))
-        return self._found(run, *merged(run, outputs, self._measured(x, run, list(single), found)))
-
-    def _measured(self, x: Array, run: Run, names: Sequence[str], found: Sequence[Measure]) -> tuple[Array, Array]:
-        """Values and derivatives of measures."""
-        lines = [np.array([run.slope(one) for one in measure.changes]) for measure in found]
-        problems = list[str]()
-        for name, one, own in zip(names, found, lines, strict=True):
-            problems += _several(name, one, own, self._sizes(x))
-        _refuse(problems)
-        matrix = np.array([own[0] for own in lines]).reshape(len(found), len(x))
-        return np.array([one.value for one in found]), matrix
-
-    def _found(self, run: Run, values: Array, matrix: Array) -> Found:
-        return Found(values, matrix, self._notes(run))
-
-    def _notes(self, run: Run) -> tuple[str, ...]:
-        found = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.events)]
-        return tuple(dict.fromkeys(found))
+        """Values and derivatives at a point, NaN for one that does not exist; NoGradient where there is none at all."""
+        found = self._found(x)
+        if found.matrix.size and np.all(np.isnan(found.matrix)):
+            raise NoGradient(found.problems)
+        return found
 
     def gradients(self, x: Array) -> tuple[Array, Array]:
-        """The same for each line of numbers; NaN where there is none."""
+        """The same for each line of numbers, NaN for all of one whose run stops early."""
         with ThreadPoolExecutor(self.task.threads) as pool:
-            found = list(pool.map(self._gradient_or_none, x))
+            found = list(pool.map(self._found_or_none, x))
         shape = (len(x), len(self.task.labels), len(self.task.parameters))
         return np.array([one.values for one in found]).reshape(shape[:2]), np.array(
             [one.matrix for one in found]
         ).reshape(shape)
 
-    def _gradient_or_none(self, x: Array) -> Found:
+    def _found_or_none(self, x: Array) -> Found:
         try:
-            return self.gradient(x)
+            return self._found(x)
         except NoGradient:
             return Found(self._values(x[None])[0], np.full((len(self.task.labels), len(x)), np.nan))
 
     def product(self, x: Array, weights: Array) -> tuple[Array, Array]:
-        """Values at a point, and the derivatives of their weighted sum."""
-        run, found = self._run(x, 1)
+        """Values at a point, and the derivatives of the weighted sum of those whose weight is not zero.
+
+        NoGradient where one of these does not exist.
+        """
+        used = weights != 0.0
+        known = self._followed_product(x, weights) if self._is_followed_back(x, 1) else None
+        if known is not None:
+            return known
+        found = self._found(x)
+        if np.any(np.isnan(found.matrix[used])):
+            raise NoGradient(found.problems)
+        return found.values, weights[used] @ found.matrix[used]
+
+    def _followed_product(self, x: Array, weights: Array) -> tuple[Array, Array] | None:
+        """The same by one run that is followed back; None where anything is in doubt, or extremes are equal."""
+        try:
+            point = self.runs.point(x)
+        except NoGradient:
+            return None
+        run = self._refined(point, 1)
+        found = [one for output in self.task.outputs.values() for one in measures(run.primal, output, self._asked)]
+        if any(len(one.changes) != 1 for one in found) or self._doubts(
+            point, run, without_derivatives(self.task.labels, found)
+        ):
+            return None
         whole = run.primal.functional()
         for share, one in zip(weights.tolist(), found, strict=True):
             whole.include(one.changes[0], share)
         return np.array([one.value for one in found]), run.slope(whole)
 
-    def _run(self, x: Array, results: int) -> tuple[Run, list[Measure]]:
-        """A run and what is measured in it: followed back where results are few and numbers many."""
-        point = self.runs.point(x)
-        run = self.runs.taped(point) if self._is_followed_back(x, results) else self.runs.forward(point)
-        if not run.is_forward and together(run.primal.grazes):
-            run = self.runs.forward(point)
-        found = measures(run.primal, self.task.outputs, self._asked)
-        _refuse(list(self._problems(x, run, self.task.labels, found)))
-        return run, found
+    # ---------------------------------------------------------------------------------------------------- at one point
+
+    def _found(self, x: Array) -> Found:
+        """Values and derivatives at a point, NaN and a problem for each that does not exist.
+
+        NoGradient where the run stops early.
+        """
+        try:
+            known, beside = self._known(x), self._beside
+        except Bends as bends:
+            known, beside = self._known_without(x, bends.numbers), self._beside_alone
+        return self._settled(x, beside, *known)
+
+    def _settled(
+        self, x: Array, beside: Beside, known: list[Line], doubts: list[Doubt], notes: tuple[str, ...]
+    ) -> Found:
+        settling = Settling.of(self.task, x, self._sizes(x), known, doubts)
+        settling.settle(beside)
+        matrix = settling.matrix()
+        return Found(np.array([one.value for one in known]), matrix, notes, tuple(settling.problems(matrix)))
+
+    def _known(self, x: Array) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:
+        """What a run at a point says, and what is in doubt; Bends where a number is at a kink of the driveline."""
+        try:
+            point = self.runs.point(x)
+            run, found = self.lines(point)
+        except NoGradient as none:
+            raise bends_of(none, self.task) from None
+        notes = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.events)]
+        return found, self._doubts(point, run, found), tuple(dict.fromkeys(notes))
+
+    def _known_without(self, x: Array, bent: Mapping[int, str]) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:
+        """The same where some numbers are at kinks of the driveline: these are in doubt."""
+        kept = np.array([number not in bent for number in range(len(x))])
+        found, doubts, notes = self._values_alone(x), list[Doubt](), tuple[str, ...]()
+        if kept.any():
+            rest = self._with(x, np.flatnonzero(kept).tolist())
+            found, doubts, notes = rest._known(x[kept])  # noqa: SLF001, its own kind
+        all_ = np.ones(len(found), dtype=bool)
+        doubts = [one._replace(numbers=spread(one.numbers, kept, fill=False), one_way=False) for one in doubts]
+        doubts += [Doubt(why, all_, np.arange(len(x)) == number) for number, why in bent.items()]
+        nan = float("nan")
+        whole = [one._replace(left=spread(one.left, kept, nan), right=spread(one.right, kept, nan)) for one in found]
+        return whole, doubts, notes
+
+    def _values_alone(self, x: Array) -> list[Line]:
+        """Lines without derivatives, where no number has one."""
+        none = np.zeros(0)
+        values = zip(self.task.labels, self._values(x[None])[0].tolist(), strict=True)
+        return [Line(name, value, 0.0, none, none, self.task.t_end) for name, value in values]
+
+    def lines(self, point: Point) -> tuple[Run, list[Line]]:
+        """A run, and what is asked of it with derivatives as they are."""
+        run, outputs = self._refined(point, len(self.task.labels)), self.task.outputs
+        return run, lines(run, outputs, self.task.labels, self._asked, self._sizes(point.x))
+
+    def _refined(self, point: Point, results: int) -> Run:
+        """A run with rows on both sides of where signals of extremes bend."""
+        run, plain = self._run(point, results), self.runs.plain
+        if plain.sharing is None or not len(run.primal.steps):
+            return run
+        primal, rows_at = run.primal, partial(plain.rows_at, point.system, range(run.primal.rows.shape[1]))
+        steps, _ = plain.refined(primal.steps, primal.rows, primal.forms, plain.sharing.columns, rows_at)
+        if steps is primal.steps:
+            return run
+        grid = np.unique(np.concatenate([self.runs.wanted.grid, steps.times.ravel()]))
+        return self._run(point._replace(steps=steps, grid=grid), results)
+
+    def _run(self, point: Point, results: int) -> Run:
+        """A run, followed back where results are few and numbers many."""
+        run = self.runs.taped(point) if self._is_followed_back(point.x, results) else self.runs.forward(point)
+        # of events at one instant it is to be known how they move
+        return self.runs.forward(point) if not run.is_forward and together(run.primal.grazes) else run
 
     @staticmethod
     def _is_followed_back(x: Array, results: int) -> bool:
         """Whether following a run back costs less than carrying derivatives along."""
         return len(x) >= FOLLOWED_FROM + FOLLOWED_FOR_EACH * results
 
-    # ------------------------------------------------------------------------------------------------------- what fails
+    def _doubts(self, point: Point, run: Run, found: list[Line]) -> list[Doubt]:
+        return list(Doubts(self.runs, point, run, found, self._sizes(point.x)).found())
+
+    def _beside(self, x: Array, number: int | None) -> list[Line] | None:
+        """Lines of a run beside the point, by one number alone where it is given; None where there is no run."""
+        if number is not None and len(x) > AT_ONCE:
+            return self._beside_alone(x, number)
+        try:
+            found = self.lines(self.runs.point(x))[1]
+        except (ModelError, NoGradient):
+            return None
+        if number is None:
+            return found
+        return [one._replace(left=one.left[[number]], right=one.right[[number]]) for one in found]
+
+    def _beside_alone(self, x: Array, number: int | None) -> list[Line] | None:
+        """The same by one number in a driveline of its own, which knows no kink but those nearer than it is looked."""
+        if number is None:
+            return None
+        try:
+            alone = self._with(x, [number], NEARER * STEP)
+            return alone.lines(alone.runs.point(x[[number]]))[1]
+        except (ModelError, NoGradient):
+            return None
+
+    def _with(self, x: Array, numbers: Sequence[int], reach: float = np.inf) -> Exact:
+        """The same at a point, by some of the numbers.
+
+        Parameters: reach, how far they may be moved to find derivatives of words, of their size.
+        """
+        sizes, chosen = self._sizes(x), [(number, self.task.parameters[number]) for number in numbers]
+        parameters = tuple(
+            replace(one, start=float(x[number]), reach=min(one.reach, reach * float(sizes[number])))
+            for number, one in chosen
+        )
+        return Exact(replace(self.task, system=self.runs.words.assembled(x), parameters=parameters))
 
     def _sizes(self, x: Array) -> Array:
         own = [one.scale if one.places or not v else 0.0 for one, v in zip(self.task.parameters, x, strict=True)]
         return np.maximum(np.abs(x), own)
-
-    def _problems(
-        self, x: Array, run: Run, names: Sequence[str], found: Sequence[Measure], outputs: Iterable[Output] = ()
-    ) -> Iterator[str]:
-        """Why there is no derivative of measures, nor of those of outputs that are signals at instants."""
-        for name, one in zip(names, found, strict=True):
-            if not one.changes:
-                yield f"{name} does not happen before {run.primal.t_end:g} s; take one that does, or a later end time"
-            elif one.at is not None:
-                yield from _at_event(name, one.at, run)
-                yield from _at_knot(name, one, run.primal)
-            for time in one.kinks:
-                yield f"{name} has a kink at {time:.9g} s, where knots meet or the run begins or ends; move a knot"
-        asked = traces_of(outputs)
-        yield from (_moving(name, time) for name, time in at_events(run, asked))
-        yield from (_at_moving_knot(name, time) for name, time in at_knots(run, asked))
-        until = [*(one.until for one in found), *(one.times[-1] for one in asked)]
-        yield from self._not_there(x, run, max(until, default=0.0))
-
-    def _not_there(self, x: Array, run: Run, until: float) -> Iterator[str]:
-        """Why there is no derivative of anything up to a time [s]."""
-        primal, sizes = run.primal, float(np.max(self._sizes(x), initial=0.0))
-        yield from refused(self.task.system, decided(primal.grazes, primal.events), until, sizes)
-        yield from crowded(primal.events, self.runs.wanted.contacts, until)
-        yield from struck_together(self.task.system, primal.events, self.runs.wanted.contacts, until)
-
-
-def _refuse(problems: list[str]) -> None:
-    if problems:
-        raise NoGradient(list(dict.fromkeys(problems)))
-
-
-def _at_event(name: str, time: float, run: Run) -> Iterator[str]:
-    """An instant that is asked for and is that of an event, which moves."""
-    there = np.abs(run.primal.events[:, 0] - time) <= 1e-12 * (1.0 + abs(time))
-    for number in np.flatnonzero(there).tolist():
-        moves = run.primal.functional()
-        moves.add_event(number, 1.0)
-        if np.any(run.slope(moves)):
-            yield _moving(name, time)
-
-
-def _moving(name: str, time: float) -> str:
-    return f"{name} is asked for at the instant of an event, {time:.9g} s, which moves; ask before or behind it"
-
-
-def _at_knot(name: str, one: Measure, primal: Primal) -> Iterator[str]:
-    """An instant that is asked for and is that of a knot that moves, where the value bends or jumps with it."""
-    time = float(one.at or 0.0)
-    if any(primal.bends_at(columns, np.array([time]))[0] for columns in one.changes[0].columns):
-        yield _at_moving_knot(name, time)
-
-
-def _at_moving_knot(name: str, time: float) -> str:
-    return f"{name} is asked for at a knot that moves, {time:.9g} s; ask before or behind it"
-
-
-def _several(name: str, one: Measure, lines: Array, sizes: Array) -> Iterator[str]:
-    """Equal extremes whose derivatives differ.
-
-    Parameters: sizes, by which numbers are compared.
-    """
-    allowed = ALIKE * (np.abs(lines).max(axis=0, initial=0.0) + one.size / sizes)
-    for line, when in zip(lines[1:], one.when[1:], strict=False):
-        if np.any(np.abs(line - lines[0]) > allowed):
-            remedy = "move a number so that one of them is the only one"
-            yield f"{name} is reached at {one.when[0]:.9g} s and at {when:.9g} s, and they move apart; {remedy}"
-            return

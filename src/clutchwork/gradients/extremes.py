@@ -1,7 +1,8 @@
-"""Extremes of signals over a run, and how they change: docs/theory/gradients.md (12)."""
+"""Extremes of signals over a run, and how they change: docs/theory/gradients.md (12), (18), (19)."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -17,9 +18,16 @@ from clutchwork.sweeps.outputs import Extreme
 from clutchwork.sweeps.parts import PARTS
 
 Array = NDArray[np.float64]
+Places = NDArray[np.intp]
+
+NOWHERE = np.zeros(0, dtype=np.intp)
 
 # two extremes are one where they differ by less, of the largest size of the signal
 EQUAL = 1e-9
+# slopes that differ by more are those of a bend, of the larger one
+BENT = 1e-3
+# limits from both sides that differ by more are those of a jump, of the larger one
+JUMP = 1e-6
 # so many of those that are equal are looked at
 MOST_EQUAL = 16
 # places in a step at which polynomials are sampled
@@ -34,6 +42,8 @@ class Found(NamedTuple):
     step: int
     share: float
     sign: float
+    rough: float = 0.0  # last coefficient of the polynomial over the length of the step, of which slopes are off
+    is_flat: bool = False  # all of the step is as large
 
     @property
     def begins(self) -> int | None:
@@ -50,24 +60,46 @@ def candidates(one: Extreme, steps: Steps, values: Array) -> list[Found]:
 
     Parameters: values of the signal, a line for the rows of each step.
     """
-    found, allowed = list[Found](), EQUAL * float(np.abs(values).max(initial=0.0))
+    found, allowed = list[Found](), _allowed(values)
+    for sign, coefficients, near in _near(one, steps, values):
+        for step in near.tolist():
+            own = sign * coefficients[step]
+            rough = float(abs(own[-1]) / steps.length[step])
+            found += [place._replace(rough=rough) for place in _in_step(step, own, PLACES @ own, sign, allowed)]
+    least = max((one.value for one in found), default=0.0) - allowed
+    return sorted((one for one in found if one.value >= least), key=lambda one: one.share in (0.0, 1.0))
+
+
+def reaching(one: Extreme, steps: Steps, values: Array) -> Places:
+    """Steps that may reach the extreme."""
+    return np.unique(np.concatenate([NOWHERE, *(near for _, _, near in _near(one, steps, values))]))
+
+
+def _allowed(values: Array) -> float:
+    return EQUAL * float(np.abs(values).max(initial=0.0))
+
+
+def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[tuple[float, Array, Places]]:
+    """For each sign of what is asked for: the polynomials, and the steps that may reach their largest value."""
     coefficients = np.einsum("nki,ni->nk", steps.basis, values)
     for sign in {"maximum": (1.0,), "minimum": (-1.0,), "peak": (1.0, -1.0)}[one.kind]:
         upper = sign * coefficients @ PLACES.T
         # between samples a polynomial rises by less than an eighth of its second difference
         top = upper.max(axis=1) + np.abs(np.diff(upper, 2)).max(axis=1, initial=0.0) / 8
-        least = upper.max(initial=-np.inf) - allowed
-        near = np.flatnonzero(top >= least)
-        near = near[np.argsort(-upper[near].max(axis=1), kind="stable")][:MOST_EQUAL]
-        found += [_in_step(int(step), sign * coefficients[step], upper[step], sign) for step in near]
-    least = max((one.value for one in found), default=0.0) - allowed
-    return sorted((one for one in found if one.value >= least), key=lambda one: one.share in (0.0, 1.0))
+        near = np.flatnonzero(top >= upper.max(initial=-np.inf) - _allowed(values))
+        near = near[np.argsort(-upper[near].max(axis=1), kind="stable")]
+        # of a plateau its ends are among those that are looked at
+        yield (
+            sign,
+            coefficients,
+            np.unique(np.r_[near[:MOST_EQUAL], near.min(initial=len(steps) - 1), near.max(initial=0)]),
+        )
 
 
-def _in_step(step: int, coefficients: Array, samples: Array, sign: float) -> Found:
-    """The largest value of a polynomial, and where it is: at an end, or where its slope is zero."""
-    if np.ptp(samples) <= 1e-14 * np.abs(samples).max():
-        return Found(float(samples[0]), step, 0.5, sign)
+def _in_step(step: int, coefficients: Array, samples: Array, sign: float, allowed: float) -> list[Found]:
+    """The largest value of a polynomial, and where it is: at an end, where its slope is zero, or everywhere."""
+    if np.ptp(samples) <= allowed:
+        return [Found(float(samples[end]), step, float(-end), sign, is_flat=True) for end in (0, -1)]
     best = int(np.argmax(samples))
     share, slope = best / (len(samples) - 1), coefficients[1:] * np.arange(1, len(coefficients))
     bend = slope[1:] * np.arange(1, len(slope))
@@ -77,19 +109,24 @@ def _in_step(step: int, coefficients: Array, samples: Array, sign: float) -> Fou
         share = min(max(share - float(polyval(share, slope)) / curved, low), high) if curved else share
     value = float(polyval(share, coefficients))
     # at an end it still rises, or there is no better place inside
-    return (
-        Found(value, step, share, sign)
-        if value > samples[best]
-        else Found(float(samples[best]), step, best * WIDTH, sign)
-    )
+    is_inside = value > samples[best]
+    return [Found(value, step, share, sign) if is_inside else Found(float(samples[best]), step, best * WIDTH, sign)]
 
 
 def apart(primal: Primal, found: list[Found]) -> list[Found]:
-    """Without those that are another side of one extreme: on steps that follow each other smoothly."""
+    """Without those that are another side of one extreme: at one instant, or on steps that go on smoothly.
+
+    Of both sides of an instant that one stays whose polynomial is the smoother one.
+    """
     kept, kinds = list[Found](), primal.between[0]
-    for one in found:
-        near = (other for other in kept if abs(other.step - one.step) <= 1)
-        if all(other.step != one.step and kinds[max(other.step, one.step)] != SMOOTH for other in near):
+    for one in sorted(found, key=lambda one: (one.begins is not None, one.rough)):
+        near = [other for other in kept if abs(other.step - one.step) <= 1 and other.sign == one.sign]
+        if (one.is_flat and all(other.is_flat for other in near)) or all(
+            other.step != one.step
+            and kinds[max(other.step, one.step)] != SMOOTH
+            and (one.begins is None or other.begins != one.begins)
+            for other in near
+        ):
             kept.append(one)
     return kept
 
@@ -100,19 +137,36 @@ def value(one: Extreme, found: list[Found]) -> float:
 
 
 def kinks(primal: Primal, found: list[Found]) -> tuple[float, ...]:
-    """Instants of extremes at which knots meet [s], but for the ends of the run, which stay."""
-    there = {one.begins for one in found} - {0, len(primal.steps), None}
+    """Instants of extremes at which knots meet or move at an end of the run [s]."""
+    there = {one.begins for one in found}
     return tuple(time for time, place in primal.meets if place in there)
 
 
 def add_extreme(primal: Primal, one: Extreme, found: Found, into: Functional) -> None:
     """How an extreme changes: the signal at its instant, and that instant where it is that of an event."""
     steps, sign = primal.steps, 1.0 if one.kind == "minimum" else found.sign
-    weights = sign * steps.at(found.step, found.share)
-    add_signal(primal, one.signal, steps.rows[found.step], weights, into)
-    end = found.begins
-    if end is None or not 0 < end < len(steps) or primal.between[0][end] == SMOOTH:
-        return
-    slopes = steps.left_slope if found.share == 0.0 else steps.right_slope
-    rate = float(slopes[found.step] @ signal_at(primal, one.signal, steps.rows[found.step]))
-    add_shift(primal, end, sign * rate, into)
+    end, whole = found.begins, [(found.step, sign * steps.at(found.step, found.share))]
+    inside = end is None or not 0 < end < len(steps)
+    if not inside and primal.between[0][end] == SMOOTH:
+        whole = _of_bend(primal, one, int(end or 0), sign) or whole
+    for step, weights in whole:
+        add_signal(primal, one.signal, steps.rows[step], weights, into)
+    if not inside:
+        slopes = steps.left_slope if found.share == 0.0 else steps.right_slope
+        rate = float(slopes[found.step] @ signal_at(primal, one.signal, steps.rows[found.step]))
+        add_shift(primal, int(end or 0), sign * rate, into)
+
+
+def _of_bend(primal: Primal, one: Extreme, end: int, sign: float) -> list[tuple[int, Array]]:
+    """Weights of the rows of both steps beside an instant without an event; none where the signal does not bend there.
+
+    Both sides stay equal, which says how the instant moves.
+    """
+    steps, (before, behind) = primal.steps, (signal_at(primal, one.signal, primal.steps.rows[end - k]) for k in (1, 0))
+    rates = float(steps.right_slope[end - 1] @ before), float(steps.left_slope[end] @ behind)
+    values = float(steps.right[end - 1] @ before), float(steps.left[end] @ behind)
+    bend = rates[0] - rates[1]
+    if abs(bend) <= BENT * max(map(abs, rates)) or abs(values[0] - values[1]) > JUMP * max(map(abs, values)):
+        return []
+    shares = -rates[1] / bend, rates[0] / bend
+    return [(end - 1, sign * shares[0] * steps.right[end - 1]), (end, sign * shares[1] * steps.left[end])]

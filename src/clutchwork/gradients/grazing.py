@@ -33,7 +33,8 @@ PIECES, TOUCHED = (6, 9), 1e-5
 CROWD, CROWDED = 6, 1e-4
 # kinds of guards that decide about contacts, by their numbers in the core: slips, capacities, sets, spares, loads
 DECIDED = (1, 2, 3, 4, 5)
-IMPACT = next(number for number, (name, _) in CAUSES.items() if name == "impact")
+BY_NAME = {name: number for number, (name, _) in CAUSES.items()}
+IMPACT, DRIVEN = BY_NAME["impact"], (BY_NAME["input"], BY_NAME["other event"])
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
 
@@ -55,50 +56,76 @@ def decided(grazes: Array, events: Array) -> Array:
     return found
 
 
-def refused(system: System, grazes: Array, until: float, sizes: float) -> Iterator[str]:
-    """Why a derivative of what is looked at up to a time does not exist.
+def refused(system: System, grazes: Array, sizes: float) -> Iterator[tuple[float, str]]:
+    """Why derivatives from some instants [s] on may not exist.
 
     Parameters: sizes, the largest size of a number, by which derivatives of instants become times.
     """
-    for graze in grazes[grazes[:, TIME] <= until]:
+    for graze in grazes:
         time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
         if graze[INDEX] < REFUSED:
             measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {REFUSED:g} 1/s"
             remedy = "move a number so that it passes clearly, or not at all"
-            yield f"{name} at {time:.9g} s grazes what it is watched for: {measure}; {remedy}"
+            yield time, f"{name} at {time:.9g} s grazes what it is watched for: {measure}; {remedy}"
         if graze[DIFFERENCE] * sizes > APART:
-            yield f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"
+            why = f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"
+            yield time, why
 
 
-def crowded(events: Array, contacts: Sequence[str], until: float) -> Iterator[str]:
+def crowded(events: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
     """Contacts that lock and let go again and again within an instant, which no derivative survives."""
     changed = events[(events[:, AT["from"]] == LOCKED) != (events[:, AT["to"]] == LOCKED)]
     for number, name in enumerate(contacts):
-        times = np.sort(changed[(changed[:, AT["contact"]] == number) & (changed[:, AT["time"]] <= until), AT["time"]])
+        times = np.sort(changed[changed[:, AT["contact"]] == number, AT["time"]])
         close = np.flatnonzero(times[CROWD - 1 :] - times[: max(0, len(times) - CROWD + 1)] < CROWDED)
         if len(close):
-            why = f"locks and lets go {CROWD} times within {CROWDED:g} s at {times[close[0]]:.9g} s"
-            yield f"{name} {why}; give the parts beside it damping, or its law more static friction"
+            first, last = float(times[close[0]]), float(times[close[0] + CROWD - 1])
+            why = f"locks and lets go {CROWD} times within {CROWDED:g} s at {first:.9g} s"
+            yield last, f"{name} {why}; give the parts beside it damping, or its law more static friction"
 
 
-def struck_together(system: System, events: Array, contacts: Sequence[str], until: float) -> Iterator[str]:
+def struck_together(system: System, events: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
     """Stops that are struck at one instant, of which one bounces: the order of the blows decides.
 
     Those on shafts that share no motion do not feel each other.
     """
-    hit = events[(events[:, AT["cause"]] == IMPACT) & (events[:, AT["time"]] <= until)]
+    hit = events[events[:, AT["cause"]] == IMPACT]
     parts = moving_together(system)[hit[:, AT["contact"]].astype(int)]
     for part in np.unique(parts):
         yield from _struck(hit[parts == part], contacts)
 
 
-def _struck(hit: Array, contacts: Sequence[str]) -> Iterator[str]:
+def _struck(hit: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
     times, bounces = hit[:, AT["time"]], hit[:, AT["to"]] != LOCKED
     close = (np.diff(times) <= ONE_INSTANT * 1e-3) & (np.diff(hit[:, AT["contact"]]) != 0.0)
     for place in np.flatnonzero(close & (bounces[1:] | bounces[:-1])):
         names = " and ".join(contacts[int(number)] for number in hit[place : place + 2, AT["contact"]])
-        yield f"{names} are struck at one instant, {times[place]:.9g} s, and bounce; give them different gaps"
+        time = float(times[place])
+        yield time, f"{names} are struck at one instant, {time:.9g} s, and bounce; give them different gaps"
         return
+
+
+def decided_at_knots(
+    events: Array, grazes: Array, knots: Array, contacts: Sequence[str]
+) -> Iterator[tuple[float, str]]:
+    """Contacts that lock or let go where a signal bends: what comes first, the knot or the event, is open.
+
+    Parameters: knots, instants of all [s]. Where a signal jumps the knot is what makes them do so.
+    """
+    changed = events[(events[:, AT["from"]] == LOCKED) != (events[:, AT["to"]] == LOCKED)]
+    jumps, by_knot = grazes[grazes[:, KIND] < 0, TIME], np.isin(changed[:, AT["cause"]], DRIVEN)
+    near = _near(changed[:, AT["time"]], knots) & ~(by_knot & _near(changed[:, AT["time"]], jumps))
+    for event in changed[near]:
+        time = float(event[AT["time"]])
+        what = "locks" if event[AT["to"]] == LOCKED else "breaks away"
+        yield time, f"{contacts[int(event[AT['contact']])]} {what} at {time:.9g} s, where a signal bends; move the knot"
+
+
+def _near(times: Array, others: Array) -> NDArray[np.bool_]:
+    """Which instants are among others."""
+    apart = np.abs(times[:, None] - others).min(axis=1, initial=np.inf)
+    found: NDArray[np.bool_] = apart <= ONE_INSTANT * (1.0 + np.abs(times))
+    return found
 
 
 def moving_together(system: System) -> NDArray[np.int64]:

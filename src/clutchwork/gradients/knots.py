@@ -36,11 +36,26 @@ def knots(chart: Chart, words: Array, slopes: Slopes, begin: float, end: float) 
     for number, (segment, count) in enumerate(_segments(system)):
         period, by_period = float(words[at_period + number]), _of(slopes, at_period + number)
         for word in range(first + segment, first + segment + count):
-            repeats = int(min(MOST_REPEATS, max(0.0, (end - words[word]) // period))) if period > 0.0 else 0
-            cycles = np.arange(repeats + 1.0)
+            cycles = np.arange(_repeats(float(words[word]), period, end) + 1.0)
             times.append(float(words[word]) + cycles * period)
             moved.append(_of(slopes, word) + cycles[:, None] * by_period)
     return _met(np.concatenate(times), np.concatenate(moved), begin, end)
+
+
+def times_of(chart: Chart, words: Array, end: float) -> Array:
+    """Instants of the knots of all signals up to the end of a run [s]."""
+    layout, found = chart.assembled.structure.layout, [np.zeros(0)]
+    first, at_period = layout.starts["segment_time"] // 8, layout.starts["input_period"] // 8
+    for number, (segment, count) in enumerate(_segments(chart.assembled.system)):
+        begins, period = words[first + segment : first + segment + count], float(words[at_period + number])
+        cycles = np.arange(_repeats(float(begins.min(initial=end)), period, end) + 1.0)
+        found.append((begins + cycles[:, None] * period).ravel())
+    return np.concatenate(found)
+
+
+def _repeats(begin: float, period: float, end: float) -> int:
+    """How often a piece that begins at an instant comes again."""
+    return int(min(MOST_REPEATS, max(0.0, (end - begin) // period))) if period > 0.0 else 0
 
 
 def _met(times: Array, moved: Array, begin: float, end: float) -> Knots:

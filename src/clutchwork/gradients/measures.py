@@ -31,6 +31,7 @@ class Measure(NamedTuple):
     at: float | None = None  # s, an instant that is asked for
     kinks: tuple[float, ...] = ()  # s, where knots meet that it depends on
     size: float = 0.0  # of the signal whose extreme it is
+    is_least: bool = False  # a minimum, which of equal ones is the one that falls most
 
 
 class Asked(NamedTuple):
@@ -41,12 +42,8 @@ class Asked(NamedTuple):
     begin: float  # s
 
 
-def measures(primal: Primal, outputs: Mapping[str, Output], asked: Asked) -> list[Measure]:
-    """All of them, in order."""
-    return [measure for one in outputs.values() for measure in _measures(primal, one, asked)]
-
-
-def _measures(primal: Primal, one: Output, asked: Asked) -> Iterator[Measure]:
+def measures(primal: Primal, one: Output, asked: Asked) -> Iterator[Measure]:
+    """All of an output, in order."""
     match one:
         case AtEnd(signal):
             yield _at(primal, signal, primal.t_end)
@@ -111,6 +108,7 @@ def _extreme(primal: Primal, one: Extreme) -> Measure:
         when=when,
         kinks=extremes.kinks(primal, found),
         size=float(np.abs(values).max(initial=0.0)),
+        is_least=one.kind == "minimum",
     )
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -14,6 +14,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE
 from clutchwork.gradients import extremes
 from clutchwork.gradients.measures import number_of
+from clutchwork.gradients.refined import Sharing, refined
 from clutchwork.gradients.steps import Steps
 from clutchwork.sweeps.batch import Wanted
 from clutchwork.sweeps.columns import all_needed, moved
@@ -46,6 +47,7 @@ class Plain:
     wanted: Wanted
     options: Mapping[str, float]
     threads: int
+    sharing: Sharing | None = None  # contacts whose torques may bend inside of steps
 
     def runs(self, systems: Sequence[bytes], columns: Sequence[int], *, grid: bool, steps: bool) -> list[Run]:
         """One run for each of the bytes; numbers of a row that are kept, at the instants and in the steps."""
@@ -58,18 +60,23 @@ class Plain:
         events = _events(first[3], len(systems))
         return [Run(int(status[n]), _detail(detail[n]), rows[n], *parts[n], events[n]) for n in range(len(systems))]
 
+    def rows_at(self, system: bytes, columns: Sequence[int], times: Array) -> Array:
+        """Numbers of the rows of one run at instants."""
+        found: Array = self._call([system], columns, 0, times)[2][0]
+        return found
+
     def with_jerks(self, system: bytes, forms: Mapping[str, Form]) -> tuple[Run, dict[str, float]]:
         """One run in steps, and the squared jerks that are asked for, by the signals that they are made of."""
-        asked = {one.signal: one for one in self.wanted.outputs.values() if isinstance(one, SquaredJerk)}
+        asked = {one.signal for one in self.wanted.outputs.values() if isinstance(one, SquaredJerk)}
         columns, own = over_columns([{name: forms[name] for name in asked}])
         run = self.runs([system], columns, grid=False, steps=True)[0]
         steps = Steps.of_parts(run.times)
-        return run, {name: in_steps(one, run, steps, own[0]) for name, one in asked.items()}
+        return run, {name: _jerk(run, steps, own[0][name]) for name in asked}
 
-    def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int) -> Any:
+    def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int, instants: Array | None = None) -> Any:
         count = len(systems)
         choice = np.arange(count, dtype=np.int64).reshape(-1, 1)
-        times = np.zeros(0) if parts else self.wanted.grid
+        times = np.zeros(0) if parts else self.wanted.grid if instants is None else instants
         threads = min(self.threads, max(1, count // 2))
         options, kept = list(self.options.items()), np.array(columns, dtype=np.int64)
         found = core().sweep(
@@ -93,20 +100,63 @@ class Plain:
 
     def values(self, systems: Sequence[bytes], forms: Sequence[Mapping[str, Form]]) -> Array:
         """Outputs of each of the bytes, with the forms of its signals; NaN for what there is not."""
-        columns, own = over_columns(forms)
-        runs = self.runs(systems, columns, grid=self.on_grid, steps=self.in_steps)
-        return np.array([self._of(run, some) for run, some in zip(runs, own, strict=True)])
+        modes = self.sharing.columns if self.sharing is not None and self.wanted.signals(Extreme) else ()
+        columns, own = over_columns(forms, modes)
+        runs, places = (
+            self.runs(systems, columns, grid=self.on_grid, steps=self.in_steps),
+            np.searchsorted(columns, modes),
+        )
+        return np.array(
+            [
+                self._of(run, some, places.tolist(), partial(self.rows_at, system, columns))
+                for system, run, some in zip(systems, runs, own, strict=True)
+            ]
+        )
 
-    def _of(self, run: Run, forms: Mapping[str, Form]) -> list[float]:
+    def refined(
+        self,
+        steps: Steps,
+        rows: Array,
+        forms: Mapping[str, Form],
+        modes: Sequence[int],
+        rows_at: Callable[[Array], Array],
+    ) -> tuple[Steps, Array]:
+        """Steps and their rows, split where signals of extremes bend inside of them.
+
+        Parameters: modes, of the contacts, their places in a row; rows_at, rows of the same run at any instants.
+        """
+        sharing, ones = self.sharing, [one for one in self.wanted.outputs.values() if isinstance(one, Extreme)]
+        if not ones or sharing is None or not len(steps):
+            return steps, rows
+
+        def on(made: Steps) -> tuple[Steps, Array]:
+            grid = np.unique(made.times)
+            return made.on(grid), rows_at(grid)
+
+        def values(made: Steps) -> tuple[list[Array], NDArray[np.bool_]]:
+            placed, known = (steps, rows) if made is steps else on(made)
+            found = [np.asarray(forms[one.signal](known), dtype=float)[placed.rows] for one in ones]
+            # beside its middle no event is near
+            return found, sharing.within(known[placed.rows[:, 2]][:, modes])
+
+        split = refined(steps, ones, values)
+        return (steps, rows) if split is None else on(split)
+
+    def _of(
+        self, run: Run, forms: Mapping[str, Form], modes: Sequence[int], rows_at: Callable[[Array], Array]
+    ) -> list[float]:
         found = list[float]()
         steps = Steps.of_parts(run.times)
         reached = run.status == DONE
+        split = self.refined(steps.long(), run.rows, forms, modes, rows_at) if reached else (steps, run.rows)
         for one in self.wanted.outputs.values():
             if isinstance(one, When):
                 number = number_of(run.events, one, self.wanted.contacts)
                 found.append(float(run.events[number, 0]) if number >= 0 else np.nan)
-            elif isinstance(one, IN_STEPS):
-                found.append(in_steps(one, run, steps, forms) if reached else np.nan)
+            elif isinstance(one, Extreme):
+                found.append(_extreme(one, *split, forms) if reached else np.nan)
+            elif isinstance(one, SquaredJerk):
+                found.append(_jerk(run, steps, forms[one.signal]) if reached else np.nan)
             else:
                 found += self._on_grid(one, run.grid, forms, reached)
         return found
@@ -122,19 +172,22 @@ class Plain:
         return [float(values[-1] - values[0] if isinstance(one, Integral) else values[-1])]
 
 
-def over_columns(forms: Sequence[Mapping[str, Form]]) -> tuple[list[int], list[dict[str, Form]]]:
-    """Numbers of a row that signals need, and their forms over these alone."""
-    columns = all_needed(form for some in forms for form in some.values())
+def over_columns(
+    forms: Sequence[Mapping[str, Form]], more: Sequence[int] = ()
+) -> tuple[list[int], list[dict[str, Form]]]:
+    """Numbers of a row that signals need, and more, and their forms over these alone."""
+    columns = sorted({*all_needed(form for some in forms for form in some.values()), *more})
     places = {column: place for place, column in enumerate(columns)}
     return columns, [{name: moved(form, places) for name, form in some.items()} for some in forms]
 
 
-def in_steps(one: Extreme | SquaredJerk, run: Run, steps: Steps, forms: Mapping[str, Form]) -> float:
-    """An output that is looked for within the steps of a run."""
-    values = np.asarray(forms[one.signal](run.rows), dtype=float)
-    if isinstance(one, SquaredJerk):
-        return squared_jerk(run.times, values, steps.rows[:, 0])
-    return extremes.value(one, extremes.candidates(one, steps, values[steps.rows]))
+def _jerk(run: Run, steps: Steps, form: Form) -> float:
+    return squared_jerk(run.times, np.asarray(form(run.rows), dtype=float), steps.rows[:, 0])
+
+
+def _extreme(one: Extreme, steps: Steps, rows: Array, forms: Mapping[str, Form]) -> float:
+    values = np.asarray(forms[one.signal](rows), dtype=float)[steps.rows]
+    return extremes.value(one, extremes.candidates(one, steps, values))
 
 
 def _nothing(columns: Sequence[int]) -> tuple[Array, Array]:

@@ -15,27 +15,33 @@ if TYPE_CHECKING:
     from clutchwork.gradients.chart import Chart, Slopes
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 # numbers of a piece of a signal
 PIECE = 12
 
 
-def at_rest(chart: Chart, words: Array, slopes: Slopes, names: Sequence[str], end: float) -> Iterator[str]:
-    """What is said of pieces of loads that are zero, and numbers that would make them more."""
+def unpressed(
+    chart: Chart, words: Array, slopes: Slopes, names: Sequence[str], begin: float, end: float
+) -> Iterator[tuple[float, str, Mask]]:
+    """Pieces of loads that are zero: when they begin [s], what is said of them, and numbers that would make them more.
+
+    Parameters: begin and end, of the run [s].
+    """
     system, starts = chart.assembled.system, chart.assembled.structure.layout.starts
     time, first = starts["segment_time"] // 8, starts["segment_coef"] // 8
     for number in pressing(system):
-        begin, count = (int(system.arrays[f"input_{what}"][number]) for what in ("first", "count"))
-        pieces = words[first + PIECE * begin : first + PIECE * (begin + count)].reshape(count, PIECE)
-        bounds = np.r_[words[time + begin : time + begin + count], np.inf]
+        start, count = (int(system.arrays[f"input_{what}"][number]) for what in ("first", "count"))
+        pieces = words[first + PIECE * start : first + PIECE * (start + count)].reshape(count, PIECE)
+        bounds = np.r_[words[time + start : time + start + count], np.inf]
         for piece in np.flatnonzero(~pieces[:, :4].any(axis=1) & ~pieces[:, [4, 8]].any(axis=1)).tolist():
-            coefficients = first + PIECE * (begin + piece) + np.arange(4)
-            moved = slopes.matrix[np.isin(slopes.places, coefficients)].any(axis=0)
-            if moved.any() and bounds[piece] < end and bounds[piece + 1] > 0.0:
+            coefficients = first + PIECE * (start + piece) + np.arange(4)
+            moved: Mask = np.any(slopes.matrix[np.isin(slopes.places, coefficients)] != 0.0, axis=0)
+            if moved.any() and bounds[piece] < end and bounds[piece + 1] > begin:
+                since, until = max(float(bounds[piece]), begin), min(float(bounds[piece + 1]), end)
                 free = ", ".join(names[column] for column in np.flatnonzero(moved).tolist())
-                until = f"{min(float(bounds[piece + 1]), end):g} s"
-                what = f"{system.inputs[number].name} is 0 from {max(bounds[piece], 0.0):g} to {until}"
-                yield f"{what}, where derivatives by {free} are those of an open contact; give a little more than 0"
+                what = f"{system.inputs[number].name} is 0 from {since:g} to {until:g} s"
+                yield since, f"{what}, where a little more of {free} presses and a little less does not", moved
 
 
 def pressing(system: System) -> Iterator[int]:

@@ -11,7 +11,7 @@ from clutchwork.run.control import Control
 from clutchwork.run.simulation import Job
 
 
-def gradient_of(run: Trajectory, of: Any, by: Any) -> Gradient:
+def gradient_of(run: Trajectory, of: Any, by: Any, side: Any) -> Gradient:
     """Derivatives of what a run gave by numbers of its driveline."""
     job = getattr(run.repeat, "__self__", None)
     if not isinstance(job, Job) or job.start is not None or not isinstance(job.course, Control):
@@ -22,4 +22,4 @@ def gradient_of(run: Trajectory, of: Any, by: Any) -> Gradient:
     if not run.finished:
         raise NoGradient([f"the run did not reach its end: {run.message}"])
     plain = run.options.changed({"dt": None, "times": None})
-    return made(run.system, of, by, run.t_end, plain, 1).gradient()
+    return made(run.system, of, by, run.t_end, plain, 1, side).gradient()

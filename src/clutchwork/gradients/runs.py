@@ -17,8 +17,8 @@ from clutchwork.gradients.chart import Slopes
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
 from clutchwork.gradients.plain import Plain
-from clutchwork.gradients.pressing import at_rest
 from clutchwork.gradients.primal import Knots, Primal
+from clutchwork.gradients.refined import Sharing
 from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import Steps
 from clutchwork.gradients.task import Task
@@ -87,7 +87,7 @@ class Runs:
     @cached_property
     def plain(self) -> Plain:
         """Runs without derivatives."""
-        return Plain(self.wanted, self._options, self.task.threads)
+        return Plain(self.wanted, self._options, self.task.threads, Sharing.of(self.task.system))
 
     # ------------------------------------------------------------------------------------------------- with derivatives
 
@@ -101,8 +101,7 @@ class Runs:
             run, jerks = self.plain.with_jerks(system, self.signals.at(x))
             self._refuse_stopped(run.status, run.detail)
             steps, events = Steps.of_parts(run.times).long().inside(), run.events[:, 0]
-        notes = tuple(at_rest(chart, words, slopes, [one.name for one in self.task.parameters], self.wanted.t_end))
-        return self._with_grid(Point(x, system, slopes, moving, steps, events, jerks, np.zeros(0), notes))
+        return self._with_grid(Point(x, system, slopes, moving, steps, events, jerks, np.zeros(0), ()))
 
     def forward(self, point: Point) -> Run:
         """A run with derivatives by all numbers."""

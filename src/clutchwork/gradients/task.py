@@ -30,6 +30,7 @@ class Task:
     options: Options
     threads: int
     labels: Sequence[str]  # names of all values
+    side: str | None = None  # left or right, where derivatives from both sides differ
 
 
 class Found(NamedTuple):
@@ -38,3 +39,4 @@ class Found(NamedTuple):
     values: Array
     matrix: Array
     notes: tuple[str, ...] = ()
+    problems: tuple[str, ...] = ()  # why derivatives are missing

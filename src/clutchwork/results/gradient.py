@@ -25,7 +25,7 @@ MOST_SHOWN = 6
 
 
 class NoGradient(ClutchworkError, ValueError):  # noqa: N818, it is what there is
-    """A derivative that does not exist: all reasons at once in `problems`, each with time, element and remedy."""
+    """No derivative exists: all reasons at once in `problems`, each with time, element and remedy."""
 
     def __init__(self, problems: Sequence[str]) -> None:
         self.problems = tuple(problems)
@@ -45,7 +45,8 @@ class Gradient:
 
     `g["lock(c1)", "c1.gain"]` is one of them, `g["lock(c1)"]` all of one value, `g.matrix` all, a line for each value
     in `g.of` and a column for each number in `g.by`. `g.values` holds the values themselves, `g.x` the numbers;
-    `g.notes` says where the gradient is only just there, such as of a clutch that nearly grazes.
+    `g.notes` says where the gradient is only just there, such as of a clutch that nearly grazes. A derivative that does
+    not exist is NaN, and `g.problems` says why.
     """
 
     of: tuple[str, ...]
@@ -56,6 +57,7 @@ class Gradient:
     of_units: tuple[str, ...] = field(repr=False)
     by_units: tuple[str, ...] = field(repr=False)
     notes: tuple[str, ...] = ()
+    problems: tuple[str, ...] = ()  # why derivatives are missing
 
     def __getitem__(self, key: str | tuple[str, str]) -> Any:
         """A derivative by the names of value and number, or all derivatives of a value; UnknownName, a KeyError."""
@@ -83,8 +85,12 @@ class Gradient:
     def __repr__(self) -> str:
         """A table to read, turned where there are few values and many numbers."""
         head, lines = self._table()
-        said = [columns([head, *lines], right=set(range(1, len(head)))), *(f"note: {note}" for note in self.notes)]
+        said = [columns([head, *lines], right=set(range(1, len(head)))), *self._said()]
         return "\n".join(said)
+
+    def _said(self) -> Iterator[str]:
+        yield from (f"note: {note}" for note in self.notes)
+        yield from (f"NaN: {problem}" for problem in self.problems)
 
     def _table(self) -> tuple[list[str], list[list[str]]]:
         """Head and lines: a line for each number, a column for each value."""
@@ -107,7 +113,7 @@ class Gradient:
 
         head, lines = self._table()
         return html.page(
-            html.table(head, lines, right=set(range(2, len(head)))), *(html.paragraph(note) for note in self.notes)
+            html.table(head, lines, right=set(range(2, len(head)))), *(html.paragraph(said) for said in self._said())
         )
 
 

@@ -212,20 +212,21 @@ class Trajectory(Exports):
         return self.losses(start, end, power=power).sankey(path)
 
     @explained("run.gradient", of="['load.speed', cw.lock('c1')]", by="['c1.gain', 'engine.inertia']")
-    def gradient(self, of: Any, by: Sequence[str] | str) -> Gradient:
+    def gradient(self, of: Any, by: Sequence[str] | str, *, side: str | None = None) -> Gradient:
         """Derivatives of what the run gave by numbers of its driveline: how much later it locks for 1 % more inertia.
 
         Parameters: of, values as `outputs` of `cw.sweep`: "load.speed", at the end, `cw.at`, `cw.lock`, `cw.maximum`,
         `cw.integral`, `cw.squared_jerk` ..., one or several; by, names of numbers as in `System.changed`: "c1.gain",
-        "engine.speed", at the start, of a table "c1.pressure.values" or "c1.pressure.times[3]".
+        "engine.speed", at the start, of a table "c1.pressure.values" or "c1.pressure.times[3]"; side, "left" or
+        "right", which derivatives are given where those from both sides differ.
 
-        Events move with the numbers, and so do the derivatives jump at them, which is exact. `NoGradient`, a
-        ValueError, says where a derivative does not exist, and why. `cw.differentiable` is for many points.
-        docs/guide/gradients.md
+        Events move with the numbers, and so do the derivatives jump at them, which is exact. A derivative that does
+        not exist is NaN, and `problems` of what is found says why; `NoGradient`, a ValueError, is raised where there is
+        none at all. `cw.differentiable` is for many points. docs/guide/gradients.md
         """
         from clutchwork.base.above import above
 
-        found: Gradient = above("run.gradient", self, of, by)
+        found: Gradient = above("run.gradient", self, of, by, side)
         return found
 
     @explained("run.page", path="'shift.html'", drag="['F1.pressure']", sliders="['c1.gain']", show="['*.speed']")

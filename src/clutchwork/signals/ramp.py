@@ -17,7 +17,7 @@ class Ramp(Signal):
     def segments(self) -> tuple[Segment, ...]:
         """Constant, linear, constant."""
         return (
-            Segment(min(0.0, self.start - 1.0), self.offset),
+            Segment(min(0.0, self.start) - 1.0, self.offset),
             Segment(self.start, self.offset, self.height / self.duration),
             Segment(self.start + self.duration, self.offset + self.height),
         )

@@ -31,4 +31,4 @@ class Sine(Signal):
             phase=self.phase,
             decay=self.damping,
         )
-        return (sine,) if self.start == 0.0 else (Segment(min(0.0, self.start - 1.0), self.offset), sine)
+        return (sine,) if self.start == 0.0 else (Segment(min(0.0, self.start) - 1.0, self.offset), sine)

@@ -15,4 +15,4 @@ class Step(Signal):
 
     def segments(self) -> tuple[Segment, ...]:
         """A constant piece before the jump, one after it."""
-        return (Segment(min(0.0, self.start - 1.0), self.offset), Segment(self.start, self.offset + self.height))
+        return (Segment(min(0.0, self.start) - 1.0, self.offset), Segment(self.start, self.offset + self.height))

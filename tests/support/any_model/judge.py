@@ -13,7 +13,13 @@ from support.any_model.seen import Fault
 from support.any_model.values import Plain
 
 # how a run may end early where there is a cause, by what must be in the model
-CAUSES = {"jammed": ("prescribed",), "unbalanced": ("prescribed",), "out_of_table": ("",), "fault": ("",), "chatter": ("",)}
+CAUSES = {
+    "jammed": ("prescribed",),
+    "unbalanced": ("prescribed",),
+    "out_of_table": ("",),
+    "fault": ("",),
+    "chatter": ("",),
+}
 
 
 def faults(made: Plain, seed: int, depth: int = 2, only: str = "") -> list[Fault]:

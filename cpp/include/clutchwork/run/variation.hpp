@@ -7,7 +7,7 @@
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/step_calls.hpp>
 #include <clutchwork/workspace.hpp>
-/// Steps of a run with derivatives: a plain step, and the derivatives along it. docs/theory/gradients.md (17)
+/// Steps of a run with derivatives: a plain step, and the derivatives along it. docs/theory/gradients.md (20)
 namespace clutchwork {
 
 template <class Form>
@@ -296,7 +296,7 @@ class Variation {
   double step1(int i) const { return const_cast<Step<Plain>&>(step).y1()[i]; }
 
   /// Error of the derivatives in units of the tolerance, each direction of the largest size that it has had.
-  /// docs/theory/gradients.md (18)
+  /// docs/theory/gradients.md (21)
   double error_of(const T* missed, const T* end) {
     constexpr int seen = T::seen;
     double sum[seen] = {}, worst = 0;

@@ -1,0 +1,61 @@
+"""Contacts that begin at rest: a start value beside it slips one way or the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.gradients.chart import Chart, Slopes
+from clutchwork.model.parts import is_stop
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Places = NDArray[np.intp]
+
+# a slip that is zero, of the largest speed that it is made of
+ZERO = 1e-10
+# numbers of a piece of a signal
+PIECE = 12
+
+
+def at_rest(chart: Chart, words: Array, slopes: Slopes) -> Iterator[tuple[str, Mask]]:
+    """What is said of contacts without slip at the start, and numbers that would make one."""
+    system, layout = chart.assembled.system, chart.assembled.structure.layout
+    ends = system.arrays["contact_rate_end"]
+    for number, contact in enumerate(system.contacts):
+        if is_stop(contact):
+            continue
+        first, last = int(ends[number - 1]) if number else 0, int(ends[number])
+        factors = layout.starts["contact_rate_value"] // 8 + np.arange(first, last)
+        speeds = layout.starts["initial_speed"] // 8 + system.arrays["contact_rate_column"][first:last]
+        parts = words[factors] * words[speeds]
+        driven = _driven(chart, number)
+        if not len(driven) and abs(parts.sum()) > ZERO * (1.0 + np.abs(parts).max(initial=0.0)):
+            continue
+        moved = words[factors] @ _of(slopes, speeds) + words[speeds] @ _of(slopes, factors)
+        # how a prescribed speed begins is not looked at: whatever moves it may move the slip
+        numbers: Mask = (np.abs(moved) > 0.0) | _of(slopes, driven).any(axis=0)
+        if numbers.any():
+            yield f"{contact.name} begins at rest, and slips one way or the other for another start value", numbers
+
+
+def _driven(chart: Chart, number: int) -> Places:
+    """Words of prescribed speeds that are in the slip of a contact."""
+    system, layout = chart.assembled.system, chart.assembled.structure.layout
+    shares, found = system.arrays["contact_rate_prescribed"], [np.zeros(0, dtype=np.intp)]
+    for signal in system.arrays["prescribed_input"][np.flatnonzero(shares[number])] if shares.size else ():
+        first, count = (int(system.arrays[f"input_{what}"][signal]) for what in ("first", "count"))
+        begin = layout.starts["segment_coef"] // 8 + PIECE * first
+        found.append(np.arange(begin, begin + PIECE * count))
+    return np.concatenate(found)
+
+
+def _of(slopes: Slopes, words: Places) -> Array:
+    """Derivatives of words: a line for each."""
+    made = np.zeros((len(words), slopes.matrix.shape[1]))
+    at = np.searchsorted(slopes.places, words)
+    there = np.isin(words, slopes.places)
+    made[there] = slopes.matrix[at[there]]
+    return made

@@ -1,0 +1,140 @@
+"""Where a derivative may not exist: which values and numbers are in doubt at a point, and why.
+
+What is in doubt is settled by derivatives beside the point, so a doubt too many costs runs, one too few is a wrong
+derivative. docs/theory/gradients.md (17)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.base.classes import dataclass
+from clutchwork.gradients.beginning import at_rest
+from clutchwork.gradients.grazing import crowded, decided, decided_at_knots, refused, struck_together
+from clutchwork.gradients.knots import times_of
+from clutchwork.gradients.lines import Line
+from clutchwork.gradients.pressing import unpressed
+from clutchwork.gradients.primal import SAME
+from clutchwork.gradients.runs import Point, Run, Runs
+
+Mask = NDArray[np.bool_]
+
+
+class Doubt(NamedTuple):
+    """A reason, and the values and the numbers that it concerns."""
+
+    why: str
+    lines: Mask
+    numbers: Mask
+    # what a number does on one side is the same wherever the others are on that side
+    one_way: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Doubts:
+    """All that is in doubt in a run."""
+
+    runs: Runs
+    point: Point
+    run: Run
+    lines: Sequence[Line]
+    sizes: NDArray[np.float64]  # of the numbers
+
+    def found(self) -> Iterator[Doubt]:
+        """One by one, of values that exist."""
+        if not self.lines or not len(self.sizes):
+            return
+        yield from self._asked_at_events()
+        yield from self._asked_at_knots()
+        yield from self._kinks()
+        yield from self._decisions()
+        yield from self._start()
+
+    # ------------------------------------------------------------------------------------------------------ what moves
+
+    @property
+    def _all(self) -> Mask:
+        return np.ones(len(self.sizes), dtype=bool)
+
+    def _moving_event(self, number: int) -> Mask:
+        """Numbers that move an event."""
+        moves = self.run.primal.functional()
+        moves.add_event(number, 1.0)
+        found: Mask = self.run.slope(moves) != 0.0
+        return found
+
+    def _moving_events(self, time: float) -> Mask:
+        """Numbers that move any event at an instant [s]."""
+        there = np.flatnonzero(self._is_at(time))
+        found: Mask = np.logical_or.reduce([~self._all, *(self._moving_event(int(number)) for number in there)])
+        return found
+
+    def _is_at(self, time: float) -> Mask:
+        found: Mask = np.abs(self.run.primal.events[:, 0] - time) <= SAME * (1.0 + abs(time))
+        return found
+
+    def _moving_knots(self) -> Mask:
+        """Numbers that move any knot of a signal."""
+        layout, slopes = self.runs.words.at(self.point.x)[0].assembled.structure.layout, self.point.slopes
+        arrays, places = self.runs.task.system.arrays, slopes.places
+        ends = [(layout.starts[name] // 8, arrays[name].size) for name in ("segment_time", "input_period")]
+        inside = np.logical_or.reduce([(first <= places) & (places < first + count) for first, count in ends])
+        found: Mask = np.any(slopes.matrix[inside] != 0.0, axis=0)
+        return found
+
+    def _up_to(self, time: float) -> Mask:
+        """Values that look at an instant [s] or behind it."""
+        return np.array([line.until >= time for line in self.lines])
+
+    def _only(self, number: int) -> Mask:
+        found: Mask = np.arange(len(self.lines)) == number
+        return found
+
+    # ---------------------------------------------------------------------------------------------------------- doubts
+
+    def _asked_at_events(self) -> Iterator[Doubt]:
+        for number, line in enumerate(self.lines):
+            if line.at is not None and np.any(self._is_at(line.at)):
+                why = f"{line.name} is asked for at the instant of an event, {line.at:.9g} s, which moves"
+                yield Doubt(f"{why}; ask before or behind it", self._only(number), self._moving_events(line.at))
+
+    def _asked_at_knots(self) -> Iterator[Doubt]:
+        for number, line in enumerate(self.lines):
+            if line.at is not None and self.run.primal.bends_at(line.columns, np.array([line.at]))[0]:
+                why = f"{line.name} is asked for at a knot that moves, {line.at:.9g} s; ask before or behind it"
+                yield Doubt(why, self._only(number), self._moving_knots())
+
+    def _kinks(self) -> Iterator[Doubt]:
+        for number, line in enumerate(self.lines):
+            for time in line.kinks:
+                what = (
+                    f"{line.name} has a kink at {time:.9g} s, where knots meet or the run begins or ends; move a knot"
+                )
+                yield Doubt(what, self._only(number), self._moving_knots())
+
+    def _decisions(self) -> Iterator[Doubt]:
+        primal, system, contacts = self.run.primal, self.runs.task.system, self.runs.wanted.contacts
+        grazes = decided(primal.grazes, primal.events)
+        for time, why in refused(system, grazes, float(self.sizes.max())):
+            yield Doubt(why, self._up_to(time), self._all)
+        for time, why in crowded(primal.events, contacts):
+            yield Doubt(why, self._up_to(time), self._all)
+        for time, why in struck_together(system, primal.events, contacts):
+            yield Doubt(why, self._up_to(time), self._all)
+        knots = times_of(*self.runs.words.at(self.point.x), primal.t_end)
+        behind = knots[knots > self.runs.wanted.begin]
+        for time, why in decided_at_knots(primal.events, primal.grazes, behind, contacts):
+            yield Doubt(why, self._up_to(time), self._all)
+
+    def _start(self) -> Iterator[Doubt]:
+        chart, words = self.runs.words.at(self.point.x)
+        names = [one.name for one in self.runs.task.parameters]
+        begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
+        for time, why, numbers in unpressed(chart, words, self.point.slopes, names, begin, end):
+            yield Doubt(why, self._up_to(time), numbers, one_way=True)
+        for why, numbers in at_rest(chart, words, self.point.slopes):
+            yield Doubt(why, np.ones(len(self.lines), dtype=bool), numbers)

@@ -1,0 +1,100 @@
+"""Values of a run with their derivatives from both sides, one line for each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.gradients.forms import weights
+from clutchwork.gradients.measures import Asked, Measure, measures
+from clutchwork.gradients.primal import Primal
+from clutchwork.gradients.runs import Run
+from clutchwork.gradients.traces import trace
+from clutchwork.sweeps.outputs import AtTimes, Output
+
+Array = NDArray[np.float64]
+Places = NDArray[np.intp]
+
+# derivatives of equal extremes are one where they differ by less, of their size
+ALIKE = 1e-6
+NOWHERE, NONE = np.zeros(0, dtype=np.intp), np.zeros(0)
+
+
+class Line(NamedTuple):
+    """A value of a run: NaN where there is none; its derivatives where a number grows and where it gets less."""
+
+    name: str
+    value: float
+    size: float  # of what it is one of, by which differences are judged
+    left: Array
+    right: Array
+    until: float  # s, up to when it looks
+    at: float | None = None  # s, an instant that is asked for
+    columns: Places = NOWHERE  # of the rows that it is made of there
+    kinks: tuple[float, ...] = ()  # s, where knots meet that it depends on
+    none: str = ""  # why it has no derivative from any side
+    several: str = ""  # why both sides differ
+
+
+def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked: Asked, sizes: Array) -> list[Line]:
+    """All that is asked for, in order; of signals at instants all rows at once where a run carries derivatives along.
+
+    Parameters: sizes, of the numbers.
+    """
+    made, names = list[Line](), iter(labels)
+    for one in outputs.values():
+        if isinstance(one, AtTimes) and run.is_forward:
+            columns = weights(run.primal.forms[one.signal], run.primal.rows[:1]).columns
+            for time, value, own in zip(one.times, *trace(run, one), strict=True):
+                size = _size(run.primal, columns, time)
+                made.append(Line(next(names), float(value), size, own, own, time, time, columns))
+        else:
+            made += [_line(run, next(names), measure, sizes) for measure in measures(run.primal, one, asked)]
+    return made
+
+
+def without_derivatives(labels: Sequence[str], found: Sequence[Measure]) -> list[Line]:
+    """Lines of measures for what asks for no derivatives: when they look, and where."""
+    return [
+        Line(name, one.value, one.size, NONE, NONE, one.until, one.at, _columns(one), one.kinks)
+        for name, one in zip(labels, found, strict=True)
+    ]
+
+
+def _columns(one: Measure) -> Places:
+    return np.concatenate([NOWHERE, *one.changes[0].columns]) if one.at is not None else NOWHERE
+
+
+def _line(run: Run, name: str, one: Measure, sizes: Array) -> Line:
+    if not one.changes:
+        nothing, remedy = np.full(len(sizes), np.nan), "take one that does, or a later end time"
+        why = f"{name} does not happen before {run.primal.t_end:g} s; {remedy}"
+        return Line(name, one.value, 0.0, nothing, nothing, one.until, none=why)
+    found = np.array([run.slope(change) for change in one.changes])
+    least, most, why = found[0], found[0], ""
+    apart = _apart(found, one.size / sizes)
+    if len(apart):
+        remedy = "move a number so that one of them is the only one"
+        when = f"{one.when[0]:.9g} s and at {one.when[apart[0]]:.9g} s"
+        why = f"{name} is reached at {when}, and they move apart; {remedy}"
+        least, most = found.min(axis=0), found.max(axis=0)
+    left, right = (most, least) if one.is_least else (least, most)
+    columns = _columns(one)
+    size = one.size if one.at is None else _size(run.primal, columns, one.at)
+    return Line(name, one.value, size, left, right, one.until, one.at, columns, one.kinks, several=why)
+
+
+def _size(primal: Primal, columns: Places, time: float) -> float:
+    """The largest of all numbers of a row that are of the kind of some."""
+    row, parts = primal.rows[primal.row(time)], primal.columns.values()
+    used = (row[part] for part in parts if np.any((columns >= part.start) & (columns < part.stop)))
+    return max((float(np.abs(part).max()) for part in used), default=0.0)
+
+
+def _apart(found: Array, sizes: Array) -> Places:
+    """Equal extremes whose derivatives are not those of the first one."""
+    allowed = ALIKE * (np.abs(found).max(axis=0, initial=0.0) + sizes)
+    return np.flatnonzero(np.any(np.abs(found - found[0]) > allowed, axis=1))

@@ -1,0 +1,105 @@
+"""Derivatives from the left and from the right: refused where they differ, given on request, right where they agree."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from support import refusals, sided
+from support.amount import amount
+from support.by_differences import TIGHT
+from support.gradient_cases import KINDS
+
+# of the size of a derivative, or of the value over that of the number
+CLOSE = 1e-5
+
+
+def sizes(f, number=0):
+    """What derivatives of all values by a number are compared with."""
+    return np.maximum(np.abs(f(f.x0)), 1e-6) / (abs(f.x0[number]) or 1.0)
+
+
+def drawn(make, seed):
+    return make(np.random.default_rng(seed))
+
+
+@pytest.mark.random
+@pytest.mark.parametrize("make", sided.DIFFER, ids=lambda make: make.__name__)
+def test_sides_that_differ(make):
+    """Refused, each side on request; every door says the same."""
+    for seed in range(amount(4)):
+        case = drawn(make, seed)
+        differences = sided.from_both_sides(case, 0)
+        f = cw.differentiable(case.model, case.t_end, of=case.of, by=case.by, **TIGHT)
+        # a value whose sides agree has its derivative
+        size = np.abs(differences).max(axis=0)
+        differ = np.abs(differences[0] - differences[1]) > 1e-3 * size + 1e-7 * sizes(f)
+        assert differ.any()
+        with pytest.raises(cw.NoGradient, match=r'side="right" gives'):
+            f.vjp(f.x0, differ.astype(float))
+        with pytest.raises(cw.NoGradient, match=r'side="left" gives'):
+            f.objective(differ.astype(float))(f.x0)
+        np.testing.assert_array_equal(np.isnan(f.batch_jacobian(f.x0[None])[1][0, :, 0]), differ)
+        if differ.all():
+            with pytest.raises(cw.NoGradient):
+                f.gradient()
+        for side, wanted in zip(("left", "right"), differences, strict=True):
+            found = cw.differentiable(case.model, case.t_end, of=case.of, by=case.by, side=side, **TIGHT)
+            room = CLOSE * np.maximum(np.abs(wanted), sizes(f))
+            np.testing.assert_array_less(np.abs(found.gradient().matrix[:, 0] - wanted), room + 1e-9)
+
+
+@pytest.mark.random
+@pytest.mark.parametrize("make", sided.AGREE, ids=lambda make: make.__name__)
+def test_sides_that_agree(make):
+    """Numbers asked for together and one by one, by every door."""
+    for seed in range(amount(4)):
+        case = drawn(make, seed)
+        f = cw.differentiable(case.model, case.t_end, of=case.of, by=case.by, **TIGHT)
+        found = f.gradient()
+        assert found.problems == ()
+        np.testing.assert_allclose(f.vjp(f.x0, np.ones(len(f.of)))[1], found.matrix.sum(axis=0), rtol=1e-6)
+        for number in range(len(case.by)):
+            left, right = sided.from_both_sides(case, number)
+            room = CLOSE * np.maximum(np.abs(left), sizes(f, number))
+            np.testing.assert_array_less(np.abs(left - right), 10 * room)
+            np.testing.assert_array_less(np.abs(found.matrix[:, number] - 0.5 * (left + right)), 10 * room)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+def test_a_bend_inside_of_a_step_is_found_at_any_tolerance(rtol):
+    """One of two brakes that hold a shaft reaches its capacity, which is its largest torque."""
+    for seed in range(4):
+        case = drawn(sided.bends_inside_of_a_step, seed)
+        f = cw.differentiable(case.model, case.t_end, of=case.of[0], by=["t.torque.values[2]", "b1.gain"], rtol=rtol)
+        values, matrix = f.value_and_jacobian(f.x0)
+        capacity = float(np.max(np.abs(case.model.simulate(case.t_end, dt=1e-3)["b1.torque"])))
+        np.testing.assert_allclose(values, capacity, rtol=1e-7)
+        np.testing.assert_allclose(f(f.x0), capacity, rtol=1e-7)
+        np.testing.assert_allclose(matrix[0], [0.0, capacity / f.x0[1]], rtol=1e-6, atol=1e-7)
+
+
+def test_a_value_without_a_derivative_takes_no_other_with_it():
+    case = drawn(sided.starts_at_rest, 0)
+    run = case.model.simulate(case.t_end)
+    found = run.gradient(of=["b.speed", cw.lock("c")], by=["b.speed", "a.inertia"])
+    assert np.isnan(found["b.speed", "b.speed"])
+    assert np.isfinite(found["b.speed", "a.inertia"])
+    assert np.isnan(found["lock(c)"]).all()
+    assert "begins at rest" in found.problems[0]
+    assert "NaN: " in repr(found)
+    assert np.isfinite(run.gradient(of="b.speed", by="b.speed", side="left").matrix).all()
+    with pytest.raises(cw.UseError, match="side is 'up': give 'left' or 'right'"):
+        run.gradient(of="a.speed", by="b.speed", side="up")
+
+
+@pytest.mark.random
+def test_hardly_anything_is_refused_without_cause():
+    """At most one derivative in a hundred is refused where differences from both sides agree; none is one of two."""
+    found = refusals.Count()
+    for seed in range(amount(8)):
+        kind = list(KINDS)[seed % len(KINDS)]
+        found = found + refusals.counted(KINDS[kind](2000 + seed), seed, 4)
+    assert len(found.without_cause) <= 0.01 * found.pairs, found.without_cause
+    assert not found.wrong, found.wrong
