@@ -339,6 +339,7 @@ class Phase : public Pace<typename Form::Scalar> {
     for (double at = 0; at < s;) {
       const double to = varied_.follow(at, s);
       if (to < 0) return leave(Status::step_collapse), false;
+      if (ws_.moved.parts++ >= ws_.options.max_steps) return leave(Status::too_many_steps), false;
       const double end = to == s ? time_at(s) : step_.t + step_.h;
       if constexpr (Form::full) keep_ties(form_, step_, end, step_.y1());
       if (!write_part(end)) return false;

@@ -37,6 +37,7 @@ struct Moved {
   Workspace<double>* plain = nullptr;  ///< its image without derivatives
   double span = 0;                     ///< [s] steps that are taken where an event is met
   double pace = infinity;              ///< [s] that a step of the derivatives may take
+  std::int64_t parts = 0;              ///< of steps that the derivatives have taken
   double size[T::seen] = {};           ///< largest that each direction has had, over the size of the motion
 
   template <class P, class A>
