@@ -175,7 +175,8 @@ def signal_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         for name, message, remedy in () if found else value.unit_problems((at.unit, *spec.units)):
             yield at.inner(name).problem(message, remedy=remedy)
         yield from () if found else _beyond_bounds(value, spec, at)
-        yield from _never_presses((load for _, load in extremes(value)), at) if spec.presses and not found else ()
+        asked = spec.presses and not found and not _grows(value)
+        yield from _never_presses((load for _, load in extremes(value)), at) if asked else ()
     elif (isinstance(value, Real) and not isinstance(value, bool)) or _is_measured(value):
         found = list(number_problems(value, spec, at))
         yield from found
@@ -188,6 +189,12 @@ def signal_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         if callable(value):
             remedy = "a function is a controller: give cw.Sampled(function, period), with the period in s"
         yield at.problem(f"must be a number{within(at.unit)} or a signal", value=shown(value), remedy=remedy)
+
+
+def _grows(signal: Signal) -> bool:
+    """Whether the last piece of a signal rises or falls without end."""
+    pieces = signal.segments()
+    return bool(pieces) and signal.repeats() == 0.0 and any(pieces[-1][2:5])
 
 
 def _never_presses(loads: Iterable[float], at: At) -> Iterator[Problem]:

@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from clutchwork.declare.node import Segment, Signal
 
 
+# time constants after which a wave has died away, to some 1e-17 of itself
+SETTLED = 40.0
+
+
 class Reached(NamedTuple):
     """A value that a signal takes."""
 
@@ -23,7 +27,8 @@ class Reached(NamedTuple):
 def extremes(signal: Signal) -> Iterator[Reached]:
     """Values of a signal at and after 0 s where one of its pieces begins, ends or turns; none of one set from outside.
 
-    They hold the smallest and the largest value of every signal whose pieces are a cubic or one wave.
+    They hold the smallest and the largest value of every signal whose pieces are a cubic or one wave, but for a cubic
+    without end.
     """
     pieces, period = signal.segments(), signal.repeats()
     ends = [piece.start for piece in pieces[1:]]
@@ -38,11 +43,10 @@ def extremes(signal: Signal) -> Iterator[Reached]:
 
 
 def _times(piece: Segment, first: float, end: float) -> Iterator[float]:
-    """Both ends of a piece, and between them where its cubic or one of its waves turns."""
+    """Both ends of a piece, of one without end where its waves have died away, and where it turns between them."""
     yield first
     yield from (piece.start + s for s in sorted(_turns(piece, first - piece.start)) if first < piece.start + s < end)
-    if end < inf:
-        yield end
+    yield end if end < inf else first + SETTLED / min((wave[3] for wave in piece.waves if wave[3] > 0.0), default=inf)
 
 
 def _turns(piece: Segment, first: float) -> Iterator[float]:
