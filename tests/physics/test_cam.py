@@ -11,7 +11,9 @@ from scipy.interpolate import CubicSpline
 
 import clutchwork as cw
 from clutchwork.elements.bases.lifts import curvatures
+from support.amount import amount
 from support.runs import EXACT, TIGHT, at_end
+from support.sweep import simulate, stopped, sweep
 
 TURN = 2.0 * pi
 STROKE, SHAFT, MASS = 0.02, 0.004, 0.5  # m, kg m2, kg
@@ -320,3 +322,29 @@ def test_a_curvature_that_makes_kinks_is_refused():
         d.add(cw.CamProfile("c", shaft=a, mass=m, lift=ROUND, curvature=bend))
         found = [str(problem) for problem in d.check()]
         assert any(words in one for one in found), found
+
+
+def _hit_at_an_end(seed: int) -> str:
+    """A follower that moves into a cam, or away, at an end of its travel, where no speed of the shaft follows."""
+    rng = np.random.default_rng([seed, 42])
+    count = int(rng.integers(3, 8))
+    knots = np.sort(rng.uniform(0.3, TURN - 0.3, count))
+    if (np.diff(knots) < 0.1).any():
+        return ""
+    lift = [(0.0, 0.0), *zip(knots, rng.uniform(0.0, 0.03, count), strict=True), (TURN, 0.0)]
+    phase = float(rng.choice(spline(lift).derivative().roots(extrapolate=False)))
+    speed, more = float(rng.uniform(-3.0, 3.0)), {"restitution": float(rng.choice([0.0, 0.5]))}
+    runs = []
+    for turning in (None, 0.0):
+        d = cw.Driveline()
+        shaft, mass = d.shaft("s", inertia=1.0, speed=turning), d.mass("m", mass=1.0, speed=speed)
+        d.add(cw.Cam("c", shaft=shaft, mass=mass, lift=lift, phase=phase, **more))
+        runs.append(simulate(d, 0.02, times=np.linspace(0.0, 0.02, 5)))
+    free, given = runs
+    apart = max(float(np.abs(free[name] - given[name]).max()) for name in ("s.speed", "m.speed"))
+    return stopped(free) or (f"{apart:g} apart" if apart > 0.0 else "")
+
+
+@pytest.mark.random
+def test_no_speed_of_a_cam_follows_at_the_end_of_its_travel() -> None:
+    sweep(_hit_at_an_end, amount(60))

@@ -9,6 +9,8 @@ import pytest
 
 import clutchwork as cw
 from support import switched
+from support.amount import amount
+from support.sweep import simulate, stopped, sweep
 
 CAPACITY, MOST, POWER, INERTIA = 0.05, 800.0, 1.2e5, 20.0
 # ends of the branches [rad/s]: 126.5 and 150
@@ -120,3 +122,31 @@ def test_its_heat_goes_to_a_node():
 def test_more_than_full_is_a_mistake(more):
     with pytest.raises(cw.ModelError, match=r"must be >= 0 and <= 1"):
         _driveline(10.0, lag=0.1, **more).assemble()
+
+
+def _commanded(seed: int) -> str:
+    """Whether a retarder that another component commands beyond its bounds drives, or brakes more than a full one."""
+    rng = np.random.default_rng([seed, 41])
+    lag, swing = float(rng.choice([0.0, rng.uniform(0.01, 0.5)])), float(rng.uniform(1.5, 5.0))
+    d = cw.Driveline()
+    shaft = d.shaft("s", inertia=INERTIA, speed=float(rng.choice([-1.0, 1.0]) * rng.uniform(50.0, 250.0)))
+    wave = cw.Sine(amplitude=swing, frequency=float(rng.uniform(0.5, 3.0)))
+    actuator = d.add(cw.RatioActuator("command", command=wave, lag=0.02))
+    filling = float(rng.uniform(0.0, 1.0))
+    shares = {"lag": lag, "initial_filling": filling}
+    d.add(
+        cw.Retarder("r", shaft=shaft, capacity=CAPACITY, max_torque=MOST, max_power=POWER, command=actuator, **shares)
+    )
+    run = simulate(d, 3.0)
+    w, torque, most = run["s.speed"], run["r.torque"], _size(run["s.speed"])
+    slack = 1e-9 * MOST
+    share = np.clip(run["command.ratio"], 0.0, 1.0) if lag == 0.0 else run["r.filling"]
+    found = stopped(run)
+    found += " drives" if (torque * np.sign(w) > slack).any() else ""
+    found += " brakes too much" if (np.abs(torque) > most + slack).any() else ""
+    return found + (" does not follow" if (np.abs(-torque * np.sign(w) - share * most) > slack).any() else "")
+
+
+@pytest.mark.random
+def test_a_command_of_another_component_keeps_its_bounds() -> None:
+    sweep(_commanded, amount(60))

@@ -266,3 +266,37 @@ CHECKS = [jenkins, engine, ripple, motor, actuator, dog, dahl, vanishing, accele
 @pytest.mark.parametrize("check", CHECKS)
 def test_elements_start_rest_and_turn_as_they_should(check: Any) -> None:
     sweep(check, amount(100))
+
+
+def thrown(seed: int) -> str:
+    """Shoes of a centrifugal clutch on a shaft whose speed follows from that of another, and where that is given."""
+    rng = np.random.default_rng([seed, 43])
+    how = str(rng.choice(["gear", "ratio", "motion"]))
+    ratio, speed = float(rng.choice([-1.0, 1.0])) * log_uniform(rng, 0.3, 4.0), float(rng.uniform(-80.0, 80.0))
+    onset = log_uniform(rng, 3.0, 30.0)
+    runs = []
+    for given in (None, speed / ratio):
+        d = cw.Driveline(f"thrown {seed}")
+        a, b, c = (
+            d.shaft("a", inertia=0.5, speed=speed),
+            d.shaft("b", inertia=0.2, speed=given),
+            d.shaft("c", inertia=0.3),
+        )
+        if how == "gear":
+            d.add(cw.Gear("joint", input=a, output=b, ratio=ratio))
+        elif how == "ratio":
+            d.add(cw.VariableRatio("joint", input=a, output=b, ratio=ratio))
+        else:
+            d.add(cw.PrescribedSpeed("joint", shaft=b, speed=speed / ratio))
+        law = cw.Coulomb(static=0.3, kinetic=0.3)
+        shoes = {"mass": 0.1, "radius": 0.05, "drum_radius": 0.08, "onset": onset}
+        d.add(cw.CentrifugalClutch("k", base=b, follower=c, friction=law, **shoes))
+        runs.append(simulate(d, 0.05, times=np.linspace(0.0, 0.05, 11)))
+    follows, known = runs
+    apart = max(float(np.abs(follows[f"{n}.speed"] - known[f"{n}.speed"]).max()) for n in "abc")
+    return stopped(follows) or (f"{how}: {apart:.3g} rad/s apart" if apart > 1e-8 * abs(speed) else "")
+
+
+@pytest.mark.random
+def test_shoes_start_where_their_shaft_throws_them() -> None:
+    sweep(thrown, amount(60))

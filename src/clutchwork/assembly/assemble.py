@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from clutchwork.model.loads import load_arrays
 from clutchwork.model.model import Model
 from clutchwork.model.parts import Place, is_stop, place_of
 from clutchwork.model.pools import Pools
-from clutchwork.model.start import initial_angles, start
+from clutchwork.model.start import initial_angles, speed_at_start, start
 from clutchwork.model.structure import Kinematics, Mechanism, follows_load
 from clutchwork.model.transmissions import ordered
 
@@ -67,7 +68,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     arrays |= _transmissions(model, made, columns)
     arrays |= flow_arrays(model, pools, wires)
     arrays |= heat_arrays(model, where)
-    arrays |= shared.arrays(pools, wires, states)
+    arrays |= shared.arrays(pools, wires, states, partial(speed_at_start, model, made, speeds, motions))
     arrays |= {
         "prescribed_input": wires.prescribe(motions),
         "prescribed_sums": [int(one.integrates) for one, _ in motions],

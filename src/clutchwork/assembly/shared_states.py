@@ -10,9 +10,11 @@ from clutchwork.declare.ports import thermal_ports
 from clutchwork.declare.schema import Role
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from clutchwork.assembly.inputs import Wires
     from clutchwork.assembly.places import Places
-    from clutchwork.declare.node import ThermalNode
+    from clutchwork.declare.node import Node, ThermalNode
     from clutchwork.model.pools import Pools
     from clutchwork.model.structure import Mechanism
 
@@ -28,8 +30,11 @@ class Shared:
     thermal: tuple[ThermalNode, ...]
     processes: tuple[Any, ...]
 
-    def arrays(self, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
-        """Processes, and the start and scale of all shared states, which follow the given states."""
+    def arrays(self, pools: Pools, wires: Wires, states: list[float], speed: Callable[[Node], float]) -> dict[str, Any]:
+        """Processes, and the start and scale of all shared states, which follow the given states.
+
+        Parameters: speed, that of a shaft at the start.
+        """
         scale, offset = list[float](), list[float]()
         for node in self.thermal:
             states.append(0.0)
@@ -39,7 +44,7 @@ class Shared:
         for process in self.processes:
             own = state_scales(process)
             first.append(len(states))
-            states += [start / unit for start, unit in zip(process.initial_states(), own, strict=True)]
+            states += [start / unit for start, unit in zip(process.states_at(speed), own, strict=True)]
             scale += own
             offset += [0.0] * len(own)
         return {

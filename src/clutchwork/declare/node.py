@@ -319,6 +319,10 @@ class Component(Element):
         """Its states in use at the start, each in its unit."""
         return ()
 
+    def states_at(self, speed: Callable[[Node], float]) -> tuple[float, ...]:  # noqa: ARG002, it may not ask
+        """The same by what the speed of each shaft is at the start, given or not."""
+        return self.initial_states()
+
     def state_scales(self) -> tuple[float, ...]:
         """Of a process: what one unit of each of its states in the solver is worth, 1 where nothing is said.
 

@@ -22,7 +22,7 @@ from clutchwork.declare import (
     port,
 )
 from clutchwork.elements.bases.lifts import TURN, closed, height, lift_problems, slope_at, slope_of
-from clutchwork.elements.bases.ratios import Rates, angle_of
+from clutchwork.elements.bases.ratios import Rates, angle_of, beyond_rounding
 
 # a rise and a fall, and the second derivative of the spline through them
 RISE = ((0.0, 0.0), (0.5 * pi, 0.01), (pi, 0.02), (1.5 * pi, 0.01), (2.0 * pi, 0.0))
@@ -87,4 +87,5 @@ class CamProfile(Component):
 
     def start_ratio(self) -> float:
         """Speed of the surface over that of the shaft at the start [m]."""
-        return slope_at(closed(self.lift), self.curvature, *self.initial_states())
+        slope = slope_at(closed(self.lift), self.curvature, *self.initial_states())
+        return beyond_rounding(slope, height(self.lift))

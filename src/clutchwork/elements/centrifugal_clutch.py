@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from clutchwork.declare import Component, Law, Node, Role, ThermalNode, component, law, option, param, port
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.flyweights import Flyweights
 from clutchwork.elements.plate_contact import PlateContact
+
+
+class Shoes(Flyweights):
+    """Weights that start where their shaft throws them."""
+
+    def states_at(self, speed: Callable[[Node], float]) -> tuple[float, ...]:
+        """Force at the start [N]."""
+        turning = speed(self.speed) if isinstance(self.speed, Node) else 0.0
+        return (self.mass * self.radius * (turning**2 - self.onset**2),)
 
 
 @component(Role.COMPOSITE)
@@ -33,7 +42,7 @@ class CentrifugalClutch(Heating):
     def parts(self) -> Iterable[Component | ThermalNode]:
         """The shoes and the contact."""
         speed = self.base.speed or 0.0
-        weights = Flyweights(
+        weights = Shoes(
             f"{self.name}.shoes",
             mass=self.mass,
             radius=self.radius,

@@ -7,7 +7,7 @@ from math import cos, sin, sqrt
 from typing import ClassVar
 
 from clutchwork.declare import Component, Found, Node, Role, State, Way, Work, component, option, param, port
-from clutchwork.elements.bases.ratios import Rates, angle_of
+from clutchwork.elements.bases.ratios import Rates, angle_of, beyond_rounding
 
 
 @component(
@@ -62,4 +62,4 @@ class CrankSlider(Component):
         """Speed of the mass over that of the shaft at the start [m]."""
         (angle,) = self.initial_states()
         x = self.radius * sin(angle)
-        return -x - x * self.radius * cos(angle) / sqrt(self.rod**2 - x**2)
+        return beyond_rounding(-x - x * self.radius * cos(angle) / sqrt(self.rod**2 - x**2), self.radius)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from clutchwork.base.errors import Problem
 from clutchwork.declare.node import Domain
@@ -22,15 +22,17 @@ if TYPE_CHECKING:
     from clutchwork.declare.node import Component, Node, Signal
     from clutchwork.model.structure import Kinematics, Mechanism
 
+# prescribed speeds and what gives them
+Motions: TypeAlias = "list[tuple[Component, Signal]]"
 # speeds that were rounded when they were written may differ by this share
 ROUNDING = exact(1e-6)
 # column of the right-hand side
 KNOWN = -1
 
 
-def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], list[tuple[Component, Signal]], list[Problem]]:
+def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], Motions, list[Problem]]:
     """Independent speeds at the start, the prescribed speeds with their signals, and what is wrong with both."""
-    motions: list[tuple[Component, Signal]] = []
+    motions: Motions = []
     problems: list[Problem] = []
     for motion in model.role(Role.MOTION):
         try:
@@ -42,6 +44,20 @@ def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], list[tupl
         return [ZERO] * len(made.independent), motions, problems
     speeds, wrong = initial_speeds(model, made, [value(signal, 0.0) for _, signal in motions])
     return speeds, motions, [*problems, *wrong, *_position_problems(model)]
+
+
+def speed_at_start(
+    model: Mechanism, made: Kinematics, speeds: Sequence[Fraction], motions: Motions, node: Node
+) -> float:
+    """Speed of a node, given or not."""
+    if node.fixed:
+        return 0.0
+    known = dict(zip(made.independent, speeds, strict=True))
+    row = made.speeds[model.places.of(node)]
+    ahead = len(model.nodes)
+    return float(
+        sum((c * (known[i] if i in known else exact(value(motions[i - ahead][1], 0.0))) for i, c in row.items()), ZERO)
+    )
 
 
 def _position_problems(model: Mechanism) -> Iterator[Problem]:

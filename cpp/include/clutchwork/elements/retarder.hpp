@@ -16,12 +16,12 @@ struct Retarder : declared::Retarder {
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {
-    const S y = value(p.lag) > 0 ? at.state[filling] : at.input[Input::command];
+    const S y = value(p.lag) > 0 ? at.state[filling] : command(at);
     return at.piece <= middle(p) ? y * size(p, at, middle(p) - at.piece) : -(y * size(p, at, at.piece - middle(p) - 1));
   }
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
-    if (value(p.lag) > 0) rates[filling] = (at.input[Input::command] - at.state[filling]) / p.lag;
+    if (value(p.lag) > 0) rates[filling] = (command(at) - at.state[filling]) / p.lag;
   }
   template <class T>
   static int count(const Params<T>& p) {
@@ -40,6 +40,11 @@ struct Retarder : declared::Retarder {
   }
 
  private:
+  /// What is wanted of it, from empty to full: what another component gives has no bounds.
+  template <class S>
+  static S command(const At<S>& at) {
+    return larger(smaller(at.input[Input::command], S(1)), S(0));
+  }
   /// Whether there is a range of speeds in which the torque has its limit.
   template <class T>
   static bool is_flat(const Params<T>& p) {

@@ -12,6 +12,8 @@ from clutchwork.signals.bases.waveform import value
 
 # coefficients by port
 Rates: TypeAlias = Mapping[str, float | Fraction]
+# share of the size of a ratio that counts as none
+ROUNDING = 1e-12
 
 
 def at_start(ratio: Any) -> float:
@@ -23,6 +25,11 @@ def at_start(ratio: Any) -> float:
     process, name = ratio if isinstance(ratio, tuple) else (ratio, "")
     names = [state.name for state in type(process).states]
     return float(process.initial_states()[names.index(name) if name else 0])
+
+
+def beyond_rounding(ratio: float, size: float) -> float:
+    """A ratio that is zero where it is no more than round-off of its size: no speed follows from it."""
+    return ratio if abs(ratio) > ROUNDING * size else 0.0
 
 
 def angle_of(node: Node | None) -> float:
