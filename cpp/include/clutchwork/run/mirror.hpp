@@ -21,8 +21,8 @@ struct LaidList {
 
   template <class P>
   void take(P*& p, std::int64_t n) {
-    if (count < room) list[count] = {p, n, int(sizeof(P))};
-    ++count;
+    if (count == room) __builtin_trap();
+    list[count++] = {p, n, int(sizeof(P))};
   }
   template <class P>
   void scratch(P*& p, std::int64_t n) {
@@ -51,6 +51,7 @@ struct Reflector {
     const Laid& source = other.list[i];
     p = static_cast<P*>(own.list[i++].at);
     if (!filled) return;
+    n = smaller(n, source.n);
     if constexpr (std::is_same_v<P, double>) {
       if (source.size == int(sizeof(T)))
         take_values(static_cast<const T*>(source.at), n, p);
@@ -71,8 +72,11 @@ struct Reflector {
   SignalOf<double> plain(const SignalOf<T>& s) const {
     SignalOf<double> made;
     made.segment = s.segment, made.start = value(s.start), made.knot = value(s.knot), made.held = value(s.held);
-    if (s.coef != nullptr) made.coef = to.sys.segment_coef + (s.coef - from.sys.segment_coef);
     made.varying = s.varying, made.linear = s.linear, made.idle = s.idle;
+    made.given = s.given, made.set = s.set, made.fresh = s.fresh;
+    if (s.coef == nullptr) return made;
+    made.coef = s.set > 0 ? to.in.set_coef + (s.coef - from.in.set_coef)
+                          : to.sys.segment_coef + (s.coef - from.sys.segment_coef);
     return made;
   }
 };

@@ -49,9 +49,10 @@ struct Signals {
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.shared_ref, n.references), a.take(p.direction_ref, n.references), a.take(p.shared_slope, n.references);
     a.take(p.rate_ref, n.references);
-    a.take(p.signal, n.signals), a.take(p.ref_signal, n.references), a.take(p.varying, n.references);
+    // signals point into what was set
     const auto room = has_tangents<T> && n.prescribed == 0 ? 0 : n.segments;
     a.scratch(p.set_time, room), a.scratch(p.set_coef, segment_size * room);
+    a.take(p.signal, n.signals), a.take(p.ref_signal, n.references), a.take(p.varying, n.references);
     a.take(p.u, n.references), a.take(p.du, n.references), a.take(p.prescribed_before, n.prescribed);
   }
 };
