@@ -113,6 +113,36 @@ def test_a_ratio_of_zero_against_a_motion_jams(speed):
     assert run.status == "jammed"
 
 
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_brake_that_stops_a_converter_on_both_sides(seed):
+    """At rest there is no ratio of the speeds: round-off of them does not multiply the torque of the oil."""
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("stopped")
+    a, b = d.shaft("a", inertia=uniform(rng, 0.5, 2)), d.shaft("b", inertia=uniform(rng, 0.01, 0.1))
+    d.add(cw.UniversalJoint("joint", base=a, follower=b, bend_angle=uniform(rng, 0.05, 0.4)))
+    d.add(
+        cw.TorqueConverter(
+            "converter",
+            impeller=b,
+            turbine=a,
+            speed_ratio=(0.0, 0.4, 0.8, 0.9, 1.0),
+            torque_ratio=(uniform(rng, 1.8, 2.5), 1.6, 1.08, 1.0, 1.0),
+            capacity=(1e-4, 9.3e-5, 7e-5, 5e-5, 0.0),
+            lag=uniform(rng, 0.01, 0.05),
+            initial_torque=uniform(rng, -200, 200),
+        )
+    )
+    force = uniform(rng, 5, 50)
+    law = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Brake("brake", shaft=a, friction=law, gain=1.0, normal_force=force, tolerance=2e-4))
+    run = d.simulate(0.6)
+    assert run.status == "done", seed
+    assert np.all(abs(run["brake.torque"]) <= 0.1 * force * (1 + 1e-9)), seed
+    rests = (run["a.speed"] == 0) & (abs(run["b.speed"]) < 1e-12)
+    assert np.count_nonzero(rests) > 10, seed
+    assert np.allclose(run["converter.turbine.torque"][rests], -run["converter.impeller.torque"][rests]), seed
+
+
 def limited(rng: Rng) -> cw.Driveline:
     """A limited slip with a prescribed side; each of the others may have a brake."""
     d = cw.Driveline("limited")
