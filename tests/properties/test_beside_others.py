@@ -143,6 +143,29 @@ def test_a_brake_that_stops_a_converter_on_both_sides(seed):
     assert np.allclose(run["converter.turbine.torque"][rests], -run["converter.impeller.torque"][rests]), seed
 
 
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_closed_stop_beside_contacts_without_capacity(seed):
+    """The stop holds all as long as the others have none."""
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("closed")
+    a = d.shaft("a", inertia=uniform(rng, 0.001, 1))
+    load, way, start = uniform(rng, 0.5, 20), float(rng.choice([-1, 1])), uniform(rng, 1.0, 2.0)
+    d.add(cw.Torque("load", shaft=a, torque=way * load))
+    d.add(cw.EndStop("stop", follower=a, upper=0.01, lower=-0.01))
+    ramp = cw.Ramp(height=uniform(rng, 100, 500), duration=0.2, start=start)
+    d.add(cw.Brake("ramped", shaft=a, friction=coulomb(rng), gain=1.0, normal_force=ramp))
+    if rng.random() < 0.5:
+        law = cw.Coulomb(static=0.0, kinetic=0.0)
+        d.add(cw.Brake("smooth", shaft=a, friction=law, gain=1.0, normal_force=100.0))
+    run = d.simulate(2.5)
+    held = run["stop.mode"] == 0
+    left = run["load.torque"] + sum(
+        run[f"{name}.torque"] for name in ("stop", "ramped", "smooth") if f"{name}.torque" in run.names
+    )
+    assert np.count_nonzero(held) > 10, seed
+    assert np.all(abs(left[held]) <= 1e-9 * load), seed
+
+
 def limited(rng: Rng) -> cw.Driveline:
     """A limited slip with a prescribed side; each of the others may have a brake."""
     d = cw.Driveline("limited")
