@@ -114,6 +114,24 @@ def test_a_ratio_of_zero_against_a_motion_jams(speed):
 
 
 @pytest.mark.parametrize("seed", range(MODELS))
+def test_a_ratio_that_passes_zero_against_a_motion_jams(seed):
+    """Where what is left of the row turns over: the run ends there and names the transmission."""
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("pole")
+    a, b = d.shaft("a", inertia=uniform(rng, 0.1, 2)), d.shaft("b", inertia=uniform(rng, 0.1, 2))
+    frequency, phase = uniform(rng, 3, 20), uniform(rng, 0.2, 6.1)
+    ratio = cw.Sine(amplitude=uniform(rng, 1, 4), frequency=frequency, phase=phase)
+    d.add(cw.VariableGear("gear", input=a, output=b, ratio=ratio))
+    speed: Any = uniform(rng, 0.5, 5) * rng.choice([-1, 1])
+    d.add(cw.PrescribedSpeed("given", shaft=a, speed=speed))
+    with pytest.warns(cw.StoppedEarly, match="break the ratio of a transmission at 'gear'"):
+        run = d.simulate(1.0, work=False)
+    zero = np.ceil(phase / np.pi) * np.pi
+    assert run.status == "jammed", seed
+    assert run.time[-1] == pytest.approx((zero - phase) / (2 * np.pi * frequency), rel=1e-6), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
 def test_a_brake_that_stops_a_converter_on_both_sides(seed):
     """At rest there is no ratio of the speeds: round-off of them does not multiply the torque of the oil."""
     rng = np.random.default_rng(seed)
