@@ -184,6 +184,23 @@ def test_a_closed_stop_beside_contacts_without_capacity(seed):
     assert np.all(abs(left[held]) <= 1e-9 * load), seed
 
 
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_contacts_of_a_motion_that_leaves_rest_are_within_their_capacity(seed):
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("leaves")
+    a = d.shaft("a", inertia=uniform(rng, 0.1, 2))
+    law = cw.Coulomb(static=0.0, kinetic=0.0) if rng.random() < 0.5 else coulomb(rng)
+    d.add(cw.Brake("brake", shaft=a, friction=law, gain=1.0, normal_force=uniform(rng, 0, 1e-3)))
+    frequency, height = uniform(rng, 1, 20), uniform(rng, -150, 150)
+    course: Any = cw.Sine(amplitude=height, frequency=frequency)
+    if rng.random() < 0.5:
+        course = cw.Ramp(height=height, duration=uniform(rng, 0.01, 0.1), start=float(rng.choice([0.0, 0.05])))
+    d.add(cw.PrescribedAcceleration("given", shaft=a, acceleration=course))
+    run = d.simulate(0.15, output="steps")
+    assert run.status == "done", seed
+    assert np.all(abs(run["brake.torque"]) <= run["brake.capacity"] * (1 + 1e-9)), seed
+
+
 def limited(rng: Rng) -> cw.Driveline:
     """A limited slip with a prescribed side; each of the others may have a brake."""
     d = cw.Driveline("limited")
