@@ -45,8 +45,6 @@ OPEN: dict[str, set[int]] = {
     "a massless shaft behind a ratio that is zero": {66, 73, 205, 215, 241, 402, 1001, 1063},
     "events without end": {138, 1051},
     "friction that a speed presses, where that jumps": {102},
-    "a prescribed motion against a ratio that varies": {1107, 1121},
-    "one row or a few as a load begins, or a motion leaves rest": {217, 1056, 1120},
     "a gear that jams without an impulse": {432},
 }
 

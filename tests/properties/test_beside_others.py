@@ -113,6 +113,94 @@ def test_a_ratio_of_zero_against_a_motion_jams(speed):
     assert run.status == "jammed"
 
 
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_ratio_that_passes_zero_against_a_motion_jams(seed):
+    """Where what is left of the row turns over: the run ends there and names the transmission."""
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("pole")
+    a, b = d.shaft("a", inertia=uniform(rng, 0.1, 2)), d.shaft("b", inertia=uniform(rng, 0.1, 2))
+    frequency, phase = uniform(rng, 3, 20), uniform(rng, 0.2, 6.1)
+    ratio = cw.Sine(amplitude=uniform(rng, 1, 4), frequency=frequency, phase=phase)
+    d.add(cw.VariableGear("gear", input=a, output=b, ratio=ratio))
+    speed: Any = uniform(rng, 0.5, 5) * rng.choice([-1, 1])
+    d.add(cw.PrescribedSpeed("given", shaft=a, speed=speed))
+    with pytest.warns(cw.StoppedEarly, match="break the ratio of a transmission at 'gear'"):
+        run = d.simulate(1.0, work=False)
+    zero = np.ceil(phase / np.pi) * np.pi
+    assert run.status == "jammed", seed
+    assert run.time[-1] == pytest.approx((zero - phase) / (2 * np.pi * frequency), rel=1e-6), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_brake_that_stops_a_converter_on_both_sides(seed):
+    """At rest there is no ratio of the speeds: round-off of them does not multiply the torque of the oil."""
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("stopped")
+    a, b = d.shaft("a", inertia=uniform(rng, 0.5, 2)), d.shaft("b", inertia=uniform(rng, 0.01, 0.1))
+    d.add(cw.UniversalJoint("joint", base=a, follower=b, bend_angle=uniform(rng, 0.05, 0.4)))
+    d.add(
+        cw.TorqueConverter(
+            "converter",
+            impeller=b,
+            turbine=a,
+            speed_ratio=(0.0, 0.4, 0.8, 0.9, 1.0),
+            torque_ratio=(uniform(rng, 1.8, 2.5), 1.6, 1.08, 1.0, 1.0),
+            capacity=(1e-4, 9.3e-5, 7e-5, 5e-5, 0.0),
+            lag=uniform(rng, 0.01, 0.05),
+            initial_torque=uniform(rng, -200, 200),
+        )
+    )
+    force = uniform(rng, 5, 50)
+    law = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Brake("brake", shaft=a, friction=law, gain=1.0, normal_force=force, tolerance=2e-4))
+    run = d.simulate(0.6)
+    assert run.status == "done", seed
+    assert np.all(abs(run["brake.torque"]) <= 0.1 * force * (1 + 1e-9)), seed
+    rests = (run["a.speed"] == 0) & (abs(run["b.speed"]) < 1e-12)
+    assert np.count_nonzero(rests) > 10, seed
+    assert np.allclose(run["converter.turbine.torque"][rests], -run["converter.impeller.torque"][rests]), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_closed_stop_beside_contacts_without_capacity(seed):
+    """The stop holds all as long as the others have none."""
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("closed")
+    a = d.shaft("a", inertia=uniform(rng, 0.001, 1))
+    load, way, start = uniform(rng, 0.5, 20), float(rng.choice([-1, 1])), uniform(rng, 1.0, 2.0)
+    d.add(cw.Torque("load", shaft=a, torque=way * load))
+    d.add(cw.EndStop("stop", follower=a, upper=0.01, lower=-0.01))
+    ramp = cw.Ramp(height=uniform(rng, 100, 500), duration=0.2, start=start)
+    d.add(cw.Brake("ramped", shaft=a, friction=coulomb(rng), gain=1.0, normal_force=ramp))
+    if rng.random() < 0.5:
+        law = cw.Coulomb(static=0.0, kinetic=0.0)
+        d.add(cw.Brake("smooth", shaft=a, friction=law, gain=1.0, normal_force=100.0))
+    run = d.simulate(2.5)
+    held = run["stop.mode"] == 0
+    left = run["load.torque"] + sum(
+        run[f"{name}.torque"] for name in ("stop", "ramped", "smooth") if f"{name}.torque" in run.names
+    )
+    assert np.count_nonzero(held) > 10, seed
+    assert np.all(abs(left[held]) <= 1e-9 * load), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_contacts_of_a_motion_that_leaves_rest_are_within_their_capacity(seed):
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("leaves")
+    a = d.shaft("a", inertia=uniform(rng, 0.1, 2))
+    law = cw.Coulomb(static=0.0, kinetic=0.0) if rng.random() < 0.5 else coulomb(rng)
+    d.add(cw.Brake("brake", shaft=a, friction=law, gain=1.0, normal_force=uniform(rng, 0, 1e-3)))
+    frequency, height = uniform(rng, 1, 20), uniform(rng, -150, 150)
+    course: Any = cw.Sine(amplitude=height, frequency=frequency)
+    if rng.random() < 0.5:
+        course = cw.Ramp(height=height, duration=uniform(rng, 0.01, 0.1), start=float(rng.choice([0.0, 0.05])))
+    d.add(cw.PrescribedAcceleration("given", shaft=a, acceleration=course))
+    run = d.simulate(0.15, output="steps")
+    assert run.status == "done", seed
+    assert np.all(abs(run["brake.torque"]) <= run["brake.capacity"] * (1 + 1e-9)), seed
+
+
 def limited(rng: Rng) -> cw.Driveline:
     """A limited slip with a prescribed side; each of the others may have a brake."""
     d = cw.Driveline("limited")

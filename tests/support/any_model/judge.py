@@ -14,6 +14,8 @@ from support.any_model.values import Plain
 
 # how a run may end early where there is a cause, by what must be in the model
 CAUSES = {"jammed": "prescribed", "unbalanced": "prescribed", "out_of_table": "", "fault": "", "chatter": ""}
+# a speed beside which slips of others count as zero that do not: 1e-10 of it is the tolerance of all
+LOST = 1e9
 
 
 def faults(made: Plain, seed: int, depth: int = 2, only: str = "") -> list[Fault]:
@@ -36,7 +38,7 @@ def _faults(made: Plain, seed: int, depth: int, only: str) -> list[Fault]:
         return [Fault("raises", type(error).__name__, str(error)[:300])]
     except Exception as error:
         return [Fault("raises", type(error).__name__, str(error)[:300])]
-    found = [*ending(made, base), *rows.faults(base)]
+    found = [*ending(made, base), *([] if explodes(base, LOST) else rows.faults(base))]
     if depth and base.status == "done" and not explodes(base):
         try:
             found += agree.faults(made, base, seed, depth, only)
@@ -57,12 +59,19 @@ def ending(made: Plain, base: Any) -> list[Fault]:
         return []
     if base.status in CAUSES and any(CAUSES[base.status] in kind for kind in kinds):
         return []
+    # a ratio that leaves zero against what stands
+    grounded = any("ratio" in one and "housing" in (one.get("input"), one.get("output")) for one in made["element"])
+    if base.status == "jammed" and grounded:
+        return []
     return [Fault("status", base.status, base.message[:300])]
 
 
-def explodes(base: Any) -> bool:
-    """Whether speeds grow without bound, as those of a torque that rises with the square of the speed do."""
+def explodes(base: Any, most: float = 1e4) -> bool:
+    """Whether speeds grow without bound, as those of a torque that rises with the square of the speed do.
+
+    Parameter: most, a speed that is none of a driveline.
+    """
     speed = base.rows[:, base.wiring.columns["speed"]]
     if len(speed) < 2:
         return False
-    return bool(np.abs(speed[-1]).max(initial=0.0) > max(1e4, 100.0 * np.abs(speed[0]).max(initial=0.0)))
+    return bool(np.abs(speed[-1]).max(initial=0.0) > max(most, 100.0 * np.abs(speed[0]).max(initial=0.0)))

@@ -63,17 +63,18 @@ def motions(seen: Seen) -> Iterator[Fault]:
         whole = wholes.get(branch.component.name, branch.component)
         along = seen.wiring.spread((branch,))[:, 0]
         if isinstance(whole, cw.PrescribedSpeed) and whole.cutoff is None:
-            given, signal = seen.speed @ along, whole.speed
+            rates, signal = seen.speed, whole.speed
         elif isinstance(whole, cw.PrescribedAcceleration):
-            given, signal = seen.part("acceleration") @ along, whole.acceleration
+            rates, signal = seen.part("acceleration"), whole.acceleration
         else:
             continue
         if not isinstance(signal, cw.Signal | float | int):
             continue
+        given, round_off = rates @ along, 1e-14 * np.abs(rates) @ np.abs(along)
         both = np.array([sides(signal, t) for t in seen.time])
         size = np.abs(both).max(axis=1)
         missed = np.abs(given - np.clip(given, both.min(axis=1), both.max(axis=1)))
-        bad = missed - 1e-7 * (size + 1e-3 * size.max(initial=0.0)) - 1e-9
+        bad = missed - 1e-7 * (size + 1e-3 * size.max(initial=0.0)) - 1e-9 - round_off
         words = lambda at, w=whole, g=given, b=both: f"{w.name}: {g[at]:.6g} for {b[at]}"  # noqa: E731
         yield from seen.worst("motion", whole.kind, bad, words)
 

@@ -173,6 +173,8 @@ struct Shares {
       const T* c = set.column + i * m;
       for (int a = 0; a < m; ++a) axpy(m, k * c[a], c, matrix + a * m);
     }
+    // those that one side alone holds yield at zero: towards it there is stiffness
+    if (value(most) == 0) most = free_stiffness;
     // where all have yielded the deflection is not unique
     for (int a = 0; a < m; ++a) matrix[a * m + a] += matrix[a * m + a] * T(1e-12) + most * T(1e-14);
     for (int a = 0; a < m; ++a) step[a] = residual[a];

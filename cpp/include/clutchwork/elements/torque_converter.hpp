@@ -125,12 +125,19 @@ struct TorqueConverter : declared::TorqueConverter {
   static bool is_leaving(const At<S>& at) {
     return at.piece == 0 && at.rates[Way::slip] == S(0);
   }
+  /// Whether both sides stand, to the round-off with which locked contacts and transmissions hold them: there is no
+  /// ratio of their speeds.
+  template <class S>
+  static bool rests(const At<S>& at) {
+    constexpr double standing = 1e-9;
+    return abs(value(at.rates[Way::impeller])) + abs(value(at.rates[Way::turbine])) < standing;
+  }
   /// Torque of the turbine over that of the impeller.
   template <class T, class S>
   static S multiplied(const Params<T>& p, const At<S>& at) {
     const List ratios = list_of(p.speed_ratio, at.points);
     const S& w = at.rates[Way::impeller];
-    if (at.piece >= ratios.count || vanishes(w) || is_leaving(at)) return S(1);
+    if (at.piece >= ratios.count || rests(at) || is_leaving(at)) return S(1);
     const List m = list_of(p.torque_ratio, at.points);
     return over_ratio(ratios, at.piece, at.rates[Way::slip] / w, [&](int k) { return m[k]; });
   }

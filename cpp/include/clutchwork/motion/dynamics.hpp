@@ -118,7 +118,9 @@ void sparse_multipliers(const Workspace<T>& ws, const T* torque, int np, T* out)
   for (int a = 0; a < m; ++a) {
     const int d = ne + ws.held.contact[a];
     b[a] = T(0) - ws.geometry.white.times(d, q);
-    for (int p = 0; p < np; ++p) b[a] -= prescribed_share(ws, d, p) * ws.in.prescribed_slope[p];
+    // between prescribed speeds no torque holds
+    for (int p = 0; p < np && !is_rigid(ws, ws.held.contact[a]); ++p)
+      b[a] -= prescribed_share(ws, d, p) * ws.in.prescribed_slope[p];
   }
   solve_locked(ws, b, out);
 }

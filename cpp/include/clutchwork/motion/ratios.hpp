@@ -383,6 +383,55 @@ int settle_ties(Form& form, T* y) {
   return -1;
 }
 
+/// Product of the row of transmission a at one ratio with its row at another, in the mobility of the reduced speeds.
+template <class T>
+double row_product(const Ratios<T>& r, int a, double one, double other) {
+  const T* first = r.between + 2 * a * r.rows + 2 * a;
+  return value(first[0]) - (one + other) * value(first[1]) + one * other * value(first[r.rows + 1]);
+}
+
+/// Whether both directions of transmission a are one and the same to the reduced speeds, or one of them is prescribed.
+template <class T>
+bool is_one_way(const Ratios<T>& r, int a) {
+  const T* first = r.between + 2 * a * r.rows + 2 * a;
+  const double product = value(first[0]) * value(first[r.rows + 1]), mixed = value(first[1]);
+  return product - mixed * mixed <= 1e-12 * product;
+}
+
+/// A transmission whose ratio has passed, since the point that was linearized last, one at which nothing can keep it
+/// against what is prescribed; -1: none. docs/theory/varying-ratios.md (9)
+template <class T>
+int turned_over(const Workspace<T>& ws) {
+  const Ratios<T>& r = ws.ratios;
+  const int np = int(ws.sys.prescribed);
+  for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t) {
+    const int a = r.tie[t], k = r.place[2 * a];
+    const double now = value(r.plain.ratio[a]);
+    if (row_product(r, a, value(r.some.ratio[a]), now) >= 0 || !is_one_way(r, a)) continue;
+    double miss = 0, size = 0;
+    for (int p = 0; p < np; ++p) {
+      const double first = value(ws.reduced.offset[k * np + p] * ws.in.prescribed[p]),
+                   second = now * value(ws.reduced.offset[(k + 1) * np + p] * ws.in.prescribed[p]);
+      miss += first - second, size += abs(first) + abs(second);
+    }
+    if (abs(miss) > slip_tolerance(ws) + 1e-9 * size) return a;
+  }
+  return -1;
+}
+
+/// A transmission of which nothing is left that could keep it at its ratio where a run stands still; -1: none.
+template <class T>
+int vanished_row(const Ratios<T>& r) {
+  constexpr double least = 1e-10;
+  for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t) {
+    const int a = r.tie[t];
+    const T* first = r.between + 2 * a * r.rows + 2 * a;
+    const double ratio = value(r.some.ratio[a]), size = value(first[0]) + value(first[r.rows + 1]);
+    if (row_product(r, a, ratio, ratio) <= least * size) return a;
+  }
+  return -1;
+}
+
 /// Locked contacts that share a load pass it on otherwise than the carriers would alone: transmissions take the
 /// difference, at the point that was evaluated last. docs/theory/varying-ratios.md (21)
 template <class Form, class T = typename Form::Scalar>

@@ -34,7 +34,10 @@ void map_multipliers(Workspace<T>& ws) {
   for (int p = 0; p < np; ++p) {
     for (int a = 0; a < m; ++a) {
       const int d = ne + ws.held.contact[a];
-      b[a] = white.times(d, ws.geometry.prescribed_momentum + p * nv) - prescribed_share(ws, d, p);
+      // between prescribed speeds no torque holds
+      b[a] = is_rigid(ws, ws.held.contact[a])
+                 ? T(0)
+                 : white.times(d, ws.geometry.prescribed_momentum + p * nv) - prescribed_share(ws, d, p);
     }
     solve_locked(ws, b, x);
     for (int a = 0; a < m; ++a) ws.held.reach_prescribed[a * np + p] = x[a];

@@ -89,6 +89,11 @@ class Phase : public Pace<typename Form::Scalar> {
   /// The step has become too short. The inputs are those of its last stage.
   [[gnu::noinline]] void collapse() {
     ws_.in.time = -infinity;
+    if constexpr (Form::full) {
+      const auto& ratios = taken_form().ws.ratios;
+      const int lost = ratios.n > 0 ? vanished_row(ratios) : -1;
+      if (lost >= 0) return jam(lost);
+    }
     blame(form_, step_);
     leave(ws_.detail.component >= 0 || !(error_ <= 1e300) ? Status::not_finite : Status::step_collapse);
   }
@@ -108,7 +113,7 @@ class Phase : public Pace<typename Form::Scalar> {
     if constexpr (Form::full) {
       if (ws_.ratios.n > 0) prepare_ratios(form_);
       if (fresh) keep_ties(form_, step_, ws_.time, step_.y0());
-      if (ws_.ratios.jammed >= 0) return jam();
+      if (ws_.ratios.jammed >= 0) return jam(ws_.ratios.jammed);
     }
     if constexpr (!Form::small) {
       if (balance_massless(form_, step_) && event && may_decide_again()) return decide_again();
@@ -231,7 +236,11 @@ class Phase : public Pace<typename Form::Scalar> {
     step_.t = ws_.time;
     const double error = advance();
     if (!judge(error, all_finite(form_.n(), taken_step().y1()))) return false;
-    if constexpr (Form::full) keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
+    if constexpr (Form::full) {
+      keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
+      auto& ws = taken_form().ws;
+      if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = turned_over(ws);
+    }
     look_at_end();
     return true;
   }
@@ -264,7 +273,7 @@ class Phase : public Pace<typename Form::Scalar> {
     } else if (misses_rest(hit)) {
       retake();
     } else if (Form::full && hit.what == Hit::nothing && taken_form().ws.ratios.jammed >= 0) {
-      jam();
+      jam(taken_form().ws.ratios.jammed);
     } else if (reach(hit.s)) {
       hit.what == Hit::nothing ? accept() : meet(hit);
     }
@@ -275,9 +284,8 @@ class Phase : public Pace<typename Form::Scalar> {
   }
 
   /// A transmission whose speeds are prescribed otherwise than its ratio says.
-  void jam() {
-    ws_.detail.component = first_of(ws_, ws_.ratios.jammed);
-    ws_.ratios.jammed = -1;
+  void jam(int transmission) {
+    ws_.detail.component = first_of(ws_, transmission);
     leave(Status::jammed);
   }
 
