@@ -155,7 +155,10 @@ def test_every_guard_of_the_core_has_a_driveline() -> None:
 @pytest.mark.filterwarnings("ignore::clutchwork.FaultWarning", "ignore::clutchwork.ModelWarning")
 def test_derivatives_through_every_guard_are_those_of_differences(kind: str) -> None:
     met = refused = 0
-    for seed in range(amount(4)):
+    for seed in range(max(4, amount(4))):
+        # a seed may meet the guard or not
+        if met and seed >= amount(4):
+            break
         driveline, numbers, t_end = MODELS[kind](np.random.default_rng(seed))
         system = driveline.assemble()
         speeds = [f"{node.name}.speed" for node in system.nodes if not node.fixed]

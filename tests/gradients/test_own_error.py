@@ -63,3 +63,16 @@ def test_derivatives_of_random_drivelines_have_the_tolerance_of_the_run() -> Non
                     within[rtol] += list(np.abs(matrix - found[-1]) * size / of <= allowed)
     assert min(len(each) for each in within.values()) > 10
     assert all(np.mean(each) >= 0.9 for each in within.values())
+
+
+@pytest.mark.parametrize("t_start", [0.1, 0.3])
+def test_a_prescribed_acceleration_that_begins_later_keeps_its_derivatives(t_start: float) -> None:
+    d = cw.Driveline("later")
+    e, w = d.shaft("e", speed=10.0), d.shaft("w", inertia=0.8)
+    d.add(cw.PrescribedAcceleration("m", shaft=e, acceleration=5.0))
+    d.add(cw.Clutch("c", base=e, follower=w, friction=cw.Coulomb(static=0.12, kinetic=0.1), gain=5e-4, pressure=1e4))
+    run = cw.simulate(d, 0.6, t_start=t_start)
+    # it slips all the time: the torque is 0.5 N m
+    rise = 0.5 * (0.6 - t_start) / 0.8
+    found = run.gradient(of="w.speed", by=["w.inertia", "c.friction.kinetic"]).matrix[0]
+    assert found == pytest.approx([-rise / 0.8, rise / 0.1], rel=1e-9)

@@ -70,7 +70,7 @@ def test_jerk_of_a_steady_one_and_of_a_sine() -> None:
 def test_a_jump_has_the_jerk_of_its_height_over_the_window() -> None:
     time = np.arange(0.0, 4.0, STEP)
     for window in (0.05, 0.2):
-        found = jerk(np.maximum(time - 2.0, 0.0), STEP, window)
+        found = jerk(np.maximum(time - 2.0, 0.0), STEP, window=window)
         assert np.max(found) == pytest.approx(1.0 / window, rel=1e-9)
         # of as much area as the jump has, and over two windows
         assert np.sum(found) * STEP == pytest.approx(1.0, rel=1e-9)

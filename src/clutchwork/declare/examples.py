@@ -17,6 +17,7 @@ ENDS = {
     "forward": "load",
     "backward": "output",
     "wheel": "load",
+    "turbine": "load",
     "mass": "car",
     "cold": "air",
     "inlet": "air",

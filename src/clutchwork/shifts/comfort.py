@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.errors import UseError
 from clutchwork.results.felt import WINDOW, felt_jerk
 
 Array = NDArray[np.float64]
@@ -15,12 +16,17 @@ LOW, HIGH, TRANSITION, QUALITY = 0.4, 100.0, 2.0, 0.63
 MEMORY = 20.0
 
 
-def jerk(speed: Array, step: float, window: float = WINDOW) -> Array:
+def jerk(speed: Array, step: float, *, window: float = WINDOW) -> Array:
     """The jerk that is felt [m/s3]: change of the mean acceleration over a window, docs/theory/jerk.md (1).
 
     Parameters: speed [m/s] at equal steps [s]; window [s]. Before the first speed and behind the last one it is taken
-    to go on evenly.
+    to go on evenly. UseError where the record is shorter than the window.
     """
+    if not 0.0 < window <= step * len(speed):
+        record = f"{step * len(speed):g} s"
+        raise UseError(
+            "jerk", [f"window = {window:g} s does not fit into a record of {record}; give 0.05 s, and a speed in m/s"]
+        )
     count = max(1, round(window / step))
     ahead = speed[0] + (speed[1] - speed[0]) * np.arange(-count, 0)
     behind = speed[-1] + (speed[-1] - speed[-2]) * np.arange(1, count + 1)

@@ -123,13 +123,21 @@ class Window:
         return self.columns[name]
 
 
+def _speed(part: Window, acceleration: str) -> Array:
+    """The speed whose rate an acceleration is, from where it begins; that of a sensor is integrated."""
+    speed = acceleration.removesuffix("acceleration") + "speed"
+    if acceleration.endswith(".acceleration") and speed in part:
+        return part[speed]
+    values = part[acceleration]
+    return np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * STEP)])
+
+
 def _quality(
     part: Window, shift: Shift, box: Gearbox, prefix: str, torque: str, acceleration: str, window: float
 ) -> ShiftQuality:
     time = part.time
     inside = (time >= shift.begin) & (time <= shift.end)
-    speed = acceleration.removesuffix("acceleration") + "speed"
-    jerks = jerk(part[speed], STEP, window) if acceleration else np.array([np.nan])
+    jerks = jerk(_speed(part, acceleration), STEP, window=window) if acceleration else np.array([np.nan])
     dose = vibration_dose(part[acceleration], STEP) if acceleration else float("nan")
     hole, share = _hole(part[torque], time, shift) if torque else (float("nan"), float("nan"))
     flare, sag = _overshoot(part, shift, box, prefix, inside)
