@@ -75,6 +75,8 @@ def moving(cls: Any) -> cw.Driveline:
             values[item.name] = 0.37 * (spec.example or (3e5 if spec.unit == "Pa" else 2.0))
     if "carrier" in values:
         values["carrier"] = nodes["third"]
+    # two sides want two shafts
+    values |= {name: nodes["other"] for name in ("turbine", "forward") if isinstance(values.get(name), cw.Node)}
     turning.add(cls("x", **values))
     return d if turning.check() else turning
 
