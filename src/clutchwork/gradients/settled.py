@@ -24,7 +24,7 @@ Beside = Callable[[Array, "int | None"], "Sequence[Line] | None"]
 STEP = 1e-6
 # derivatives that differ by less are one, of their size or that of the value over that of the number, and of the
 # relative tolerance of the runs
-ALIKE, BY_TOLERANCE = 1e-5, 100.0
+ALIKE, BY_TOLERANCE = 1e-6, 100.0
 # nearer by, of that step; derivatives at both that differ by less are a line over the step, of their size
 NEARER, NEARLY = 0.1, 1e-2
 # values that differ by more on both sides jump, of their size, and beside what their derivatives say
