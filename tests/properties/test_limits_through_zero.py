@@ -29,7 +29,7 @@ def limit(rng: np.random.Generator, sign: float) -> Any:
 
 
 def driveline(seed: int, knots: bool) -> cw.Driveline:
-    """Two shafts on a spring, driven to and back, with a clutch that may only hold between them."""
+    """Two shafts on a spring, driven back and forth, with a clutch that may only hold between them."""
     rng = np.random.default_rng([seed, 12])
     d = cw.Driveline(f"limits {seed}")
     a, b = d.shaft("a", inertia=0.1, speed=float(rng.normal(0.0, 5.0))), d.shaft("b", inertia=0.2)

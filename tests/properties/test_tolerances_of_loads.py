@@ -21,7 +21,7 @@ T_END = 0.5
 
 
 def lossy(seed: int) -> cw.Driveline:
-    """Gears with losses or a limited slip, each with a tolerance, driven to and back through springs and play."""
+    """Gears with losses or a limited slip, each with a tolerance, driven back and forth through springs and play."""
     rng = np.random.default_rng([seed, 31])
     d = cw.Driveline(f"tolerance {seed}")
     a, b, c = (d.shaft(name, inertia=log_uniform(rng, 0.01, 1.0), speed=None) for name in "abc")
