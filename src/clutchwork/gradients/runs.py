@@ -26,11 +26,14 @@ from clutchwork.gradients.words import Words
 from clutchwork.results.gradient import NoGradient
 from clutchwork.run.simulation import told
 from clutchwork.sweeps.batch import Wanted
+from clutchwork.sweeps.columns import all_needed
 
 Array = NDArray[np.float64]
 
 # memory of a run that is followed back: the first is asked for, what is not written costs nothing
 TAPES = (1 << 28, 1 << 31)
+# parts of a row that are integrals over time
+INTEGRALS = ("angle", "element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy")
 NO_TANGENTS = np.zeros((0, 0, 0))
 
 
@@ -107,7 +110,7 @@ class Runs:
         """A run with derivatives by all numbers."""
         places, seeds = point.slopes.places.astype(np.int64), point.slopes.matrix
         status, _, rows, row_tangents, events, event_tangents, grazes, fault = derivatives().tangents(
-            point.system, places, seeds, point.grid, self.wanted.t_end, list(self._options.items()), self._size
+            point.system, places, seeds, *self._how(point)
         )
         self._refuse_stopped(status, (fault[0], float("nan"), fault[1], -1))
         moved = self._aligned(point, events[:, 0])
@@ -121,9 +124,7 @@ class Runs:
         """A run that is followed back from each result; forward where there is no memory for it."""
         places = point.slopes.places.astype(np.int64)
         for size in TAPES:
-            tape = derivatives().Adjoint(
-                point.system, places, point.grid, self.wanted.t_end, list(self._options.items()), self._size, size
-            )
+            tape = derivatives().Adjoint(point.system, places, *self._how(point), size)
             status, _, rows, events, grazes, fault = tape.found()
             if status != INTERRUPTED:
                 break
@@ -137,9 +138,17 @@ class Runs:
         slope = partial(_back, tape, point.slopes, primal.rows.shape, len(events))
         return Run(primal, slope, is_forward=False, notes=point.notes)
 
+    def _how(self, point: Point) -> tuple[Any, ...]:
+        """What both kinds of runs with derivatives are told behind their numbers."""
+        options = list(self._options.items())
+        return point.grid, self.wanted.t_end, options, wiring(self.task.system).row_size, self._has_work
+
     @cached_property
-    def _size(self) -> int:
-        return wiring(self.task.system).row_size
+    def _has_work(self) -> bool:
+        """Whether any output is made of angles or work; their derivatives are left out elsewhere."""
+        columns = wiring(self.task.system).columns
+        integrals = {place for part in INTEGRALS for place in range(columns[part].start, columns[part].stop)}
+        return not integrals.isdisjoint(all_needed(self.signals.plain.values()))
 
     def _with_grid(self, point: Point) -> Point:
         return point._replace(grid=np.unique(np.concatenate([self.wanted.grid, point.steps.times.ravel()])))

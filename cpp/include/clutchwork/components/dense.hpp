@@ -4,15 +4,16 @@
 /// Small dense kernels on row-major views; sizes from 1 to a few hundred, no heap.
 namespace clutchwork {
 
-template <class T>
-CLUTCHWORK_HOT T dot(int n, const T* a, const T* b) {
-  T s = T(0);
+// rows may be plain where what they multiply has derivatives
+template <class T, class S>
+CLUTCHWORK_HOT S dot(int n, const T* a, const S* b) {
+  S s = S(0);
   for (int i = 0; i < n; ++i) s += a[i] * b[i];
   return s;
 }
 
-template <class T>
-CLUTCHWORK_HOT void axpy(int n, T a, const T* x, T* y) {
+template <class A, class X, class Y>
+CLUTCHWORK_HOT void axpy(int n, A a, const X* x, Y* y) {
   for (int i = 0; i < n; ++i) y[i] += a * x[i];
 }
 

@@ -143,7 +143,7 @@ void change_massless(Form& form, double t, const T* y, T* d, T* b, T* dt) {
       T drift = T(0);
       for (int s = ws.branch[k].state; s < ws.branch[k].state + ws.branch[k].states; ++s)
         drift += ws.jacobian.f_state[s] * d[nz + s];
-      for (int j = 0; j < nx; ++j) drift += ws.shared.torque_by[k * nx + j] * d[n - nx + j];
+      for (int j = 0; j < nx; ++j) drift += ws.jacobian.torque_by[k * nx + j] * d[n - nx + j];
       form.push(k, drift, b);
     }
   }

@@ -345,7 +345,7 @@ class Phase : public Pace<typename Form::Scalar> {
   {
     varied_.rest();
     for (double at = 0; at < s;) {
-      const double to = varied_.follow(at, s);
+      const double to = varied_.follow(at, s, end_of_step());
       if (to < 0) return leave(Status::step_collapse), false;
       if (ws_.moved.parts++ >= ws_.options.max_steps) return leave(Status::too_many_steps), false;
       const double end = to == s ? time_at(s) : step_.t + step_.h;
@@ -354,13 +354,14 @@ class Phase : public Pace<typename Form::Scalar> {
       for (int i = 0; to < s && i < form_.n(); ++i) step_.y0()[i] = step_.y1()[i];
       at = to;
     }
-    if (s >= 1 && varied_.was_moved()) look_at_end();
     return true;
   }
   bool write_part(double end)
     requires has_tangents<T>
   {
     const bool rows = end > step_.t && sink_.at < sink_.count && sink_.times[sink_.at] <= end;
+    if (!(rows || ws_.options.work || ws_.options.angles)) return true;
+    varied_.fit_part();
     if (ws_.options.work) fit_power(form_, step_, 1.0);
     const Status shown = rows ? emit(form_, step_, 1.0, end, sink_) : Status::running;
     if (shown != Status::running) return leave(shown), false;
@@ -427,6 +428,7 @@ class Phase : public Pace<typename Form::Scalar> {
     before_ = 0, landings_ = 0, rejected_ = false;
     // a run with derivatives has a step that ends there
     const double at = has_tangents<T> ? 1.0 : hit.s;
+    if constexpr (has_tangents<T>) varied_.fit_part();
     note_before(form_, step_, at);
     interpolate(form_, step_, at, step_.u());
     ws_.time = smaller(ws_.time + hit.s * reach_, stop_);
