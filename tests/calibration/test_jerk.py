@@ -58,7 +58,7 @@ def test_one_definition_in_sweeps_calibrations_and_shifts():
     assert float(found) == pytest.approx(limited.limits[0].before[1], rel=1e-6)
     step = 1e-3
     speed = discs().simulate(5.0, times=np.arange(0.0, 5.0, step))["load.speed"]
-    felt = cw.shifts.jerk(speed, step, WINDOW)[round(0.6 / step) : round(3.9 / step)]
+    felt = cw.shifts.jerk(speed, step, window=WINDOW)[round(0.6 / step) : round(3.9 / step)]
     assert np.max(np.abs(felt)) == pytest.approx(JUMP, rel=step / WINDOW)
     assert JUMP * (1.0 - 0.5 / PER_WINDOW) <= float(found) <= JUMP * (1.0 + 1e-6)
     # in a calibration and in a sweep at instants a sixteenth of a window apart, in shifts a millisecond

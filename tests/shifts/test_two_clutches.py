@@ -191,7 +191,9 @@ def test_tie_up_on_both_sides_of_a_short_inertia_phase() -> None:
         ]
         one = quality(run(*points))
         assert one.tie_up == pytest.approx(second, rel=1e-6), seed
-        assert one.shift.begin == pytest.approx(0.6, abs=1e-9), seed
+        # docs/theory/shifts.md (8): below 2 % of its largest torque an element carries none
+        begin = 0.6 if first > 0.02 * 4.0 * second else 0.6 + before
+        assert one.shift.begin == pytest.approx(begin, abs=1e-9), seed
         assert one.shift.end == pytest.approx(0.6 + before + behind, abs=1e-9), seed
 
 
