@@ -25,6 +25,7 @@ void describe(W& ws, A& a) {
       a.number(ws.in.next_knot);
   a.whole(ws.guard.n_faulty, 0, nc), a.whole(ws.contact.failed, -1, nc - 1), a.whole(ws.guard.n_loads, 0, nc);
   a.whole(ws.guard.reversals, 0, 1 << 30), a.whole(ws.guard.reversals_since, 0, most);
+  a.number(ws.guard.balanced_at);
   a.number(ws.in.time), a.whole(ws.events.n, 0, EventBuffer::room + 2 * nc);
   a.whole(ws.detail.component, -1, nd - 1), a.number(ws.detail.value), a.whole(ws.detail.row, -1, ws.row.size - 1);
 
@@ -334,6 +335,10 @@ inline void resume(Workspace<double>& ws, const unsigned char* bytes) {
   ws.options.method = ws.reduced.method;
   const bool entered = enter_mode(ws, true);
   read();
+  for (int i = 0; i < ws.guard.n_lines; ++i) {
+    LineGuard& line = ws.guard.line[i];
+    if (line.kind == LineGuard::turn) line.sign = ws.heading[ws.branch[line.branch].direction];
+  }
   rest_fresh(ws);
   ws.fresh_phase = ws.fresh_phase || !entered;
 }

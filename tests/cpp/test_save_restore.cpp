@@ -99,6 +99,15 @@ void stays_the_same(const Model& model) {
   }
 }
 
+/// A clutch beside a prescribed speed whose wind-up is full soon: it stays full.
+Model full_of_wind(double speed) {
+  Model m;
+  const int in = m.prescribed(0.3, m.signal({{0, {speed}}, {0.8, {2 * speed}}})), out = m.shaft(0.5);
+  m.contact<elements::Clutch, laws::Mykhalevych>(in, out, {1}, {m.constant(0.5)},
+                                                 {0.2, 0.15, 0.05, 3, 0.5, double(choice::Reset::saturate), 0.7, 0});
+  return m;
+}
+
 }  // namespace
 
 int test_save_restore() {
@@ -123,5 +132,8 @@ int test_save_restore() {
   for (double middle : {0.0, 0.4, 0.8, 1.21, 1.6, 1.9, 2.5}) continues(bristles(), middle, 3.0);
   for (double middle : {0.0, 0.2, 0.7, 1.05, 1.3, 1.61, 2.1}) continues(hysteresis(), middle, 2.5);
   for (double middle : {0.0, 0.3, 0.67, 1.3, 2.3, 2.4, 2.7}) continues(warm(), middle, 3.0);
+  for (double speed : {-3.0, 3.0}) {
+    for (double middle : {0.001, 0.3, 0.8, 1.3}) continues(full_of_wind(speed), middle, 2.0);
+  }
   return check::result();
 }

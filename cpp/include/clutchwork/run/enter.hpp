@@ -136,7 +136,8 @@ bool enter_mode(Workspace<T>& ws, bool again = false) {
   list_laws(ws);
   list_processes(ws);
   list_gaps(ws);
-  turn_jumped(ws);
+  // the rates of a phase that goes on are not those that are there while it is made ready
+  if (!again) turn_jumped(ws);
   if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);
   ws.reduced.is_sparse = has_tangents<T> || sys.full[0] != 0 || sys.states > most_small_states(ws.reduced.method) ||
