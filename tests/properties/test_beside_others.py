@@ -321,3 +321,30 @@ def test_a_self_locking_gear_in_a_redundant_set():
         for name in ("across", "brake"):
             over = abs(run[f"{name}.torque"]) - run[f"{name}.capacity"]
             assert np.max(over) <= 1e-6 * (1 + np.max(run[f"{name}.capacity"])), (seed, name)
+
+
+def _before_a_light_shaft(rng: Rng) -> tuple[cw.Driveline, float]:
+    """A shaft without inertia whose speed follows from a ratio that vanishes, and when it does."""
+    d = cw.Driveline("light")
+    light = d.shaft("light", inertia=0.0)
+    kind = rng.integers(3)
+    if kind == 0:
+        mass = d.mass("mass", mass=uniform(rng, 0.5, 5))
+        d.add(cw.CrankSlider("tie", shaft=light, mass=mass, radius=0.02, rod=uniform(rng, 0.05, 1)))
+        return d, 0.0
+    heavy = d.housing if kind == 1 else d.shaft("heavy", inertia=uniform(rng, 0.1, 2))
+    d.add(cw.Torque("load", shaft=light, torque=uniform(rng, 1, 5)))
+    at, begin = uniform(rng, 0.05, 0.3), uniform(rng, 0.3, 2) * rng.choice([-1, 1])
+    ratio: Any = 0.0 if rng.random() < 0.3 else cw.Table([(0.0, begin), (at, 0.0), (2.0 * at, -begin)])
+    d.add(cw.VariableGear("tie", input=heavy, output=light, ratio=ratio))
+    return d, 0.0 if ratio == 0.0 else at
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_ratio_that_vanishes_before_a_shaft_without_inertia_jams(seed):
+    """Nothing determines the speed of that shaft: the run ends there, from the start or on the way, and says so."""
+    d, at = _before_a_light_shaft(np.random.default_rng([seed, 17]))
+    with pytest.warns(cw.StoppedEarly, match="the shaft without inertia behind it at .tie."):
+        run = d.simulate(1.0, work=False)
+    assert run.status == "jammed", (seed, run.message)
+    assert len(run) == 0 if at == 0.0 else run.time[-1] == pytest.approx(at, rel=1e-4), seed

@@ -419,6 +419,31 @@ int turned_over(const Workspace<T>& ws) {
   return -1;
 }
 
+/// A transmission that has passed, since the point that was linearized last, a ratio at which the speed without inertia
+/// that follows from it is determined by nothing; -1: none. docs/theory/varying-ratios.md, shafts without inertia
+template <class T>
+int passed_over(const Ratios<T>& r) {
+  for (int a = 0; a < r.n; ++a) {
+    if (r.column[a] < 0) continue;
+    const double first = value(r.follows[2 * a * r.n + a]), second = value(r.follows[(2 * a + 1) * r.n + a]);
+    if ((first - value(r.some.ratio[a]) * second) * (first - value(r.plain.ratio[a]) * second) <= 0) return a;
+  }
+  return -1;
+}
+
+/// A transmission that, from the point that was evaluated last, reaches such a ratio at once; -1: none.
+template <class T>
+int passes_at_once(const Ratios<T>& r) {
+  constexpr double soon = 1e-7;
+  for (int a = 0; a < r.n; ++a) {
+    if (r.column[a] < 0) continue;
+    const double second = value(r.follows[(2 * a + 1) * r.n + a]);
+    const double share = value(r.follows[2 * a * r.n + a]) - value(r.plain.ratio[a]) * second;
+    if (!(abs(share) > soon * abs(value(r.plain.slope[a]) * second))) return a;
+  }
+  return -1;
+}
+
 /// A transmission of which nothing is left that could keep it at its ratio where a run stands still; -1: none.
 template <class T>
 int vanished_row(const Ratios<T>& r) {

@@ -203,6 +203,10 @@ Status switch_modes(Workspace<T>& ws) {
   if (ws.happened.cause == Cause::slip_zero && located >= 0) ws.contact.forced[located] = 0;
   if (!at_start) jump(ws);
   const BesideRatios<T> beside(ws);
+  if (const int lost = lost_follower(ws); lost >= 0) {
+    ws.detail.component = first_of(ws, lost);
+    return Status::jammed;
+  }
   if (ws.ratios.n > 0) settle_rows(ws);
   if (!at_start) see_speeds(ws);
   if constexpr (has_tangents<T>) {
