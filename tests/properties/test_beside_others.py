@@ -75,6 +75,29 @@ def test_transmissions_balance_what_locked_contacts_share(seed):
 
 
 @pytest.mark.parametrize("seed", range(MODELS))
+def test_what_is_shared_turns_with_the_ratio(seed):
+    """Two contacts hold both sides of a transmission whose ratio goes on: they balance at every ratio, zero included."""
+    rng = np.random.default_rng([seed, 5])
+    d = cw.Driveline("turned")
+    a, b = d.shaft("a", inertia=uniform(rng, 0.1, 2)), d.shaft("b", inertia=uniform(rng, 0.1, 2))
+    ratio = cw.Sine(amplitude=uniform(rng, 0.5, 3), frequency=uniform(rng, 2, 6), offset=uniform(rng, -1, 1))
+    d.add(cw.VariableRatio("tie", input=a, output=b, ratio=ratio))
+    strong = {"friction": coulomb(rng), "gain": 1.0, "normal_force": 5000.0}
+    kinds = rng.choice(["a", "b", "ab"], size=2, replace=False)
+    for kind in kinds:
+        if kind == "ab":
+            d.add(cw.Clutch("on_ab", base=a, follower=b, **strong))
+        else:
+            d.add(cw.Brake(f"on_{kind}", shaft=a if kind == "a" else b, **strong))
+    d.add(cw.Torque("load_a", shaft=a, torque=sine(rng, 30)))
+    d.add(cw.Torque("load_b", shaft=b, torque=sine(rng, 30)))
+    run = d.simulate(0.4)
+    for shaft in "ab":
+        miss = ports(run, shaft) - {node.name: node.inertia for node in d.nodes}[shaft] * run[f"{shaft}.acceleration"]
+        assert np.max(abs(miss)) <= 1e-6 * np.max(abs(run[f"load_{shaft}.torque"])), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
 def test_a_state_beside_a_transmission_goes_on_to_the_same_bits(seed):
     rng = np.random.default_rng(seed)
     d = tied(rng)

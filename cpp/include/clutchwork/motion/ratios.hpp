@@ -109,6 +109,11 @@ void ratio_at(const Workspace<T>& ws, const Whole<S>& e, int nz, int a) {
     }
     const D ratio = E::ratio(p, At<D>{D(S(T(0))), own, input, b.piece, points_of(ws)});
     w.ratio[a] = ratio.v, w.slope[a] = ratio.d[0];
+    if constexpr (std::is_same_v<S, T>) {
+      r.present[a] = ratio.v;
+    } else {
+      r.present[a] = ratio.v.v;
+    }
   });
   w.pull[a] = w.slope[a] * e.rate[k + 1];
   for (int p = 0; p < np; ++p) {
