@@ -76,7 +76,7 @@ def test_transmissions_balance_what_locked_contacts_share(seed):
 
 @pytest.mark.parametrize("seed", range(MODELS))
 def test_what_is_shared_turns_with_the_ratio(seed):
-    """Two contacts hold both sides of a transmission whose ratio goes on: they balance at every ratio, zero included."""
+    """Two contacts hold both sides of a transmission whose ratio goes on: balanced at every ratio, zero included."""
     rng = np.random.default_rng([seed, 5])
     d = cw.Driveline("turned")
     a, b = d.shaft("a", inertia=uniform(rng, 0.1, 2)), d.shaft("b", inertia=uniform(rng, 0.1, 2))
@@ -371,3 +371,39 @@ def test_a_ratio_that_vanishes_before_a_shaft_without_inertia_jams(seed):
         run = d.simulate(1.0, work=False)
     assert run.status == "jammed", (seed, run.message)
     assert len(run) == 0 if at == 0.0 else run.time[-1] == pytest.approx(at, rel=1e-4), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_contact_that_holds_nothing_does_not_break_others_loose(seed):
+    """Where a load rises from nothing one contact is at its limit, of zero: another lets go at its own, once."""
+    rng = np.random.default_rng([seed, 23])
+    d = cw.Driveline("nothing")
+    a, b, c = (d.shaft(name, inertia=uniform(rng, 0.1, 2)) for name in "abc")
+    d.add(cw.BearingFriction("nothing", shaft=c, friction=cw.Coulomb(static=0.0, kinetic=0.0), torque=1.0))
+    d.add(
+        cw.Clutch(
+            "clutch", base=a, follower=b, friction=cw.Coulomb(static=0.1, kinetic=0.1), gain=1.0, normal_force=10.0
+        )
+    )
+    start, rise = uniform(rng, 0.0, 0.3), uniform(rng, 20, 200)
+    d.add(cw.Torque("load", shaft=b, torque=cw.Ramp(height=rise, duration=1.0, start=start)))
+    run = d.simulate(0.9)
+    held = run["clutch.capacity"][0]
+    inertia = {node.name: node.inertia for node in d.nodes}
+    expected = start + held * (inertia["a"] + inertia["b"]) / inertia["a"] / rise
+    assert [event.time for event in run.events] == pytest.approx([expected] if expected < 0.9 else [], rel=1e-9), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_tolerance_between_prescribed_speeds_stops_nothing(seed):
+    """A transmission with a capacity from a prescribed shaft to the housing: its slip passes its tolerance."""
+    rng = np.random.default_rng([seed, 29])
+    d = cw.Driveline("given")
+    a = d.shaft("a", inertia=1.0)
+    ratio = float(rng.choice([0.0, 1.0]))
+    d.add(cw.VariableRatio("tie", input=a, output=d.housing, ratio=ratio, capacity=1.0, tolerance=uniform(rng, 0.1, 2)))
+    size = uniform(rng, 0.1, 1)
+    d.add(cw.PrescribedPosition("motion", shaft=a, position=cw.Sine(amplitude=size, frequency=uniform(rng, 5, 25))))
+    run = d.simulate(0.2)
+    assert run.status == "done", seed
+    assert run["tie.work"][-1] < 0.0, seed
