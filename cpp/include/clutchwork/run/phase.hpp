@@ -91,7 +91,11 @@ class Phase : public Pace<typename Form::Scalar> {
     ws_.in.time = -infinity;
     if constexpr (Form::full) {
       const auto& ratios = taken_form().ws.ratios;
-      const int lost = ratios.n > 0 ? vanished_row(ratios) : -1;
+      int lost = ratios.n > 0 ? vanished_row(ratios) : -1;
+      if (ratios.n > 0 && lost < 0) {
+        evaluate(taken_form(), ws_.time, taken_step().y0(), taken_step().slope());
+        lost = passes_at_once(ratios);
+      }
       if (lost >= 0) return jam(lost);
     }
     blame(form_, step_);
@@ -116,7 +120,7 @@ class Phase : public Pace<typename Form::Scalar> {
       if (ws_.ratios.jammed >= 0) return jam(ws_.ratios.jammed);
     }
     if constexpr (!Form::small) {
-      if (balance_massless(form_, step_) && event && may_decide_again()) return decide_again();
+      if (fresh && balance_massless(form_, step_) && event && may_decide_again()) return decide_again();
     }
     if constexpr (has_tangents<T>) {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
@@ -240,6 +244,7 @@ class Phase : public Pace<typename Form::Scalar> {
       keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
       auto& ws = taken_form().ws;
       if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = turned_over(ws);
+      if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = passed_over(ws.ratios);
     }
     look_at_end();
     return true;
