@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.beginning import at_rest
-from clutchwork.gradients.grazing import crowded, decided, decided_at_knots, refused, struck_together
+from clutchwork.gradients.grazing import crowded, decided, decided_at_knots, jumping_together, refused, struck_together
 from clutchwork.gradients.knots import times_of
 from clutchwork.gradients.lines import Line
 from clutchwork.gradients.pressing import unpressed
@@ -121,6 +121,8 @@ class Doubts:
         grazes = decided(primal.grazes, primal.events)
         for time, why in refused(system, grazes, float(self.sizes.max())):
             yield Doubt(why, self._up_to(time), self._all)
+        for time, why in jumping_together(system, primal.grazes, float(self.sizes.max())):
+            yield Doubt(why, self._up_to(time), self._moving_knots())
         for time, why in crowded(primal.events, contacts):
             yield Doubt(why, self._up_to(time), self._all)
         for time, why in struck_together(system, primal.events, contacts):
