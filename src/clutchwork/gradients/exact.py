@@ -152,7 +152,7 @@ class Exact:
             run, found = self.lines(point)
         except NoGradient as none:
             raise bends_of(none, self.task) from None
-        notes = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.events)]
+        notes = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.decided)]
         return found, self._doubts(point, run, found), tuple(dict.fromkeys(notes))
 
     def _known_without(self, x: Array, bent: Mapping[int, str]) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:
