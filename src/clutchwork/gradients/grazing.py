@@ -120,11 +120,11 @@ def decided_at_knots(
 
     Parameters: knots, instants of all [s]. Where a signal jumps the knot is what makes them do so.
     """
-    changed = _locking(events)
-    changed = changed[_near(changed[:, AT["time"]], knots)]
-    jumps, by_knot = grazes[grazes[:, KIND] < 0, TIME], np.isin(changed[:, AT["cause"]], DRIVEN)
-    for event in changed[~(by_knot & _near(changed[:, AT["time"]], jumps))]:
+    changed, jumps = _locking(events), grazes[grazes[:, KIND] < 0, TIME]
+    for event in changed[_near(changed[:, AT["time"]], knots)]:
         time = float(event[AT["time"]])
+        if event[AT["cause"]] in DRIVEN and _near(event[[AT["time"]]], jumps)[0]:
+            continue
         what = "locks" if event[AT["to"]] == LOCKED else "breaks away"
         yield time, f"{contacts[int(event[AT['contact']])]} {what} at {time:.9g} s, where a signal bends; move the knot"
 
