@@ -16,7 +16,7 @@ from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.gradients.chart import Chart, Slopes
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
-from clutchwork.gradients.plain import Plain
+from clutchwork.gradients.plain import Detail, Plain
 from clutchwork.gradients.primal import Knots, Primal
 from clutchwork.gradients.refined import Sharing
 from clutchwork.gradients.signals_at import SignalsAt
@@ -105,10 +105,9 @@ class Runs:
         point = Point(x, chart, words, slopes, moving, NO_STEPS, np.zeros(0), {}, self.wanted.grid, ())
         if not self.plain.in_steps:
             return point
-        run, jerks = self.plain.with_jerks(point.system, self.signals.at(x))
+        run, steps, jerks = self.plain.with_jerks(point.system, self.signals.at(x))
         self._refuse_stopped(run.status, run.detail)
-        steps = Steps.of_parts(run.times).long().inside()
-        return self._with_grid(point._replace(steps=steps, events=run.events[:, 0], jerks=jerks))
+        return self._with_grid(point._replace(steps=steps.long().inside(), events=run.events[:, 0], jerks=jerks))
 
     def forward(self, point: Point) -> Run:
         """A run with derivatives by all numbers."""
@@ -177,7 +176,7 @@ class Runs:
             t_end=self.wanted.t_end,
         )
 
-    def _refuse_stopped(self, status: int, detail: tuple[int, float, float, int]) -> None:
+    def _refuse_stopped(self, status: int, detail: Detail) -> None:
         if status != DONE:
             component, time, value, column = detail
             why = told(self.task.system, status, component, time, value, column)
