@@ -141,10 +141,13 @@ class Exact:
     def _settled(
         self, x: Array, beside: Beside, known: list[Line], doubts: list[Doubt], notes: tuple[str, ...]
     ) -> Found:
+        values, matrix = np.array([one.value for one in known]), np.array([one.left for one in known])
+        if not doubts and all(one.left is one.right for one in known) and np.all(np.isfinite(matrix)):
+            return Found(values, matrix, notes)
         settling = Settling.of(self.task, x, self._sizes(x), known, doubts)
         settling.settle(beside)
         matrix = settling.matrix()
-        return Found(np.array([one.value for one in known]), matrix, notes, tuple(settling.problems(matrix)))
+        return Found(values, matrix, notes, tuple(settling.problems(matrix)))
 
     def _known(self, x: Array) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:
         """What a run at a point says, and what is in doubt; Bends where a number is at a kink of the driveline."""
@@ -153,7 +156,7 @@ class Exact:
             run, found = self.lines(point)
         except NoGradient as none:
             raise bends_of(none, self.task) from None
-        notes = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.events)]
+        notes = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.decided)]
         return found, self._doubts(point, run, found), tuple(dict.fromkeys(notes))
 
     def _known_without(self, x: Array, bent: Mapping[int, str]) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:

@@ -32,6 +32,7 @@ BENT = 1e-3
 JUMP = 1e-6
 # so many of those that are equal are looked at
 MOST_EQUAL = 16
+SIGNS = {"maximum": (1.0,), "minimum": (-1.0,), "peak": (1.0, -1.0)}
 # places in a step at which polynomials are sampled
 WIDTH = 1 / 16
 PLACES = np.vander(np.arange(17) * WIDTH, PARTS + 1, increasing=True)
@@ -88,19 +89,19 @@ def _allowed(values: Array) -> float:
 
 def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[tuple[float, Array, Places]]:
     """For each sign of what is asked for: the polynomials, and the steps that may reach their largest value."""
-    coefficients = np.einsum("nki,ni->nk", steps.basis, values)
-    for sign in {"maximum": (1.0,), "minimum": (-1.0,), "peak": (1.0, -1.0)}[one.kind]:
-        upper = sign * coefficients @ PLACES.T
-        # between samples a polynomial rises by less than an eighth of its second difference
-        top = upper.max(axis=1) + np.abs(np.diff(upper, 2)).max(axis=1, initial=0.0) / 8
-        near = np.flatnonzero(top >= upper.max(initial=-np.inf) - _allowed(values))
-        near = near[np.argsort(-upper[near].max(axis=1), kind="stable")]
-        # of a plateau its ends are among those that are looked at
-        yield (
-            sign,
-            coefficients,
-            np.unique(np.r_[near[:MOST_EQUAL], near.min(initial=len(steps) - 1), near.max(initial=0)]),
-        )
+    coefficients, signs = np.einsum("nki,ni->nk", steps.basis, values), SIGNS[one.kind]
+    samples = coefficients @ PLACES.T
+    uppers = [(sign * samples).max(axis=1) for sign in signs]
+    least = max(float(upper.max(initial=-np.inf)) for upper in uppers) - _allowed(values)
+    # between samples a polynomial rises by less than an eighth of its second difference
+    rise = np.abs(np.diff(samples, 2)).max(axis=1, initial=0.0) / 8
+    for sign, upper in zip(signs, uppers, strict=True):
+        near = np.flatnonzero(upper + rise >= least)
+        if len(near) > MOST_EQUAL:
+            first = near[np.argsort(-upper[near], kind="stable")][:MOST_EQUAL]
+            # of a plateau its ends are among those that are looked at
+            near = np.unique([*first, near[0], near[-1]])
+        yield sign, coefficients, near
 
 
 def _in_step(step: int, coefficients: Array, samples: Array, sign: float, allowed: float) -> list[Found]:

@@ -32,14 +32,14 @@ def add_jerk(primal: Primal, signal: str, acceleration: Array, into: Functional)
     """
     steps = primal.steps
     inside = 2.0 * np.einsum("nij,nj->ni", steps.squared_slope, _varying(acceleration))
-    add_signal(primal, signal, steps.rows.ravel(), inside.ravel(), into)
     before, behind = (side[1:-1] for side in _limits(steps, acceleration))
     known = np.isin(primal.between[0][1:], (EVENT, KNOT))
     smooth = ~known & (~steps.jumps[1:] | (_rise(steps, acceleration) <= JUMP))
     # what moves an instant at which it bends makes both limits differ at a fixed time: it need not be known
     share = np.where(smooth, before + behind, 0.0)[:, None]
-    add_signal(primal, signal, steps.rows[1:].ravel(), (share * steps.left[1:]).ravel(), into)
-    add_signal(primal, signal, steps.rows[:-1].ravel(), (-share * steps.right[:-1]).ravel(), into)
+    rows = np.concatenate([steps.rows, steps.rows[1:], steps.rows[:-1]])
+    weights = np.concatenate([inside, share * steps.left[1:], -share * steps.right[:-1]])
+    add_signal(primal, signal, rows.ravel(), weights.ravel(), into)
     for step in np.flatnonzero(~smooth):
         add_shift(primal, int(step) + 1, float(before[step] ** 2 - behind[step] ** 2), into)
 

@@ -77,8 +77,9 @@ def _line(run: Run, name: str, one: Measure, sizes: Array) -> Line:
         return Line(name, one.value, 0.0, nothing, nothing, one.until, none=why)
     found = np.array([run.slope(change) for change in one.changes])
     unknown = _unknown(run, one, sizes)
-    least, most, why = found[0], found[0], ""
-    apart = _apart(found, one.size / sizes)
+    least = most = found[0]
+    why = ""
+    apart = _apart(found, one.size / sizes) if len(found) > 1 else NOWHERE
     if len(apart):
         remedy = "move a number so that one of them is the only one"
         when = f"{one.when[0]:.9g} s and at {one.when[apart[0]]:.9g} s"
@@ -103,8 +104,8 @@ def _unknown(run: Run, one: Measure, sizes: Array) -> NDArray[np.bool_]:
 
 def _size(primal: Primal, columns: Places, time: float) -> float:
     """The largest of all numbers of a row that are of the kind of some."""
-    row, parts = primal.rows[primal.row(time)], primal.columns.values()
-    used = (row[part] for part in parts if np.any((columns >= part.start) & (columns < part.stop)))
+    row, parts, own = primal.rows[primal.row(time)], primal.columns.values(), columns.tolist()
+    used = (row[part] for part in parts if any(part.start <= column < part.stop for column in own))
     return max((float(np.abs(part).max()) for part in used), default=0.0)
 
 

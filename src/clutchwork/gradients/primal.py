@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.functional import Functional
+from clutchwork.gradients.grazing import decided
 from clutchwork.gradients.steps import Steps
 
 if TYPE_CHECKING:
@@ -64,6 +65,11 @@ class Primal:
         return int(np.searchsorted(self.times, time))
 
     @cached_property
+    def decided(self) -> Array:
+        """Guards that decided about contacts."""
+        return decided(self.grazes, self.events)
+
+    @cached_property
     def is_smooth(self) -> NDArray[np.bool_]:
         """Which numbers of a row are integrals."""
         found = np.zeros(max(part.stop for part in self.columns.values()), dtype=bool)
@@ -73,6 +79,8 @@ class Primal:
 
     def bends_at(self, columns: Places, times: Array) -> NDArray[np.bool_]:
         """Whether numbers of a row bend or jump at some instants with a knot that moves."""
+        if not len(self.knots.times) and not len(self.knots.meets):
+            return np.zeros(len(times), dtype=bool)
         knots = np.r_[self.knots.times, self.knots.meets]
         jumps = self.grazes[self.grazes[:, 1] < 0, 0]
         # speeds and energies follow torques that bend, but do not bend with them
