@@ -17,13 +17,14 @@ ROOT = Path(__file__).resolve().parents[1]
 # builders of models are shared with the tests; run as a file, the package itself has to be found too
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from benchmarks import chain, coupled, lanes, launch, laws, report, shift, startup, stepping, sweeps  # noqa: E402
+from benchmarks import chain, coupled, gradients, lanes, launch, laws, report, shift, startup, stepping, sweeps  # noqa: E402
 
 PARTS = {
     "shift": shift.rows,
     "stepping": stepping.rows,
     "sweeps": sweeps.rows,
     "lanes": lanes.rows,
+    "gradients": gradients.rows,
     "coupled": coupled.rows,
     "laws": laws.rows,
     "chain": chain.rows,
