@@ -50,8 +50,8 @@ struct Memory {
 
 /// One run with up to `width` of n directions, from `first` on; derivatives go to where they stand among all.
 bool run_chunk(const nb::bytes& system, const Words& words, const Seeds& seeds, std::int64_t first, const Times& times,
-               double t_end, const Options& options, std::int64_t row, Found& found, std::vector<double>& slopes,
-               std::vector<double>& moved) {
+               double t_end, const Options& options, std::int64_t row, bool work, Found& found,
+               std::vector<double>& slopes, std::vector<double>& moved) {
   static thread_local Memory memory;
   const std::int64_t n = std::int64_t(seeds.shape(1)), m = std::int64_t(words.shape(0));
   const std::int64_t k = std::int64_t(times.shape(0)), used = std::min(width, n - first);
@@ -59,13 +59,17 @@ bool run_chunk(const nb::bytes& system, const Words& words, const Seeds& seeds, 
   cw_tangents* run = size < 0 ? nullptr : cw_tangents_load(system.c_str(), bytes, memory.at_least(size), size);
   if (run == nullptr) return false;
   for (const auto& [name, setting] : options) cw_tangents_set_option(run, name.c_str(), setting);
+  if (!work) cw_tangents_leave_out_work(run);
   for (std::int64_t i = 0; i < m; ++i) {
     for (std::int64_t j = 0; j < used; ++j) {
       const double slope = seeds.data()[i * n + first + j];
       if (slope != 0 && !cw_tangents_seed(run, words.data()[i], int(j), slope)) return false;
     }
   }
-  std::vector<double> parts(std::size_t(k * row * width)), events(std::size_t(events_at_once * event_columns));
+  // memory that has been touched is much faster than new one
+  static thread_local std::vector<double> parts;
+  parts.resize(std::max(parts.size(), std::size_t(k * row * width)));
+  std::vector<double> events(std::size_t(events_at_once * event_columns));
   std::vector<double> event_parts(std::size_t(events_at_once * width));
   found.rows.resize(std::size_t(k * row)), found.events.clear(), found.filled = 0;
   std::int64_t n_events = 0;
@@ -105,7 +109,7 @@ nb::object array(std::vector<double>&& numbers, std::initializer_list<std::size_
 
 /// Rows, events and their derivatives.
 nb::tuple tangents(const nb::bytes& system, const Words& words, const Seeds& seeds, const Times& times, double t_end,
-                   const Options& options, std::int64_t row) {
+                   const Options& options, std::int64_t row, bool work) {
   if (seeds.shape(0) != words.shape(0)) throw nb::value_error("one line of seeds for each word");
   const std::size_t k = times.shape(0), n = seeds.shape(1), r = std::size_t(row);
   Found found;
@@ -114,7 +118,7 @@ nb::tuple tangents(const nb::bytes& system, const Words& words, const Seeds& see
   {
     nb::gil_scoped_release release;
     for (std::int64_t first = 0; good && (first == 0 || first < std::int64_t(n)); first += width)
-      good = run_chunk(system, words, seeds, first, times, t_end, options, row, found, slopes, moved);
+      good = run_chunk(system, words, seeds, first, times, t_end, options, row, work, found, slopes, moved);
   }
   if (!good) throw nb::value_error("the bytes are not a system of this core, or a word is not a number of its motion");
   const std::size_t e = found.events.size() / std::size_t(event_columns), g = found.grazes.size() / CW_GRAZE;
@@ -152,7 +156,7 @@ struct Tapes {
 class Adjoint {
  public:
   Adjoint(const nb::bytes& system, const Words& words, const Times& times, double t_end, const Options& options,
-          std::int64_t row, std::int64_t tape_bytes)
+          std::int64_t row, bool work, std::int64_t tape_bytes)
       : row_(row), k_(std::int64_t(times.shape(0))) {
     const std::int64_t bytes = std::int64_t(system.size()), size = cw_adjoint_size(system.c_str(), bytes);
     if (size < 0) throw nb::value_error("the bytes are not a system of this core");
@@ -163,6 +167,7 @@ class Adjoint {
     run_ = cw_adjoint_load(system.c_str(), bytes, at, size, tape_.memory.get(), tape_bytes);
     if (run_ == nullptr) throw std::bad_alloc();
     for (const auto& [name, setting] : options) cw_adjoint_set_option(run_, name.c_str(), setting);
+    if (!work) cw_adjoint_leave_out_work(run_);
     for (std::size_t i = 0; i < words.shape(0); ++i) {
       seeds_.push_back(cw_adjoint_seed(run_, words.data()[i]));
       if (seeds_.back() < 0) throw nb::value_error("a word is not a number of the motion");
@@ -247,13 +252,14 @@ NB_MODULE(_derivatives, m) {
   m.attr("guards") = nb::tuple(guards);
   m.def("supported", &cw_tangents_supported, "Whether it was compiled for the processor of this machine.");
   nb::class_<Adjoint>(m, "Adjoint")
-      .def(nb::init<const nb::bytes&, const Words&, const Times&, double, const Options&, std::int64_t, std::int64_t>(),
+      .def(nb::init<const nb::bytes&, const Words&, const Times&, double, const Options&, std::int64_t, bool,
+                    std::int64_t>(),
            nb::arg("system"), nb::arg("words"), nb::arg("times"), nb::arg("t_end"), nb::arg("options"),
-           nb::arg("row_size"), nb::arg("tape_bytes"))
+           nb::arg("row_size"), nb::arg("work"), nb::arg("tape_bytes"))
       .def("found", &Adjoint::found)
       .def("back", &Adjoint::back, nb::arg("row_weights"), nb::arg("event_weights"))
       .def_prop_ro("size", &Adjoint::size);
   m.def("tangents", &tangents, nb::arg("system"), nb::arg("words"), nb::arg("seeds"), nb::arg("times"),
-        nb::arg("t_end"), nb::arg("options"), nb::arg("row_size"),
+        nb::arg("t_end"), nb::arg("options"), nb::arg("row_size"), nb::arg("work"),
         "Rows on a grid and events of one run, with derivatives in directions that change words of the system.");
 }

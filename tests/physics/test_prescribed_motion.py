@@ -176,3 +176,16 @@ def test_another_position_for_a_sweep_and_a_speed_from_outside() -> None:
     sim.set("p.speed", -0.5)
     sim.advance(1.0)
     assert sim["m.position"] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [1.0, -2.0, 0.5])
+@pytest.mark.parametrize("based", [False, True])
+def test_an_acceleration_begins_with_the_speed_behind_a_gear(ratio: float, based: bool) -> None:
+    """The shaft that it drives follows from one whose speed is given: it begins with that, not at rest."""
+    d = cw.Driveline("behind")
+    a, b, c = d.shaft("a", inertia=1.0, speed=3.0), d.shaft("b", inertia=0.0), d.shaft("c", inertia=2.0, speed=1.0)
+    d.add(cw.Gear("gear", input=a, output=b, ratio=ratio))
+    d.add(cw.PrescribedAcceleration("motion", shaft=b, acceleration=4.0, **({"base": c} if based else {})))
+    run = d.simulate(0.5)
+    assert run["b.speed"][0] == pytest.approx(3.0 / ratio, rel=1e-12)
+    assert at_end(run, "b.speed") - based * at_end(run, "c.speed") == pytest.approx(3.0 / ratio - based + 2.0, rel=1e-9)

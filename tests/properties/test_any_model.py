@@ -42,10 +42,9 @@ def test_every_kind_is_drawn(kind: str) -> None:
 
 # seeds that fail for a cause that is known and not mended, by what it is
 OPEN: dict[str, set[int]] = {
-    "a massless shaft behind a ratio that is zero": {66, 73, 205, 215, 241, 402, 1001, 1063},
-    "events without end": {138, 1051},
+    "other bits where a run beside a transmission goes on": {241},
+    "events without end": {138},
     "friction that a speed presses, where that jumps": {102},
-    "a gear that jams without an impulse": {432},
 }
 
 
@@ -84,6 +83,20 @@ def test_twins_of_random_models() -> None:
 @pytest.mark.random
 def test_twins_of_more_random_models() -> None:
     sweep(all_of, range(1024, 1024 + amount(120)))
+
+
+# seeds of campaigns whose rows were wrong once, by what it was
+MENDED: dict[str, list[int]] = {
+    "shares that did not turn with a ratio": [50171, 60233],
+    "a jam of a gear that slips on": [60047, 60450],
+    "a ratio of zero before a shaft without inertia": [50079],
+    "a contact without capacity that broke another loose": [60419],
+}
+
+
+@pytest.mark.parametrize("seed", [seed for seeds in MENDED.values() for seed in seeds])
+def test_models_that_failed_once(seed: int) -> None:
+    assert not rows_of(seed)
 
 
 @cache

@@ -75,6 +75,29 @@ def test_transmissions_balance_what_locked_contacts_share(seed):
 
 
 @pytest.mark.parametrize("seed", range(MODELS))
+def test_what_is_shared_turns_with_the_ratio(seed):
+    """Two contacts hold both sides of a transmission whose ratio goes on: balanced at every ratio, zero included."""
+    rng = np.random.default_rng([seed, 5])
+    d = cw.Driveline("turned")
+    a, b = d.shaft("a", inertia=uniform(rng, 0.1, 2)), d.shaft("b", inertia=uniform(rng, 0.1, 2))
+    ratio = cw.Sine(amplitude=uniform(rng, 0.5, 3), frequency=uniform(rng, 2, 6), offset=uniform(rng, -1, 1))
+    d.add(cw.VariableRatio("tie", input=a, output=b, ratio=ratio))
+    strong = {"friction": coulomb(rng), "gain": 1.0, "normal_force": 5000.0}
+    kinds = rng.choice(["a", "b", "ab"], size=2, replace=False)
+    for kind in kinds:
+        if kind == "ab":
+            d.add(cw.Clutch("on_ab", base=a, follower=b, **strong))
+        else:
+            d.add(cw.Brake(f"on_{kind}", shaft=a if kind == "a" else b, **strong))
+    d.add(cw.Torque("load_a", shaft=a, torque=sine(rng, 30)))
+    d.add(cw.Torque("load_b", shaft=b, torque=sine(rng, 30)))
+    run = d.simulate(0.4)
+    for shaft in "ab":
+        miss = ports(run, shaft) - {node.name: node.inertia for node in d.nodes}[shaft] * run[f"{shaft}.acceleration"]
+        assert np.max(abs(miss)) <= 1e-6 * np.max(abs(run[f"load_{shaft}.torque"])), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
 def test_a_state_beside_a_transmission_goes_on_to_the_same_bits(seed):
     rng = np.random.default_rng(seed)
     d = tied(rng)
@@ -321,3 +344,66 @@ def test_a_self_locking_gear_in_a_redundant_set():
         for name in ("across", "brake"):
             over = abs(run[f"{name}.torque"]) - run[f"{name}.capacity"]
             assert np.max(over) <= 1e-6 * (1 + np.max(run[f"{name}.capacity"])), (seed, name)
+
+
+def _before_a_light_shaft(rng: Rng) -> tuple[cw.Driveline, float]:
+    """A shaft without inertia whose speed follows from a ratio that vanishes, and when it does."""
+    d = cw.Driveline("light")
+    light = d.shaft("light", inertia=0.0)
+    kind = rng.integers(3)
+    if kind == 0:
+        mass = d.mass("mass", mass=uniform(rng, 0.5, 5))
+        d.add(cw.CrankSlider("tie", shaft=light, mass=mass, radius=0.02, rod=uniform(rng, 0.05, 1)))
+        return d, 0.0
+    heavy = d.housing if kind == 1 else d.shaft("heavy", inertia=uniform(rng, 0.1, 2))
+    d.add(cw.Torque("load", shaft=light, torque=uniform(rng, 1, 5)))
+    at, begin = uniform(rng, 0.05, 0.3), uniform(rng, 0.3, 2) * rng.choice([-1, 1])
+    ratio: Any = 0.0 if rng.random() < 0.3 else cw.Table([(0.0, begin), (at, 0.0), (2.0 * at, -begin)])
+    d.add(cw.VariableGear("tie", input=heavy, output=light, ratio=ratio))
+    return d, 0.0 if ratio == 0.0 else at
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_ratio_that_vanishes_before_a_shaft_without_inertia_jams(seed):
+    """Nothing determines the speed of that shaft: the run ends there, from the start or on the way, and says so."""
+    d, at = _before_a_light_shaft(np.random.default_rng([seed, 17]))
+    with pytest.warns(cw.StoppedEarly, match="the shaft without inertia behind it at .tie."):
+        run = d.simulate(1.0, work=False)
+    assert run.status == "jammed", (seed, run.message)
+    assert len(run) == 0 if at == 0.0 else run.time[-1] == pytest.approx(at, rel=1e-4), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_contact_that_holds_nothing_does_not_break_others_loose(seed):
+    """Where a load rises from nothing one contact is at its limit, of zero: another lets go at its own, once."""
+    rng = np.random.default_rng([seed, 23])
+    d = cw.Driveline("nothing")
+    a, b, c = (d.shaft(name, inertia=uniform(rng, 0.1, 2)) for name in "abc")
+    d.add(cw.BearingFriction("nothing", shaft=c, friction=cw.Coulomb(static=0.0, kinetic=0.0), torque=1.0))
+    d.add(
+        cw.Clutch(
+            "clutch", base=a, follower=b, friction=cw.Coulomb(static=0.1, kinetic=0.1), gain=1.0, normal_force=10.0
+        )
+    )
+    start, rise = uniform(rng, 0.0, 0.3), uniform(rng, 20, 200)
+    d.add(cw.Torque("load", shaft=b, torque=cw.Ramp(height=rise, duration=1.0, start=start)))
+    run = d.simulate(0.9)
+    held = run["clutch.capacity"][0]
+    inertia = {node.name: node.inertia for node in d.nodes}
+    expected = start + held * (inertia["a"] + inertia["b"]) / inertia["a"] / rise
+    assert [event.time for event in run.events] == pytest.approx([expected] if expected < 0.9 else [], rel=1e-9), seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_tolerance_between_prescribed_speeds_stops_nothing(seed):
+    """A transmission with a capacity from a prescribed shaft to the housing: its slip passes its tolerance."""
+    rng = np.random.default_rng([seed, 29])
+    d = cw.Driveline("given")
+    a = d.shaft("a", inertia=1.0)
+    ratio = float(rng.choice([0.0, 1.0]))
+    d.add(cw.VariableRatio("tie", input=a, output=d.housing, ratio=ratio, capacity=1.0, tolerance=uniform(rng, 0.1, 2)))
+    size = uniform(rng, 0.1, 1)
+    d.add(cw.PrescribedPosition("motion", shaft=a, position=cw.Sine(amplitude=size, frequency=uniform(rng, 5, 25))))
+    run = d.simulate(0.2)
+    assert run.status == "done", seed
+    assert run["tie.work"][-1] < 0.0, seed

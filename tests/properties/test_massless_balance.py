@@ -144,3 +144,20 @@ def test_a_retarder_on_a_shaft_without_inertia_starts_on_its_branch_of_power() -
     d.add(cw.Retarder("t", shaft=a, capacity=1e-4, max_torque=2.0, max_power=100.0))
     run = d.simulate(0.5)
     assert run["a.speed"][0] == pytest.approx(100.0 + 8000.0**0.5, rel=1e-9)
+
+
+def _continued(seed: int) -> str:
+    """A run that goes on from each of its steps does what the whole run does, to the last bit."""
+    d, _, _ = _driven(seed)
+    whole = simulate(d, 0.1, output="steps")
+    for at in np.unique(whole.time)[1:-1:7]:
+        rest = simulate(d, 0.1, start=whole.state(at=float(at)), output="steps")
+        if (rest.rows[-1] != whole.rows[-1]).any():
+            return f"at {float(at)!r} s"
+    return ""
+
+
+@pytest.mark.random
+def test_runs_go_on_from_their_steps() -> None:
+    """The balance was found where the phase began: a step behind it is not one of Newton's."""
+    sweep(_continued, amount(60))

@@ -33,6 +33,10 @@ cw_tangents* cw_tangents_load(const void* system, int64_t bytes, void* memory, i
 /* As cw_set_option. The method is rodas5p whatever is set. */
 int cw_tangents_set_option(cw_tangents* run, const char* name, double value);
 
+/* Angles and work get no derivatives, nor values, which costs less; the steps stay those of a run with work where the
+   option is set. Before the start. 1: done; 0: the steps follow the work, so that it is not left out. */
+int cw_tangents_leave_out_work(cw_tangents* run);
+
 /* Word `word` of eight bytes of the system changes by `slope` per unit of a direction; before the start. Repeated calls
    add up. 1: done; 0: no such direction, or the word is not a number of the motion. */
 int cw_tangents_seed(cw_tangents* run, int64_t word, int direction, double slope);
@@ -70,6 +74,9 @@ int cw_adjoint_set_option(cw_adjoint* run, const char* name, double value);
 
 /* Derivatives by this word of the system are wanted; before the start. Its number on the tape, -1: it has none. */
 int64_t cw_adjoint_seed(cw_adjoint* run, int64_t word);
+
+/* As cw_tangents_leave_out_work. */
+int cw_adjoint_leave_out_work(cw_adjoint* run);
 
 /* As cw_tangents_advance, with the number on the tape of each number of the rows, 0: a constant, into `numbers`. Status
    interrupted: the tape is full. */

@@ -78,6 +78,8 @@ int cw_adjoint_set_option(cw_adjoint* run, const char* name, double value) {
   return done;
 }
 
+int cw_adjoint_leave_out_work(cw_adjoint* run) { return run == nullptr ? 0 : leave_out_work(run->ws); }
+
 std::int64_t cw_adjoint_seed(cw_adjoint* run, std::int64_t word) {
   if (run == nullptr || run->ws.started) return -1;
   Taped* number = number_at(run->ws, run->plain, run->system, word);

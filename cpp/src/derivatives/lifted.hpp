@@ -53,6 +53,15 @@ T* number_at(Workspace<T>& ws, const System& plain, const unsigned char* bytes, 
   return found;
 }
 
+/// Derivatives without those of angles and work; false where steps follow the work.
+template <class T>
+bool leave_out_work(Workspace<T>& ws) {
+  if (ws.started || ws.sys.prescribed > 0) return false;
+  ws.moved.work_left_out = ws.options.work;
+  ws.options.work = ws.options.angles = false;
+  return true;
+}
+
 /// A run at its start, with the numbers of its model as they have been seeded.
 template <class T>
 void begin_lifted(Workspace<T>& ws) {

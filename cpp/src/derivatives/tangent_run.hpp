@@ -67,6 +67,8 @@ struct TangentCalls {
     return done;
   }
 
+  static int leave_out_work(void* run) { return clutchwork::leave_out_work(run_at(run).ws); }
+
   static int seed(void* at, std::int64_t word, int direction, double slope) {
     Run& run = run_at(at);
     auto* number = number_at(run.ws, run.plain, run.system, word);
@@ -119,7 +121,7 @@ struct TangentCalls {
   static std::int64_t steps(const void* at) { return static_cast<const Run*>(at)->ws.statistics.steps; }
 
   static constexpr cw_tangent_calls table() {
-    return {size, load, set_option, seed, advance, events, grazes, fault, steps};
+    return {size, load, set_option, leave_out_work, seed, advance, events, grazes, fault, steps};
   }
 };
 

@@ -44,6 +44,8 @@ int cw_tangents_set_option(cw_tangents* run, const char* name, double value) {
   return run != nullptr && name != nullptr ? calls().set_option(plain(run), name, value) : 0;
 }
 
+int cw_tangents_leave_out_work(cw_tangents* run) { return run == nullptr ? 0 : calls().leave_out_work(plain(run)); }
+
 int cw_tangents_seed(cw_tangents* run, std::int64_t word, int direction, double slope) {
   if (run == nullptr || direction < 0 || direction >= CW_DIRECTIONS || !(slope - slope == 0)) return 0;
   return calls().seed(plain(run), word, direction, slope);

@@ -7,6 +7,7 @@ struct cw_tangent_calls {
   std::int64_t (*size)(const void* system, std::int64_t bytes);
   void* (*load)(const void* system, std::int64_t bytes, void* memory, std::int64_t memory_bytes);
   int (*set_option)(void* run, const char* name, double value);
+  int (*leave_out_work)(void* run);
   int (*seed)(void* run, std::int64_t word, int direction, double slope);
   int (*advance)(void* run, double t_end, const double* times, double* rows, double* tangents, std::int64_t n,
                  std::int64_t* filled);

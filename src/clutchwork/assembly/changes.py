@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
+from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.assembly.assemble import assembled
 from clutchwork.assembly.patches import Numbered, Unpatched, changed_signals, patched, patches
 from clutchwork.base.errors import ModelError, Problem
-from clutchwork.declare.node import Component, Signal
+from clutchwork.declare.node import Component, Law, Signal
 from clutchwork.declare.schema import specs
 from clutchwork.declare.speech import words_of_files
 from clutchwork.model.changes import changed_model, named, renewed, target, with_held
 from clutchwork.model.components import component_advice, component_problems
-from clutchwork.model.fields import BROKEN, SOUND, At, value_problems
+from clutchwork.model.fields import BROKEN, SOUND, At, law_problems, value_problems
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
 from clutchwork.model.problems import TOO_FAR_APART
@@ -143,16 +144,36 @@ def is_right(old: Component, new: Component) -> bool:
             return False
     finally:
         del values[SOUND]
-    plain = PLAIN_NUMBERS.get(type(new)) or PLAIN_NUMBERS.setdefault(type(new), _plain_numbers(type(new)))
-    if plain.issuperset(name for name, value in unlike.items() if value is not before.get(name)):
+    if _plain_numbers(type(new)).issuperset((name,) for name, value in unlike.items() if value is not before.get(name)):
         return True
     return not any(component_advice(new)) and not any(temperature_advice([new], []))
 
 
-# names of the fields of an element that there is no advice about, found once
-PLAIN_NUMBERS: dict[type, frozenset[str]] = {}
+# what an element may say of its values together, and of what is made of them
+RULES = ("problems", "law_problems", "entries", "parts", "initial_states", "state_scales")
 
 
-def _plain_numbers(cls: type) -> frozenset[str]:
-    """Fields that are numbers other than temperatures."""
-    return frozenset(item.name for item, spec in specs(cls, "param", "option") if spec.unit != "K")
+def ruled(owner: Component, paths: Sequence[tuple[str, ...]]) -> Component | Law | None:
+    """What is to be looked at where numbers of an element are others within their bounds: itself, its law, or nothing.
+
+    Parameters: paths, of the fields that lead to the numbers.
+    """
+    law, own = owner.friction, _plain_numbers(type(owner))
+    known = own | {("friction", *path) for path in (_plain_numbers(type(law)) if isinstance(law, Law) else ())}
+    if not known.issuperset(paths) or any(getattr(type(owner), rule) is not getattr(Component, rule) for rule in RULES):
+        return owner
+    return None if own.issuperset(paths) else law
+
+
+def is_right_law(law: Law) -> bool:
+    """Whether there is no mistake in a law, and no advice about it."""
+    try:
+        return not any(law_problems(law, At("", ""))) and not any(law.advice())
+    except ArithmeticError:
+        return False
+
+
+@cache
+def _plain_numbers(cls: Any) -> frozenset[tuple[str, ...]]:
+    """Paths of fields that are numbers other than temperatures, of which there is no advice about an element."""
+    return frozenset((item.name,) for item, spec in specs(cls, "param", "option") if spec.unit != "K")

@@ -21,9 +21,9 @@ class PrescribedAcceleration(Motion):
 
     acceleration: SignalLike = signal("rad/s2", "wanted acceleration relative to the base", units=("m/s2",))
 
-    def speed_signal(self) -> Signal:
+    def speed_signal(self, speed: float) -> Signal:
         """Integral of the acceleration."""
         try:
-            return integral(as_signal(self.acceleration), self._started()[1])
+            return integral(as_signal(self.acceleration), speed)
         except SignalError as error:
             raise MotionError("acceleration", error.message, "", error.remedy) from None

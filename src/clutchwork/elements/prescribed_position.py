@@ -27,13 +27,17 @@ class PrescribedPosition(Motion):
 
     def start_angle(self) -> float:
         """Where the signal starts; behind the filter a shaft may be elsewhere."""
-        angle, _ = self._started()
+        angle = self._started()
         wanted = at_start(as_signal(self.position))
         return angle if self.cutoff is not None and angle else wanted
 
-    def speed_signal(self) -> Signal:
+    def begins_with_shaft(self) -> bool:
+        """Whether its speed begins with that of the shaft, from which a filter goes on."""
+        return self.cutoff is not None
+
+    def speed_signal(self, speed: float) -> Signal:
         """Derivative of the position, or of what passes the filter."""
-        wanted, (angle, speed) = as_signal(self.position), self._started()
+        wanted, angle = as_signal(self.position), self._started()
         try:
             if self.cutoff is not None:
                 return bessel(wanted, self.cutoff, self.start_angle(), speed)

@@ -19,7 +19,7 @@ class PrescribedSpeed(Motion):
     speed: SignalLike = signal("rad/s", "wanted speed", units=("m/s",))
     cutoff: float | None = option("Hz", "corner frequency of the low pass, none by default", default=None, above=0.0)
 
-    def speed_signal(self) -> Signal:
+    def speed_signal(self, speed: float) -> Signal:  # noqa: ARG002 - it begins with what is wanted
         """The wanted speed, or what passes the filter."""
         wanted = as_signal(self.speed)
         if self.cutoff is None:

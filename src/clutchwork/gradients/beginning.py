@@ -22,21 +22,23 @@ PIECE = 12
 
 def at_rest(chart: Chart, words: Array, slopes: Slopes) -> Iterator[tuple[str, Mask]]:
     """What is said of contacts without slip at the start, and numbers that would make one."""
-    system, layout = chart.assembled.system, chart.assembled.structure.layout
+    parts = [chart.words_in(name) for name in ("contact_rate_value", "initial_speed", "segment_coef")]
+    if not any(slopes.touch(*part) for part in parts):
+        return
+    system, (rates, _), (starts, _) = chart.assembled.system, *parts[:2]
     ends = system.arrays["contact_rate_end"]
     for number, contact in enumerate(system.contacts):
         if is_stop(contact):
             continue
         first, last = int(ends[number - 1]) if number else 0, int(ends[number])
-        factors = layout.starts["contact_rate_value"] // 8 + np.arange(first, last)
-        speeds = layout.starts["initial_speed"] // 8 + system.arrays["contact_rate_column"][first:last]
+        factors, speeds = rates + np.arange(first, last), starts + system.arrays["contact_rate_column"][first:last]
         parts = words[factors] * words[speeds]
         driven = _driven(chart, number)
         if not len(driven) and abs(parts.sum()) > ZERO * (1.0 + np.abs(parts).max(initial=0.0)):
             continue
-        moved = words[factors] @ _of(slopes, speeds) + words[speeds] @ _of(slopes, factors)
+        moved = words[factors] @ slopes.of(speeds) + words[speeds] @ slopes.of(factors)
         # how a prescribed speed begins is not looked at: whatever moves it may move the slip
-        numbers: Mask = (np.abs(moved) > 0.0) | _of(slopes, driven).any(axis=0)
+        numbers: Mask = (np.abs(moved) > 0.0) | slopes.of(driven).any(axis=0)
         if numbers.any():
             yield f"{contact.name} begins at rest, and slips one way or the other for another start value", numbers
 
@@ -50,12 +52,3 @@ def _driven(chart: Chart, number: int) -> Places:
         begin = layout.starts["segment_coef"] // 8 + PIECE * first
         found.append(np.arange(begin, begin + PIECE * count))
     return np.concatenate(found)
-
-
-def _of(slopes: Slopes, words: Places) -> Array:
-    """Derivatives of words: a line for each."""
-    made = np.zeros((len(words), slopes.matrix.shape[1]))
-    at = np.searchsorted(slopes.places, words)
-    there = np.isin(words, slopes.places)
-    made[there] = slopes.matrix[at[there]]
-    return made

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -28,6 +30,22 @@ class Slopes(NamedTuple):
     places: Places
     matrix: Array
 
+    def within(self, first: int, count: int) -> slice:
+        """Lines of the words that change among some that follow each other."""
+        return slice(bisect_left(self.places, first), bisect_left(self.places, first + count))
+
+    def touch(self, first: int, count: int) -> bool:
+        """Whether any of them changes."""
+        return bisect_left(self.places, first) < bisect_left(self.places, first + count)
+
+    def of(self, words: Places) -> Array:
+        """Derivatives of words: a line for each."""
+        made = np.zeros((len(words), self.matrix.shape[1]))
+        at = np.searchsorted(self.places, words)
+        there = np.isin(words, self.places)
+        made[there] = self.matrix[at[there]]
+        return made
+
 
 @dataclass(frozen=True, eq=False)
 class Chart:
@@ -37,6 +55,10 @@ class Chart:
     tables: tuple[TableWords, ...]
     bound: list[int]  # numbers that words are assembled from
     assembled: Assembled
+
+    def words_in(self, name: str) -> tuple[int, int]:
+        """The first word of an array of a System, and how many there are."""
+        return self.assembled.structure.layout.starts[name] // 8, self.assembled.system.arrays[name].size
 
     @classmethod
     def of(cls, system: System, parameters: tuple[Parameter, ...], x: Array) -> Chart:
@@ -91,6 +113,16 @@ class Chart:
 
     def slopes(self, x: Array) -> Slopes:
         """Derivatives of the words at a point; NoGradient where there is none."""
+        return self._fixed or self._slopes(x)
+
+    @cached_property
+    def _fixed(self) -> Slopes | None:
+        """Derivatives that are the same everywhere: nothing is assembled, and no knot moves in time."""
+        numbers = {*self.scalars, *(number for table in self.tables for number in table.numbers.tolist())}
+        free = self.bound or any(table.moves_times for table in self.tables)
+        return None if free else self._slopes(np.zeros(len(numbers)))
+
+    def _slopes(self, x: Array) -> Slopes:
         more = self.assembled.slopes(x[self.bound]) if self.bound else None
         known = np.flatnonzero(more.any(axis=1)) if more is not None else np.zeros(0, dtype=np.int64)
         places = np.unique(np.concatenate([known, *self.scalars.values(), *(table.places for table in self.tables)]))

@@ -7,6 +7,7 @@ derivative. docs/theory/gradients.md (17)
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.beginning import at_rest
-from clutchwork.gradients.grazing import crowded, decided, decided_at_knots, refused, struck_together
+from clutchwork.gradients.grazing import crowded, decided_at_knots, jumping_together, refused, struck_together
 from clutchwork.gradients.knots import times_of
 from clutchwork.gradients.lines import Line
 from clutchwork.gradients.pressing import unpressed
@@ -79,11 +80,9 @@ class Doubts:
 
     def _moving_knots(self) -> Mask:
         """Numbers that move any knot of a signal."""
-        layout, slopes = self.runs.words.at(self.point.x)[0].assembled.structure.layout, self.point.slopes
-        arrays, places = self.runs.task.system.arrays, slopes.places
-        ends = [(layout.starts[name] // 8, arrays[name].size) for name in ("segment_time", "input_period")]
-        inside = np.logical_or.reduce([(first <= places) & (places < first + count) for first, count in ends])
-        found: Mask = np.any(slopes.matrix[inside] != 0.0, axis=0)
+        slopes, words_in = self.point.slopes, self.point.chart.words_in
+        parts = [slopes.matrix[slopes.within(*words_in(name))] for name in ("segment_time", "input_period")]
+        found: Mask = np.any(np.concatenate(parts) != 0.0, axis=0)
         return found
 
     def _up_to(self, time: float) -> Mask:
@@ -118,20 +117,20 @@ class Doubts:
 
     def _decisions(self) -> Iterator[Doubt]:
         primal, system, contacts = self.run.primal, self.runs.task.system, self.runs.wanted.contacts
-        grazes = decided(primal.grazes, primal.events)
-        for time, why in refused(system, grazes, float(self.sizes.max())):
-            yield Doubt(why, self._up_to(time), self._all)
-        for time, why in crowded(primal.events, contacts):
-            yield Doubt(why, self._up_to(time), self._all)
-        for time, why in struck_together(system, primal.events, contacts):
-            yield Doubt(why, self._up_to(time), self._all)
-        knots = times_of(*self.runs.words.at(self.point.x), primal.t_end)
-        behind = knots[knots > self.runs.wanted.begin]
-        for time, why in decided_at_knots(primal.events, primal.grazes, behind, contacts):
+        for time, why in jumping_together(system, primal.grazes, float(self.sizes.max())):
+            yield Doubt(why, self._up_to(time), self._moving_knots())
+        knots = times_of(self.point.chart, self.point.words, primal.t_end)
+        found = chain(
+            refused(system, primal.decided, float(self.sizes.max())),
+            crowded(primal.events, contacts),
+            struck_together(system, primal.events, contacts),
+            decided_at_knots(primal.events, primal.grazes, knots[knots > self.runs.wanted.begin], contacts),
+        )
+        for time, why in found:
             yield Doubt(why, self._up_to(time), self._all)
 
     def _start(self) -> Iterator[Doubt]:
-        chart, words = self.runs.words.at(self.point.x)
+        chart, words = self.point.chart, self.point.words
         names = [one.name for one in self.runs.task.parameters]
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for time, why, numbers in unpressed(chart, words, self.point.slopes, names, begin, end):

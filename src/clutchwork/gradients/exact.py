@@ -15,6 +15,7 @@ from clutchwork.base.errors import ModelError
 from clutchwork.gradients.bends import Bends, bends_of, spread
 from clutchwork.gradients.doubts import Doubt, Doubts
 from clutchwork.gradients.grazing import noted, together
+from clutchwork.gradients.jerk import massless
 from clutchwork.gradients.lines import Line, lines, without_derivatives
 from clutchwork.gradients.measures import Asked, measures
 from clutchwork.gradients.runs import Point, Run, Runs
@@ -48,7 +49,7 @@ class Exact:
     def _asked(self) -> Asked:
         wanted = self.runs.wanted
         kept = {one.name: wanted.kept_as(one) for one in wanted.outputs.values() if isinstance(one, Integral)}
-        return Asked(wanted.contacts, kept, wanted.begin)
+        return Asked(wanted.contacts, kept, wanted.begin, massless(self.task.system))
 
     # ---------------------------------------------------------------------------------------------------------- values
 
@@ -115,7 +116,7 @@ class Exact:
             return None
         run = self._refined(point, 1)
         found = [one for output in self.task.outputs.values() for one in measures(run.primal, output, self._asked)]
-        if any(len(one.changes) != 1 for one in found) or self._doubts(
+        if any(len(one.changes) != 1 or one.missed for one in found) or self._doubts(
             point, run, without_derivatives(self.task.labels, found)
         ):
             return None
@@ -140,10 +141,13 @@ class Exact:
     def _settled(
         self, x: Array, beside: Beside, known: list[Line], doubts: list[Doubt], notes: tuple[str, ...]
     ) -> Found:
+        values, matrix = np.array([one.value for one in known]), np.array([one.left for one in known])
+        if not doubts and all(one.left is one.right for one in known) and np.all(np.isfinite(matrix)):
+            return Found(values, matrix, notes)
         settling = Settling.of(self.task, x, self._sizes(x), known, doubts)
         settling.settle(beside)
         matrix = settling.matrix()
-        return Found(np.array([one.value for one in known]), matrix, notes, tuple(settling.problems(matrix)))
+        return Found(values, matrix, notes, tuple(settling.problems(matrix)))
 
     def _known(self, x: Array) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:
         """What a run at a point says, and what is in doubt; Bends where a number is at a kink of the driveline."""
@@ -152,7 +156,7 @@ class Exact:
             run, found = self.lines(point)
         except NoGradient as none:
             raise bends_of(none, self.task) from None
-        notes = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.events)]
+        notes = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.decided)]
         return found, self._doubts(point, run, found), tuple(dict.fromkeys(notes))
 
     def _known_without(self, x: Array, bent: Mapping[int, str]) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import HOUSING, wiring
+from clutchwork.base.kept import kept
 from clutchwork.declare.layout import CAUSES, EVENT
 from clutchwork.results.forms import LOCKED
 
@@ -26,6 +27,8 @@ WARNED, REFUSED = 0.1, 0.01
 APART = 1e-9
 # events that are as close are at one instant [s]
 ONE_INSTANT = 1e-9
+# times of a guard and of its event that differ by less are one, of a second or of their size
+SAME = 1e-12
 TIME, KIND, COMPONENT, INDEX, DIFFERENCE = range(5)
 # pieces of laws and processes, and how slowly one is entered that is said [1/s]
 PIECES, TOUCHED = (6, 9), 1e-5
@@ -51,8 +54,9 @@ def decided(grazes: Array, events: Array) -> Array:
     as it was, or jumps by less the slower it is.
     """
     changed = events[events[:, AT["from"]] != events[:, AT["to"]], AT["time"]]
-    there = np.isclose(grazes[:, TIME, None], changed, rtol=1e-12, atol=1e-12).any(axis=1)
-    found: Array = grazes[there & np.isin(grazes[:, KIND], DECIDED)]
+    known = grazes[[kind in DECIDED for kind in grazes[:, KIND].tolist()]]
+    there = np.abs(known[:, TIME, None] - changed) <= SAME * (1.0 + np.abs(changed))
+    found: Array = known[there.any(axis=1)]
     return found
 
 
@@ -62,6 +66,8 @@ def refused(system: System, grazes: Array, sizes: float) -> Iterator[tuple[float
     Parameters: sizes, the largest size of a number, by which derivatives of instants become times.
     """
     for graze in grazes:
+        if graze[INDEX] >= REFUSED and graze[DIFFERENCE] * sizes <= APART:
+            continue
         time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
         if graze[INDEX] < REFUSED:
             measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {REFUSED:g} 1/s"
@@ -72,10 +78,20 @@ def refused(system: System, grazes: Array, sizes: float) -> Iterator[tuple[float
             yield time, why
 
 
+def jumping_together(system: System, grazes: Array, sizes: float) -> Iterator[tuple[float, str]]:
+    """Signals that jump at one instant, and whose knots move apart: which of them jumps first is open.
+
+    Parameters: sizes, the largest size of a number.
+    """
+    for graze in grazes[(grazes[:, KIND] < 0) & (grazes[:, DIFFERENCE] * sizes > APART)]:
+        time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
+        yield time, f"{name} jumps at {time:.9g} s together with another signal, whose knot moves otherwise; move one"
+
+
 def crowded(events: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
     """Contacts that lock and let go again and again within an instant, which no derivative survives."""
-    changed = events[(events[:, AT["from"]] == LOCKED) != (events[:, AT["to"]] == LOCKED)]
-    for number, name in enumerate(contacts):
+    changed = _locking(events)
+    for number, name in enumerate(contacts) if len(changed) >= CROWD else ():
         times = np.sort(changed[changed[:, AT["contact"]] == number, AT["time"]])
         close = np.flatnonzero(times[CROWD - 1 :] - times[: max(0, len(times) - CROWD + 1)] < CROWDED)
         if len(close):
@@ -90,6 +106,8 @@ def struck_together(system: System, events: Array, contacts: Sequence[str]) -> I
     Those on shafts that share no motion do not feel each other.
     """
     hit = events[events[:, AT["cause"]] == IMPACT]
+    if len(hit) < 2:
+        return
     parts = moving_together(system)[hit[:, AT["contact"]].astype(int)]
     for part in np.unique(parts):
         yield from _struck(hit[parts == part], contacts)
@@ -112,13 +130,19 @@ def decided_at_knots(
 
     Parameters: knots, instants of all [s]. Where a signal jumps the knot is what makes them do so.
     """
-    changed = events[(events[:, AT["from"]] == LOCKED) != (events[:, AT["to"]] == LOCKED)]
-    jumps, by_knot = grazes[grazes[:, KIND] < 0, TIME], np.isin(changed[:, AT["cause"]], DRIVEN)
-    near = _near(changed[:, AT["time"]], knots) & ~(by_knot & _near(changed[:, AT["time"]], jumps))
-    for event in changed[near]:
+    changed, jumps = _locking(events), grazes[grazes[:, KIND] < 0, TIME]
+    for event in changed[_near(changed[:, AT["time"]], knots)]:
         time = float(event[AT["time"]])
+        if event[AT["cause"]] in DRIVEN and _near(event[[AT["time"]]], jumps)[0]:
+            continue
         what = "locks" if event[AT["to"]] == LOCKED else "breaks away"
         yield time, f"{contacts[int(event[AT['contact']])]} {what} at {time:.9g} s, where a signal bends; move the knot"
+
+
+def _locking(events: Array) -> Array:
+    """Those that lock a contact or let it go."""
+    found: Array = events[(events[:, AT["from"]] == LOCKED) != (events[:, AT["to"]] == LOCKED)]
+    return found
 
 
 def _near(times: Array, others: Array) -> NDArray[np.bool_]:
@@ -128,6 +152,7 @@ def _near(times: Array, others: Array) -> NDArray[np.bool_]:
     return found
 
 
+@kept
 def moving_together(system: System) -> NDArray[np.int64]:
     """For each contact the part of the driveline that it is in: shafts that elements, contacts or gears join."""
     known = wiring(system)
@@ -142,13 +167,18 @@ def moving_together(system: System) -> NDArray[np.int64]:
     return np.array([int(part[own[0]]) if own else -1 for own in places], dtype=np.int64)
 
 
-def noted(system: System, grazes: Array, events: Array) -> Iterator[str]:
-    """What is only just differentiable."""
-    for graze in grazes[np.isin(grazes[:, KIND], PIECES) & (grazes[:, INDEX] < TOUCHED)]:
+def noted(system: System, grazes: Array, decided: Array) -> Iterator[str]:
+    """What is only just differentiable.
+
+    Parameters: decided, those of the grazes that are.
+    """
+    for graze in grazes[grazes[:, INDEX] < TOUCHED]:
+        if graze[KIND] not in PIECES:
+            continue
         name = component(system, int(graze[COMPONENT]), int(graze[KIND]))
         measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {TOUCHED:g} 1/s"
         yield f"{name} at {graze[TIME]:.9g} s hardly enters another piece: {measure}; derivatives have few digits"
-    for graze in decided(grazes, events):
+    for graze in decided:
         if REFUSED <= graze[INDEX] < WARNED:
             name = component(system, int(graze[COMPONENT]), int(graze[KIND]))
             measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {WARNED:g} 1/s"

@@ -25,15 +25,12 @@ ONE_INSTANT, ALIKE = 1e-12, 1e-9
 
 def knots(chart: Chart, words: Array, slopes: Slopes, begin: float, end: float) -> Knots:
     """All that move, up to the end of a run, and where they meet others."""
-    system, starts = chart.assembled.system, chart.assembled.structure.layout.starts
-    first, at_period = starts["segment_time"] // 8, starts["input_period"] // 8
-    periods = at_period + np.arange(len(system.arrays["input_period"]))
+    (first, pieces), (at_period, signals) = map(chart.words_in, ("segment_time", "input_period"))
     width = slopes.matrix.shape[1]
-    free, known = _moving(slopes, first, len(system.arrays["segment_time"])), slopes.places
-    if not len(free) and not np.any(np.isin(periods, known)):
+    if not slopes.matrix[slopes.within(first, pieces)].any() and not slopes.touch(at_period, signals):
         return Knots(np.zeros(0), np.zeros((0, width)), np.zeros(0))
     times, moved = [np.zeros(0)], [np.zeros((0, width))]
-    for number, (segment, count) in enumerate(_segments(system)):
+    for number, (segment, count) in enumerate(_segments(chart.assembled.system)):
         period, by_period = float(words[at_period + number]), _of(slopes, at_period + number)
         for word in range(first + segment, first + segment + count):
             cycles = np.arange(_repeats(float(words[word]), period, end) + 1.0)
@@ -44,8 +41,10 @@ def knots(chart: Chart, words: Array, slopes: Slopes, begin: float, end: float) 
 
 def times_of(chart: Chart, words: Array, end: float) -> Array:
     """Instants of the knots of all signals up to the end of a run [s]."""
-    layout, found = chart.assembled.structure.layout, [np.zeros(0)]
-    first, at_period = layout.starts["segment_time"] // 8, layout.starts["input_period"] // 8
+    (first, pieces), (at_period, signals) = map(chart.words_in, ("segment_time", "input_period"))
+    if not np.any(words[at_period : at_period + signals] > 0.0):
+        return words[first : first + pieces]
+    found = [np.zeros(0)]
     for number, (segment, count) in enumerate(_segments(chart.assembled.system)):
         begins, period = words[first + segment : first + segment + count], float(words[at_period + number])
         cycles = np.arange(_repeats(float(begins.min(initial=end)), period, end) + 1.0)
@@ -73,17 +72,9 @@ def _met(times: Array, moved: Array, begin: float, end: float) -> Knots:
     return Knots(times[inside], moved[inside], meets[(begin - room.max() <= meets) & (meets <= end + room.max())])
 
 
-def _moving(slopes: Slopes, first: int, count: int) -> NDArray[np.int64]:
-    """Words of times of knots that change."""
-    inside = (slopes.places >= first) & (slopes.places < first + count)
-    return slopes.places[inside][slopes.matrix[inside].any(axis=1)]
-
-
 def _of(slopes: Slopes, word: int) -> Array:
     """Derivatives of a word."""
-    place = int(np.searchsorted(slopes.places, word))
-    there = place < len(slopes.places) and slopes.places[place] == word
-    found: Array = slopes.matrix[place] if there else np.zeros(slopes.matrix.shape[1])
+    found: Array = slopes.matrix[slopes.within(word, 1)].sum(axis=0)
     return found
 
 

@@ -29,11 +29,16 @@ Array = NDArray[np.float64]
 IN_STEPS = (Extreme, SquaredJerk)
 
 
+# component, time, value, column
+Detail = tuple[int, float, float, int]
+NO_DETAIL: Detail = (-1, 0.0, 0.0, -1)
+
+
 class Run(NamedTuple):
     """What the core gave for one point."""
 
     status: int
-    detail: tuple[int, float, float, int]  # component, time, value, column
+    detail: Detail  # of one that stopped early
     grid: Array  # rows at the instants
     times: Array  # instants of rows in steps
     rows: Array
@@ -58,20 +63,23 @@ class Plain:
         rows = on_grid[2] if on_grid else np.zeros((len(systems), 0, len(columns)))
         parts = _by_variant(in_steps[3], len(systems), len(columns)) if in_steps else [_nothing(columns)] * len(systems)
         events = _events(first[3], len(systems))
-        return [Run(int(status[n]), _detail(detail[n]), rows[n], *parts[n], events[n]) for n in range(len(systems))]
+        return [
+            Run(int(status[n]), _detail(status[n], detail[n]), rows[n], *parts[n], events[n])
+            for n in range(len(systems))
+        ]
 
     def rows_at(self, system: bytes, columns: Sequence[int], times: Array) -> Array:
         """Numbers of the rows of one run at instants."""
         found: Array = self._call([system], columns, 0, times)[2][0]
         return found
 
-    def with_jerks(self, system: bytes, forms: Mapping[str, Form]) -> tuple[Run, dict[str, float]]:
-        """One run in steps, and the squared jerks that are asked for, by the signals that they are made of."""
+    def with_jerks(self, system: bytes, forms: Mapping[str, Form]) -> tuple[Run, Steps, dict[str, float]]:
+        """One run, its steps, and the squared jerks that are asked for, by the signals that they are made of."""
         asked = {one.signal for one in self.wanted.outputs.values() if isinstance(one, SquaredJerk)}
         columns, own = over_columns([{name: forms[name] for name in asked}])
         run = self.runs([system], columns, grid=False, steps=True)[0]
         steps = Steps.of_parts(run.times)
-        return run, {name: _jerk(run, steps, own[0][name]) for name in asked}
+        return run, steps, {name: _jerk(run, steps, own[0][name]) for name in asked}
 
     def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int, instants: Array | None = None) -> Any:
         count = len(systems)
@@ -210,6 +218,8 @@ def _events(parts: Any, count: int) -> list[Array]:
     return [known[known[:, 0] == number][:, 1:] for number in range(count)]
 
 
-def _detail(numbers: Array) -> tuple[int, float, float, int]:
+def _detail(status: int, numbers: Array) -> Detail:
+    if status == DONE:
+        return NO_DETAIL
     component, time, value, column = np.nan_to_num(numbers, nan=-1.0).tolist()
     return int(component), time, value, int(column)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.kept import kept
 from clutchwork.declare.schema import inputs
 
 if TYPE_CHECKING:
@@ -28,15 +29,13 @@ def unpressed(
 
     Parameters: begin and end, of the run [s].
     """
-    system, starts = chart.assembled.system, chart.assembled.structure.layout.starts
-    time, first = starts["segment_time"] // 8, starts["segment_coef"] // 8
-    for number in pressing(system):
+    system, (time, _), (first, size) = chart.assembled.system, *map(chart.words_in, ("segment_time", "segment_coef"))
+    for number in pressing(system) if slopes.touch(first, size) else ():
         start, count = (int(system.arrays[f"input_{what}"][number]) for what in ("first", "count"))
         pieces = words[first + PIECE * start : first + PIECE * (start + count)].reshape(count, PIECE)
         bounds = np.r_[words[time + start : time + start + count], np.inf]
         for piece in np.flatnonzero(~pieces[:, :4].any(axis=1) & ~pieces[:, [4, 8]].any(axis=1)).tolist():
-            coefficients = first + PIECE * (start + piece) + np.arange(4)
-            moved: Mask = np.any(slopes.matrix[np.isin(slopes.places, coefficients)] != 0.0, axis=0)
+            moved: Mask = np.any(slopes.matrix[slopes.within(first + PIECE * (start + piece), 4)] != 0.0, axis=0)
             if moved.any() and bounds[piece] < end and bounds[piece + 1] > begin:
                 since, until = max(float(bounds[piece]), begin), min(float(bounds[piece + 1]), end)
                 free = ", ".join(names[column] for column in np.flatnonzero(moved).tolist())
@@ -44,11 +43,14 @@ def unpressed(
                 yield since, f"{what}, where a little more of {free} presses and a little less does not", moved
 
 
-def pressing(system: System) -> Iterator[int]:
+@kept
+def pressing(system: System) -> tuple[int, ...]:
     """Numbers of the signals that press contacts."""
     known = {item.name: number for number, item in enumerate(system.inputs)}
-    for contact in system.contacts:
-        for names, spec in inputs(type(contact)):
-            for name in names if spec.presses or spec.gain else ():
-                if f"{contact.name}.{name}" in known:
-                    yield known[f"{contact.name}.{name}"]
+    found = (
+        f"{contact.name}.{name}"
+        for contact in system.contacts
+        for names, spec in inputs(type(contact))
+        for name in (names if spec.presses or spec.gain else ())
+    )
+    return tuple(known[name] for name in found if name in known)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.functional import Functional
+from clutchwork.gradients.grazing import decided
 from clutchwork.gradients.steps import Steps
 
 if TYPE_CHECKING:
@@ -64,6 +65,11 @@ class Primal:
         return int(np.searchsorted(self.times, time))
 
     @cached_property
+    def decided(self) -> Array:
+        """Guards that decided about contacts."""
+        return decided(self.grazes, self.events)
+
+    @cached_property
     def is_smooth(self) -> NDArray[np.bool_]:
         """Which numbers of a row are integrals."""
         found = np.zeros(max(part.stop for part in self.columns.values()), dtype=bool)
@@ -73,6 +79,8 @@ class Primal:
 
     def bends_at(self, columns: Places, times: Array) -> NDArray[np.bool_]:
         """Whether numbers of a row bend or jump at some instants with a knot that moves."""
+        if not len(self.knots.times) and not len(self.knots.meets):
+            return np.zeros(len(times), dtype=bool)
         knots = np.r_[self.knots.times, self.knots.meets]
         jumps = self.grazes[self.grazes[:, 1] < 0, 0]
         # speeds and energies follow torques that bend, but do not bend with them
@@ -85,9 +93,10 @@ class Primal:
 
     @cached_property
     def between(self) -> tuple[Places, Places]:
-        """What each step begins with: its kind, and the number of the event or the knot."""
+        """What each step begins with: its kind, and the number of the event or the knot, -1 of a knot that stays."""
         kinds, which = np.full(len(self.steps), SMOOTH, dtype=np.intp), np.full(len(self.steps), -1, dtype=np.intp)
-        met = [(KINK, float(time), -1) for time in self.grazes[:, 0]]
+        # a knot that does not move is none of those below
+        met = [(KNOT if what < 0 else KINK, float(time), -1) for time, what in self.grazes[:, :2]]
         met += [(KNOT, float(time), number) for number, time in enumerate(self.knots.times)]
         met += [(EVENT, float(time), number) for number, time in enumerate(self.events[:, 0])]
         for kind, time, number in met:

@@ -13,10 +13,10 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import derivatives
 from clutchwork.declare.layout import DONE, INTERRUPTED
-from clutchwork.gradients.chart import Slopes
+from clutchwork.gradients.chart import Chart, Slopes
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
-from clutchwork.gradients.plain import Plain
+from clutchwork.gradients.plain import Detail, Plain
 from clutchwork.gradients.primal import Knots, Primal
 from clutchwork.gradients.refined import Sharing
 from clutchwork.gradients.signals_at import SignalsAt
@@ -26,19 +26,23 @@ from clutchwork.gradients.words import Words
 from clutchwork.results.gradient import NoGradient
 from clutchwork.run.simulation import told
 from clutchwork.sweeps.batch import Wanted
+from clutchwork.sweeps.columns import all_needed
 
 Array = NDArray[np.float64]
 
 # memory of a run that is followed back: the first is asked for, what is not written costs nothing
 TAPES = (1 << 28, 1 << 31)
-NO_TANGENTS = np.zeros((0, 0, 0))
+# parts of a row that are integrals over time
+INTEGRALS = ("angle", "element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy")
+NO_TANGENTS, NO_STEPS = np.zeros((0, 0, 0)), Steps.of_parts(np.zeros(1))
 
 
 class Point(NamedTuple):
     """A point with what is known of its run before it is differentiated."""
 
     x: Array
-    system: bytes
+    chart: Chart
+    words: Array
     slopes: Slopes
     knots: Knots
     steps: Steps
@@ -46,6 +50,11 @@ class Point(NamedTuple):
     jerks: Mapping[str, float]  # squared jerks of that run, by the acceleration
     grid: Array  # s, instants of rows
     notes: tuple[str, ...]  # on what is only just differentiable
+
+    @property
+    def system(self) -> bytes:
+        """The bytes of the System."""
+        return self.words.tobytes()
 
 
 class Run(NamedTuple):
@@ -94,20 +103,20 @@ class Runs:
     def point(self, x: Array) -> Point:
         """What a run with derivatives needs; NoGradient where a run stops early."""
         chart, words = self.words.at(x)
-        system, slopes = words.tobytes(), chart.slopes(x)
+        slopes = chart.slopes(x)
         moving = knots(chart, words, slopes, self.wanted.begin, self.wanted.t_end)
-        steps, events, jerks = Steps.of_parts(np.zeros(1)), np.zeros(0), dict[str, float]()
-        if self.plain.in_steps:
-            run, jerks = self.plain.with_jerks(system, self.signals.at(x))
-            self._refuse_stopped(run.status, run.detail)
-            steps, events = Steps.of_parts(run.times).long().inside(), run.events[:, 0]
-        return self._with_grid(Point(x, system, slopes, moving, steps, events, jerks, np.zeros(0), ()))
+        point = Point(x, chart, words, slopes, moving, NO_STEPS, np.zeros(0), {}, self.wanted.grid, ())
+        if not self.plain.in_steps:
+            return point
+        run, steps, jerks = self.plain.with_jerks(point.system, self.signals.at(x))
+        self._refuse_stopped(run.status, run.detail)
+        return self._with_grid(point._replace(steps=steps.long().inside(), events=run.events[:, 0], jerks=jerks))
 
     def forward(self, point: Point) -> Run:
         """A run with derivatives by all numbers."""
         places, seeds = point.slopes.places.astype(np.int64), point.slopes.matrix
         status, _, rows, row_tangents, events, event_tangents, grazes, fault = derivatives().tangents(
-            point.system, places, seeds, point.grid, self.wanted.t_end, list(self._options.items()), self._size
+            point.system, places, seeds, *self._how(point)
         )
         self._refuse_stopped(status, (fault[0], float("nan"), fault[1], -1))
         moved = self._aligned(point, events[:, 0])
@@ -121,9 +130,7 @@ class Runs:
         """A run that is followed back from each result; forward where there is no memory for it."""
         places = point.slopes.places.astype(np.int64)
         for size in TAPES:
-            tape = derivatives().Adjoint(
-                point.system, places, point.grid, self.wanted.t_end, list(self._options.items()), self._size, size
-            )
+            tape = derivatives().Adjoint(point.system, places, *self._how(point), size)
             status, _, rows, events, grazes, fault = tape.found()
             if status != INTERRUPTED:
                 break
@@ -137,9 +144,17 @@ class Runs:
         slope = partial(_back, tape, point.slopes, primal.rows.shape, len(events))
         return Run(primal, slope, is_forward=False, notes=point.notes)
 
+    def _how(self, point: Point) -> tuple[Any, ...]:
+        """What both kinds of runs with derivatives are told behind their numbers."""
+        options = list(self._options.items())
+        return point.grid, self.wanted.t_end, options, wiring(self.task.system).row_size, self._has_work
+
     @cached_property
-    def _size(self) -> int:
-        return wiring(self.task.system).row_size
+    def _has_work(self) -> bool:
+        """Whether any output is made of angles or work; their derivatives are left out elsewhere."""
+        columns = wiring(self.task.system).columns
+        integrals = {place for part in INTEGRALS for place in range(columns[part].start, columns[part].stop)}
+        return not integrals.isdisjoint(all_needed(self.signals.plain.values()))
 
     def _with_grid(self, point: Point) -> Point:
         return point._replace(grid=np.unique(np.concatenate([self.wanted.grid, point.steps.times.ravel()])))
@@ -170,7 +185,7 @@ class Runs:
             t_end=self.wanted.t_end,
         )
 
-    def _refuse_stopped(self, status: int, detail: tuple[int, float, float, int]) -> None:
+    def _refuse_stopped(self, status: int, detail: Detail) -> None:
         if status != DONE:
             component, time, value, column = detail
             why = told(self.task.system, status, component, time, value, column)

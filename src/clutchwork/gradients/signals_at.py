@@ -78,7 +78,9 @@ class SignalsAt:
 
     def bent(self, x: Array, rows: Array) -> dict[str, Array]:
         """Derivatives of the signals that have such numbers in them, in some rows: a column for each number."""
-        made = {name: np.zeros((len(rows), len(x))) for name in self._open} if self.within else {}
+        if not self.within:
+            return {}
+        made = {name: np.zeros((len(rows), len(x))) for name in self._open}
         forms = {name: self.at(x)[name] for name in made}
         here = _evaluated(forms, rows)
         for number in self.within:

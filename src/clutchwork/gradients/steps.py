@@ -88,12 +88,18 @@ class Steps:
         return len(self.begin)
 
     @cached_property
-    def basis(self) -> Array:
-        """Of each step: coefficients of the polynomials that are one at a row and zero at the others."""
+    def _unlike(self) -> tuple[Array, Places]:
+        """Coefficients as in `basis` of steps whose rows stand at unlike places, and which of these each step has."""
         # the first place says where the others are
         _, which, same = np.unique(self.share[:, 0], return_index=True, return_inverse=True)
         powers = self.share[which][:, :, None] ** np.arange(PARTS + 1)
-        found: Array = np.linalg.inv(powers)[same].astype(np.float64)
+        return np.linalg.inv(powers).astype(np.float64), same
+
+    @cached_property
+    def basis(self) -> Array:
+        """Of each step: coefficients of the polynomials that are one at a row and zero at the others."""
+        unlike, same = self._unlike
+        found: Array = unlike[same]
         return found
 
     @cached_property
@@ -104,7 +110,8 @@ class Steps:
     @cached_property
     def right(self) -> Array:
         """Of each step: weights of its rows for the limit at its end."""
-        found: Array = self.basis.sum(axis=1)
+        unlike, same = self._unlike
+        found: Array = unlike.sum(axis=1)[same]
         return found
 
     @cached_property
@@ -116,15 +123,16 @@ class Steps:
     @cached_property
     def right_slope(self) -> Array:
         """Of each step: weights of its rows for the time derivative at its end."""
-        found: Array = np.einsum("k,nki->ni", SLOPES, self.basis[:, 1:]) / self.length[:, None]
+        unlike, same = self._unlike
+        found: Array = np.einsum("k,nki->ni", SLOPES, unlike[:, 1:])[same] / self.length[:, None]
         return found
 
     @cached_property
     def squared_slope(self) -> Array:
         """Of each step: the quadratic form of its rows that is the integral of the square of the time derivative."""
-        slopes = SLOPES[:, None] * self.basis[:, 1:]
-        powers = np.arange(PARTS)
-        found: Array = np.einsum("nki,kl,nlj->nij", slopes, 1.0 / (powers[:, None] + powers + 1.0), slopes)
+        unlike, same = self._unlike
+        slopes, powers = SLOPES[:, None] * unlike[:, 1:], np.arange(PARTS)
+        found: Array = np.einsum("nki,kl,nlj->nij", slopes, 1.0 / (powers[:, None] + powers + 1.0), slopes)[same]
         return found / self.length[:, None, None]
 
     def at(self, step: int, share: float) -> Array:

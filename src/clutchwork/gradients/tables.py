@@ -83,7 +83,7 @@ class TableWords:
     def written(self, words: Array, x: Array) -> bool:
         """Write the words for values of all parameters; False where these make other pieces."""
         points = self.moved(x)
-        if self._moves_times and not (
+        if self.moves_times and not (
             np.all(np.diff(points[:, 0]) >= 0.0) and np.array_equal(pieces(points), self.begins)
         ):
             return False
@@ -92,12 +92,13 @@ class TableWords:
         return True
 
     @cached_property
-    def _moves_times(self) -> bool:
+    def moves_times(self) -> bool:
+        """Whether any of its parameters is the time of a knot."""
         return bool(np.any(self.along[:, :, 0]))
 
     def slopes(self, x: Array) -> Array:
         """Derivatives of the words in `places`, a column for each of its parameters."""
-        return self._fixed_slopes if not self._moves_times else self._slopes(self.moved(x))
+        return self._fixed_slopes if not self.moves_times else self._slopes(self.moved(x))
 
     @cached_property
     def _fixed_slopes(self) -> Array:

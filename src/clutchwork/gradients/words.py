@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.changes import is_right
+from clutchwork.assembly.changes import is_right, is_right_law, ruled
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import Component
+from clutchwork.declare.node import Component, Law
 from clutchwork.gradients.chart import Chart, Slopes
 from clutchwork.gradients.packed import made, words_of
 from clutchwork.model.changes import named, renewed, target
@@ -75,14 +75,23 @@ class Words:
         return np.array([one.lower for one in self.parameters]), np.array([one.upper for one in self.parameters])
 
     @cached_property
-    def _rules(self) -> list[tuple[Component, list[tuple[tuple[str, ...], int]]]]:
-        """Elements with numbers of their own, between which there may be rules, as between two coefficients."""
-        owners, found = named(self.system.source or Model()), dict[str, Any]()
+    def _rules(self) -> list[tuple[Component | Law, list[tuple[tuple[str, ...], int]]]]:
+        """Elements and laws with numbers between which there may be rules, as between two coefficients."""
+        owners, known = named(self.system.source or Model()), dict[str, tuple[Component, dict[tuple[str, ...], int]]]()
         for number, one in enumerate(self.parameters):
             aim = target(owners, one.field)
             if aim is not None and isinstance(aim.owner, Component) and not one.places:
-                found.setdefault(aim.owner.name, (aim.owner, []))[1].append((aim.path, number))
-        return list(found.values())
+                known.setdefault(aim.owner.name, (aim.owner, {}))[1][aim.path] = number
+        found = list[Any]()
+        for owner, paths in known.values():
+            thing = ruled(owner, [*paths])
+            if isinstance(thing, Law):
+                found.append((thing, [(path[1:], number) for path, number in paths.items() if len(path) > 1]))
+            elif thing is not None:
+                found.append((thing, list(paths.items())))
+        return found
 
-    def _fits(self, x: Array, owner: Component, paths: list[tuple[tuple[str, ...], int]]) -> bool:
-        return is_right(owner, renewed(owner, [(path, float(x[number])) for path, number in paths]))
+    @staticmethod
+    def _fits(x: Array, thing: Component | Law, paths: list[tuple[tuple[str, ...], int]]) -> bool:
+        new = renewed(thing, [(path, float(x[number])) for path, number in paths])
+        return is_right_law(new) if isinstance(thing, Law) else is_right(thing, new)

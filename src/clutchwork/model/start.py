@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from math import isfinite
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -16,7 +17,7 @@ from clutchwork.signals.bases.waveform import value
 from clutchwork.signals.constant import Constant
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from fractions import Fraction
 
     from clutchwork.declare.node import Component, Node, Signal
@@ -34,9 +35,10 @@ def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], Motions, 
     """Independent speeds at the start, the prescribed speeds with their signals, and what is wrong with both."""
     motions: Motions = []
     problems: list[Problem] = []
-    for motion in model.role(Role.MOTION):
+    begun = _begun(model, made)
+    for number, motion in enumerate(model.role(Role.MOTION)):
         try:
-            motions.append((motion, _finite_speed(motion)))
+            motions.append((motion, _finite_speed(motion, begun(number) if motion.begins_with_shaft() else 0.0)))
         except MotionError as bad:
             problems.append(Problem(path_of(motion), bad.quantity, bad.message, bad.value, bad.remedy))
             motions.append((motion, Constant(0.0)))
@@ -71,9 +73,40 @@ def _position_problems(model: Mechanism) -> Iterator[Problem]:
             yield Problem(model.node_label(place), "position", message, f"{angles[place]:g} m", remedy)
 
 
-def _finite_speed(motion: Motion) -> Signal:
+def _begun(model: Mechanism, made: Kinematics) -> Callable[[int], float]:
+    """Speeds from their bases with which motions begin: what follows from the speeds that are given, else at rest."""
+    motions = model.role(Role.MOTION)
+    first = len(model.nodes)
+    given = {node: speed for node, speed in enumerate(model.speed) if speed is not None and node not in made.loose}
+    echelon = Echelon([*made.independent, *range(first, first + len(motions))], traced=False)
+    if any(motion.begins_with_shaft() for motion in motions):
+        for number, motion in enumerate(motions):
+            with suppress(MotionError):
+                if not motion.begins_with_shaft():
+                    echelon.add({first + number: ONE, KNOWN: exact(value(motion.speed_signal(0.0), 0.0))})
+        for node, speed in given.items():
+            echelon.add({**made.speeds[node], KNOWN: speed})
+        for _, tie in start_rows(model, made):
+            echelon.add(tie)
+
+    def speed_of(node: Node | None) -> Fraction | None:
+        if node is None or node.fixed:
+            return ZERO
+        place = model.places.of(node)
+        left = echelon.rest(made.speeds[place])
+        return given[place] if place in given else None if left.keys() - {KNOWN} else -left.get(KNOWN, ZERO)
+
+    def begun(number: int) -> float:
+        base = speed_of(motions[number].base) or ZERO
+        speed = speed_of(motions[number].shaft)
+        return float((base if speed is None else speed) - base)
+
+    return begun
+
+
+def _finite_speed(motion: Motion, begun: float) -> Signal:
     """The speed that a motion gives, which is finite at the start."""
-    made = motion.speed_signal()
+    made = motion.speed_signal(begun)
     if isfinite(speed := value(made, 0.0)):
         return made
     quantity = next(item.name for item, _ in specs(type(motion), "signal"))

@@ -7,9 +7,12 @@ from collections.abc import Iterable
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from clutchwork.base.errors import caller
 from clutchwork.declare.layout import STATUS
-from clutchwork.declare.schema import specs
+from clutchwork.declare.schema import Role, specs
+from clutchwork.model.parts import is_stop
 from clutchwork.results.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -18,6 +21,18 @@ if TYPE_CHECKING:
 
 # why a run stopped, where a value tells more
 WITH_VALUE = ("not_finite", "out_of_table", "chatter")
+
+
+# what cannot go on where nothing moves any more, and what to do about it where that is something of its own
+JAMS = {
+    "freewheel": ("prescribed speeds turn a freewheel backward", ""),
+    "stop": ("prescribed speeds go beyond a stop", ""),
+    "ratio": ("prescribed speeds break the ratio of a transmission", ""),
+    "light": (
+        "the ratio is zero, and nothing else determines the speed of the shaft without inertia behind it",
+        "give that shaft inertia, or keep the ratio away from zero",
+    ),
+}
 
 
 class StoppedEarly(RuntimeWarning):
@@ -49,9 +64,14 @@ class FaultWarning(RuntimeWarning):
     """Warning that a fault was triggered that its element reports as a warning."""
 
 
-def explain(status: int, component: Any, time: float, value: float, quantity: str = "") -> str:
-    """One line for a status of the core: message, element or quantity, value, range of a table, time, remedy."""
+def explain(status: int, component: Any, time: float, value: float, quantity: str = "", jam: str = "") -> str:
+    """One line for a status of the core: message, element or quantity, value, range of a table, time, remedy.
+
+    Parameters: quantity, a number of the row or a signal in place of a component; jam, which of `JAMS`.
+    """
     name, message, remedy = STATUS[status]
+    if jam:
+        message, remedy = JAMS[jam][0], JAMS[jam][1] or remedy
     if name == "zeno" and quantity:
         crowded = f"{quantity!r} has more than 50 knots within a microsecond"
         return f"stopped at {time:.9g} s: {crowded}: thin out the signal, or filter it before it becomes a table"
@@ -62,6 +82,14 @@ def explain(status: int, component: Any, time: float, value: float, quantity: st
     covered = _covered(component) if name == "out_of_table" else ""
     seen = f" (value {value:g}{covered})" if component is not None and name in WITH_VALUE else ""
     return f"stopped at {time:.9g} s: {message}{where}{seen}: {remedy}"
+
+
+def jam_of(system: System, component: Any, index: int) -> str:
+    """Which of `JAMS` it is where a component with a number jams."""
+    if component.role is Role.CONTACT:
+        return "stop" if is_stop(component) else "freewheel"
+    places = np.flatnonzero(system.transmission_element == index)
+    return "light" if any(system.transmission_speed[places] >= 0) else "ratio"
 
 
 def _covered(component: Any) -> str:

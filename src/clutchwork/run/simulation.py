@@ -284,7 +284,7 @@ def _acting(system: System) -> list[Any]:
 
 def told(system: System, status: int, index: int, at: float, value: float, column: int) -> str:
     """Why a run stopped at a time: an element or contact by its number, and its value, or a number of the row."""
-    from clutchwork.run.failure import explain
+    from clutchwork.run.failure import explain, jam_of
 
     parts = _acting(system)
     if STATUSES[status] == "zeno" and index < 0:
@@ -293,7 +293,9 @@ def told(system: System, status: int, index: int, at: float, value: float, colum
             return explain(status, system.processes[number - len(system.inputs)], at, value)
         return explain(status, None, at, value, system.inputs[number].name)
     if status != NOT_FINITE or names_part(system, index):
-        return explain(status, parts[index] if names_part(system, index) else None, at, value)
+        part = parts[index] if names_part(system, index) else None
+        jam = jam_of(system, part, index) if part is not None and STATUSES[status] == "jammed" else ""
+        return explain(status, part, at, value, jam=jam)
     from clutchwork.assembly.wiring import wiring
     from clutchwork.results.rows import numbers
 

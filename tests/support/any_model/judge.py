@@ -63,6 +63,9 @@ def ending(made: Plain, base: Any) -> list[Fault]:
     grounded = any("ratio" in one and "housing" in (one.get("input"), one.get("output")) for one in made["element"])
     if base.status == "jammed" and grounded:
         return []
+    # a ratio that vanishes before a shaft without inertia, which leaves its speed to nothing
+    if base.status == "jammed" and "without inertia" in base.message and any(n["inertia"] == 0 for n in made["shaft"]):
+        return []
     return [Fault("status", base.status, base.message[:300])]
 
 

@@ -82,7 +82,9 @@ def motions(seen: Seen) -> Iterator[Fault]:
 def steady(seen: Seen) -> Iterator[Fault]:
     """Between both limits of an instant angles stay, and speeds of what has inertia, unless there is an impulse."""
     pairs = np.flatnonzero(np.diff(seen.time) == 0.0)
-    struck = [event.time for event in seen.run.events if event.energy_before != event.energy_after]
+    # an impact may take less than the round-off of the energy
+    impulses = [event for event in seen.run.events if event.energy_before != event.energy_after]
+    struck = [event.time for event in (*impulses, *(e for e in seen.run.events if e.cause in ("impact", "jam")))]
     free = not seen.wiring.motions and not any("ratio" in b.component.hooks for b in seen.wiring.elements)
     for number, node in enumerate(seen.wiring.nodes):
         angle, speed = seen.part("angle")[:, number], seen.speed[:, number]

@@ -4,15 +4,16 @@
 /// Small dense kernels on row-major views; sizes from 1 to a few hundred, no heap.
 namespace clutchwork {
 
-template <class T>
-CLUTCHWORK_HOT T dot(int n, const T* a, const T* b) {
-  T s = T(0);
+// rows may be plain where what they multiply has derivatives
+template <class T, class S>
+CLUTCHWORK_HOT S dot(int n, const T* a, const S* b) {
+  S s = S(0);
   for (int i = 0; i < n; ++i) s += a[i] * b[i];
   return s;
 }
 
-template <class T>
-CLUTCHWORK_HOT void axpy(int n, T a, const T* x, T* y) {
+template <class A, class X, class Y>
+CLUTCHWORK_HOT void axpy(int n, A a, const X* x, Y* y) {
   for (int i = 0; i < n; ++i) y[i] += a * x[i];
 }
 
@@ -165,9 +166,11 @@ void reflect(int m, int n, T* rows, T* q, T* u, int rank) {
 }
 
 /// Orthonormal basis of R^n whose first `rank` columns span the given rows, by pivoted Householder reflections.
-/// rows: m x n, overwritten. q: n x n, its column j is q[i * n + j]. order: m, pivot order. Returns the rank.
+/// rows: m x n, overwritten. q: n x n, its column j is q[i * n + j]. order: m, pivot order; rows from `spanning` on are
+/// turned with the others and never pivots (-1: none). Returns the rank.
 template <class T>
-int orthonormal_split(int m, int n, T* rows, T* q, int* order, T* norms) {
+int orthonormal_split(int m, int n, T* rows, T* q, int* order, T* norms, int spanning = -1) {
+  const int pivots = spanning < 0 ? m : spanning;
   for (int i = 0; i < n * n; ++i) q[i] = T(0);
   for (int i = 0; i < n; ++i) q[i * n + i] = T(1);
   for (int r = 0; r < m; ++r) {
@@ -175,8 +178,8 @@ int orthonormal_split(int m, int n, T* rows, T* q, int* order, T* norms) {
     norms[r] = sqrt(dot(n, rows + r * n, rows + r * n));
   }
   int rank = 0;
-  for (; rank < m && rank < n; ++rank) {
-    const int best = most_independent(m, n, rows, order, norms, rank);
+  for (; rank < pivots && rank < n; ++rank) {
+    const int best = most_independent(pivots, n, rows, order, norms, rank);
     if (best < 0) break;
     const int swap = order[rank];
     order[rank] = order[best];

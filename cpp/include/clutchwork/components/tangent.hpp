@@ -86,13 +86,13 @@ struct Tangent {
     for (int i = 0; i < N; ++i) most = larger(most, abs(a.slope(i) - b.slope(i)));
     return most;
   }
-  friend CLUTCHWORK_HOT bool is_zero(const Tangent& x) {
-    if (x.v != 0) return false;
+  friend CLUTCHWORK_HOT bool is_constant(const Tangent& x) {
     for (int i = 0; i < N; ++i) {
       if (x.slope(i) != 0) return false;
     }
     return true;
   }
+  friend CLUTCHWORK_HOT bool is_zero(const Tangent& x) { return x.v == 0 && is_constant(x); }
 };
 
 template <int N, int R>
@@ -111,6 +111,7 @@ struct NumberOf<Tangent<N, R>> : NumberOf<double> {
 CLUTCHWORK_CHAIN(exp, exp(x.v), f)
 CLUTCHWORK_CHAIN(log, log(x.v), 1 / x.v)
 CLUTCHWORK_CHAIN(sqrt, sqrt(x.v), f > 0 ? 0.5 / f : 0.0)
+CLUTCHWORK_CHAIN(cbrt, cbrt(x.v), f > 0 ? 1 / (3 * f * f) : 0.0)
 CLUTCHWORK_CHAIN(sin, sin(x.v), cos(x.v))
 CLUTCHWORK_CHAIN(cos, cos(x.v), -sin(x.v))
 CLUTCHWORK_CHAIN(atan, atan(x.v), 1 / (1 + x.v * x.v))
@@ -127,6 +128,11 @@ CLUTCHWORK_HOT Tangent<N, R> pow(const Tangent<N, R>& a, const Tangent<N, R>& b)
   const double p = pow(a.v, b.v);
   const double by_base = b.v * pow(a.v, b.v - 1), by_power = a.v > 0 ? p * log(a.v) : 0.0;
   return Tangent<N, R>::each(p, [&](int i) { return a.part[i] * by_base + b.part[i] * by_power; });
+}
+template <int N, int R>
+CLUTCHWORK_HOT void add_times(double a, const Tangent<N, R>& x, Tangent<N, R>& y) {
+  y.v += a * x.v;
+  for (int i = 0; i < Tangent<N, R>::parts; ++i) y.part[i] += x.part[i] * a;
 }
 template <int N, int R>
 CLUTCHWORK_HOT void add_times(Tangent<N, R> a, const Tangent<N, R>& x, Tangent<N, R>& y) {

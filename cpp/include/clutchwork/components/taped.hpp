@@ -120,7 +120,10 @@ struct Taped {
   double seen_slope(int) const { return probe; }
   friend CLUTCHWORK_HOT double value(const Taped& x) { return x.v; }
   friend CLUTCHWORK_HOT Taped without_value(const Taped& x) { return chain(x, 0, 1); }
+  friend CLUTCHWORK_HOT bool is_constant(const Taped& x) { return x.id == 0; }
   friend CLUTCHWORK_HOT bool is_zero(const Taped& x) { return x.v == 0 && x.id == 0; }
+  /// y += a x as one number.
+  friend CLUTCHWORK_HOT void add_times(double a, const Taped& x, Taped& y) { y = chain(y, 1, x, a, y.v + a * x.v); }
   /// A row keeps the number on the tape.
   friend CLUTCHWORK_HOT void keep(const Taped& x, double* to) { to[0] = x.id; }
   /// Not known before the tape is followed back.
@@ -142,6 +145,7 @@ struct NumberOf<Taped> : NumberOf<double> {
 CLUTCHWORK_CHAIN(exp, exp(x.v), f)
 CLUTCHWORK_CHAIN(log, log(x.v), 1 / x.v)
 CLUTCHWORK_CHAIN(sqrt, sqrt(x.v), f > 0 ? 0.5 / f : 0.0)
+CLUTCHWORK_CHAIN(cbrt, cbrt(x.v), f > 0 ? 1 / (3 * f * f) : 0.0)
 CLUTCHWORK_CHAIN(sin, sin(x.v), cos(x.v))
 CLUTCHWORK_CHAIN(cos, cos(x.v), -sin(x.v))
 CLUTCHWORK_CHAIN(atan, atan(x.v), 1 / (1 + x.v * x.v))

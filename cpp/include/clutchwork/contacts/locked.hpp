@@ -6,6 +6,7 @@
 #include <clutchwork/contacts/dependent.hpp>
 #include <clutchwork/contacts/eliminate.hpp>
 #include <clutchwork/contacts/loaded_set.hpp>
+#include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -297,11 +298,49 @@ void list_locked(Workspace<T>& ws) {
   if (h.too_many) h.n_sets = h.n_driven = 0;
 }
 
+/// The directions of the spares in terms of the carriers at the ratios of the point that was evaluated last, and with
+/// them the loads by the torques of both: transmissions turn them as their ratios vary in a phase.
+/// docs/theory/varying-ratios.md (21)
+template <class T>
+[[gnu::noinline]] void turn_spares(Workspace<T>& ws) {
+  const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements), nv = int(ws.sys.speeds);
+  Ratios<T>& r = ws.ratios;
+  Held<T>& h = ws.held;
+  bool same = true;
+  for (int a = 0; a < r.n; ++a) same = same && value(r.present[a] - r.turned[a]) == 0;
+  if (same) return;
+  for (int a = 0; a < r.n; ++a) r.sorted[a] = r.value[a], r.value[a] = r.turned[a] = r.present[a];
+  {
+    const BesideRatios<T> beside(ws, Written::last);
+    auto lay = [&](int row, int c) {
+      for (int i = 0; i < nv; ++i) h.rows[row * nv + i] = T(0);
+      ws.geometry.white.add(ne + c, T(1), h.rows + row * nv);
+    };
+    for (int a = 0; a < h.n; ++a) lay(a, h.contact[a]);
+    for (int s = 0; s < h.n_spare; ++s) lay(h.n + s, h.spare[s]);
+    const int rank = orthonormal_split(h.n + h.n_spare, nv, h.rows, h.basis, h.order, h.norms, h.n);
+    for (int s = 0; s < h.n_spare; ++s) {
+      resolve_direction(rank, nv, h.rows, h.order, h.rows + (h.n + s) * nv, h.share);
+      const double size = value(ws.geometry.own[ne + h.spare[s]]);
+      for (int b = 0; b < nc; ++b) h.tie[s * nc + b] = T(0);
+      for (int j = 0; j < rank; ++j) {
+        const T share = h.share[j];
+        const bool counts = value(share * share * ws.geometry.own[ne + h.contact[h.order[j]]]) > 1e-18 * size;
+        if (counts) h.tie[s * nc + h.order[j]] = share;
+      }
+    }
+  }
+  for (int a = 0; a < r.n; ++a) r.value[a] = r.sorted[a];
+}
+
 /// Set number k under the torques of the carriers, its bounds widened by round-off.
 template <class T>
 DependentSet<T> dependent_set(Workspace<T>& ws, int k, const T* carried, T noise) {
   const int nc = int(ws.sys.contacts), first = ws.held.set_first[k], n = ws.held.set_first[k + 1] - first,
             rank = ws.held.set_rank[k];
+  if constexpr (!has_lanes<T>) {
+    if (ws.ratios.n > 0 && !ws.ratios.inside && is_few(ws.sys)) turn_spares(ws);
+  }
   const DependentSet<T> set{n, rank, ws.set.column, ws.set.load, ws.set.lower, ws.set.upper, ws.set.x};
   const int* place = ws.held.set_place + first;
   for (int r = 0; r < rank; ++r) set.load[r] = carried[place[r]];

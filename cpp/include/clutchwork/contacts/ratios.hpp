@@ -83,6 +83,22 @@ Dual<T, 1> ratio_now(Workspace<T>& ws, int a) {
   return out;
 }
 
+/// Change of the ratio of a transmission where each of its states and inputs grows by one.
+template <class T>
+T bend_of_ratio(const Workspace<T>& ws, int a) {
+  using S = Dual<T, 1>;
+  S out(T(0));
+  visit_transmission(ws, a, [&](auto tag, const auto& p) {
+    using E = typename decltype(tag)::type;
+    const int d = first_of(ws, a), ref = ws.sys.element_input[d], first = ws.sys.element_state[d];
+    S own[E::states > 0 ? E::states : 1], input[E::inputs > 0 ? E::inputs : 1];
+    for (int i = 0; i < E::states; ++i) own[i] = S(ws.state[first + i]), own[i].d[0] = T(1);
+    for (int i = 0; i < E::inputs; ++i) input[i] = S(ws.in.u[ref + i]), input[i].d[0] = T(1);
+    out = E::ratio(p, At<S>{S(T(0)), own, input, ws.piece[d], points_of(ws)});
+  });
+  return out.d[0];
+}
+
 /// What the row of transmission a must give of the accelerations: ratio' rate 2, less the prescribed part.
 /// docs/theory/varying-ratios.md (3)
 template <class T>
@@ -114,6 +130,29 @@ void write_rows(Workspace<T>& ws) {
     add_direction(ws, first_of(ws, a), T(1), row);
     add_direction(ws, first_of(ws, a) + 1, -r.value[a], row);
   }
+}
+
+/// A transmission in whose row the speed without inertia that follows from it has no share but round-off, so that
+/// nothing determines that speed; -1: none. docs/theory/varying-ratios.md, shafts without inertia
+template <class T>
+int lost_follower(const Workspace<T>& ws) {
+  constexpr double least = 1e-12, round_off = 1e-14;
+  const Ratios<T>& r = ws.ratios;
+  const int nv = int(ws.sys.speeds);
+  for (int a = 0; a < r.n; ++a) {
+    const int i = follower_of(ws, a);
+    if (i < 0) continue;
+    T share[2];
+    for (int way = 0; way < 2; ++way) {
+      const auto row = rate_row(ws.sys, first_of(ws, a) + way);
+      share[way] = T(0);
+      for (int e = 0; e < row.n; ++e) share[way] += row.column[e] == i ? T(row.value[e]) : T(0);
+    }
+    const double second = abs(value(share[1])), size = abs(value(share[0])) + abs(value(r.value[a])) * second;
+    if (!(abs(value(r.row[a * nv + i])) > round_off * size + least * second * abs(value(bend_of_ratio(ws, a)))))
+      return a;
+  }
+  return -1;
 }
 
 /// Take off x what moves the speeds that follow from transmissions, so that it is one over the others; `via`: the

@@ -166,7 +166,7 @@ CLUTCHWORK_HOT void drift_torques(Form& form, const T* y, const T* velocity, con
     for (int s = 0; s < b.states; ++s) drift[k] += ws.jacobian.f_state[b.state + s] * states[b.state + s];
     if constexpr (!Form::small) {
       const int nx = int(ws.sys.shared);
-      for (int j = 0; j < nx; ++j) drift[k] += ws.shared.torque_by[k * nx + j] * states[ws.sys.states - nx + j];
+      for (int j = 0; j < nx; ++j) drift[k] += ws.jacobian.torque_by[k * nx + j] * states[ws.sys.states - nx + j];
     }
   }
 }

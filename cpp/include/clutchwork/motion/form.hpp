@@ -98,19 +98,26 @@ struct SparseForm {
   int ns() const { return int(ws.sys.states); }
   int n() const { return ws.reduced.nz + int(ws.sys.states); }
 
-  CLUTCHWORK_HOT T rate(int k, const T* z) const { return ws.rows.rate.times(k, z); }
+  template <class X>
+  CLUTCHWORK_HOT X rate(int k, const X* z) const {
+    return ws.rows.rate.times(k, z);
+  }
   double rate_size(int k, const T* z) const { return ws.rows.rate.size(k, z); }
-  CLUTCHWORK_HOT void push(int k, T torque, T* q) const { ws.rows.rate.add(k, torque, q); }
-  void add_mass_times(T factor, const T* x, T* y) const {
+  template <class X>
+  CLUTCHWORK_HOT void push(int k, const X& torque, X* q) const {
+    ws.rows.rate.add(k, torque, q);
+  }
+  template <class X>
+  void add_mass_times(T factor, const X* x, X* y) const {
     const Compressed<T>& mass = ws.rows.mass;
     for (int i = 0; i < ws.reduced.nz; ++i) {
-      T s = T(0);
-      const T own = factor * x[i];
+      X s = X(0);
+      const X own = factor * x[i];
       for (int e = mass.first[i]; e < mass.first[i + 1]; ++e) {
-        s += mass.val[e] * x[mass.col[e]];
-        if (mass.col[e] != i) y[mass.col[e]] += mass.val[e] * own;
+        add_times(mass.val[e], x[mass.col[e]], s);
+        if (mass.col[e] != i) add_times(mass.val[e], own, y[mass.col[e]]);
       }
-      y[i] += factor * s;
+      add_times(factor, s, y[i]);
     }
   }
   /// b := M^-1 b, with a factor of its own beside the one of the step.
@@ -130,7 +137,10 @@ struct SparseForm {
     assemble(w, scale, stiff);
     return factor_envelope(w);
   }
-  void solve(T* b) const { solve_envelope(w, b); }
+  template <class X>
+  void solve(X* b) const {
+    solve_envelope(w, b);
+  }
 
  private:
   int envelope_size() const { return ws.reduced.nz == 0 ? 0 : ws.rows.sky[ws.reduced.nz - 1] + ws.reduced.nz; }
@@ -177,19 +187,20 @@ struct SparseForm {
     return true;
   }
 
-  void solve_envelope(const T* a, T* b) const {
+  template <class X>
+  void solve_envelope(const T* a, X* b) const {
     const int* low = ws.rows.low;
     for (int i = 0; i < ws.reduced.nz; ++i) {
       const T* row = a + ws.rows.sky[i];
-      T s = b[i];
-      for (int j = low[i]; j < i; ++j) s -= row[j] * b[j];
+      X s = b[i];
+      for (int j = low[i]; j < i; ++j) add_times(-row[j], b[j], s);
       b[i] = s;
     }
-    for (int i = 0; i < ws.reduced.nz; ++i) b[i] *= a[ws.rows.sky[i] + i];
+    for (int i = 0; i < ws.reduced.nz; ++i) b[i] = b[i] * a[ws.rows.sky[i] + i];
     for (int i = ws.reduced.nz - 1; i >= 0; --i) {
       const T* row = a + ws.rows.sky[i];
-      const T s = b[i];
-      for (int j = low[i]; j < i; ++j) b[j] -= row[j] * s;
+      const X s = b[i];
+      for (int j = low[i]; j < i; ++j) add_times(-row[j], s, b[j]);
     }
   }
 };

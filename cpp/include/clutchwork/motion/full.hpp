@@ -37,15 +37,16 @@ struct FullForm : SparseForm<T> {
     pack(count);
     return true;
   }
-  void solve_whole(T* b, int count) const {
+  template <class X>
+  void solve_whole(X* b, int count) const {
     const Full<T>& f = ws.full;
     for (int c = 0; c < count; ++c) {
-      const T swap = b[c];
+      const X swap = b[c];
       b[c] = b[f.pivot[c]];
       b[f.pivot[c]] = swap;
     }
-    auto less = [&](int k, T x) {
-      for (int e = f.first[k]; e < f.first[k + 1]; ++e) x -= f.part[e] * b[f.column[e]];
+    auto less = [&](int k, X x) {
+      for (int e = f.first[k]; e < f.first[k + 1]; ++e) add_times(-f.part[e], b[f.column[e]], x);
       return x;
     };
     for (int i = 0; i < count; ++i) b[i] = less(2 * i, b[i]);

@@ -109,6 +109,11 @@ void ratio_at(const Workspace<T>& ws, const Whole<S>& e, int nz, int a) {
     }
     const D ratio = E::ratio(p, At<D>{D(S(T(0))), own, input, b.piece, points_of(ws)});
     w.ratio[a] = ratio.v, w.slope[a] = ratio.d[0];
+    if constexpr (std::is_same_v<S, T>) {
+      r.present[a] = ratio.v;
+    } else {
+      r.present[a] = ratio.v.v;
+    }
   });
   w.pull[a] = w.slope[a] * e.rate[k + 1];
   for (int p = 0; p < np; ++p) {
@@ -415,6 +420,31 @@ int turned_over(const Workspace<T>& ws) {
       miss += first - second, size += abs(first) + abs(second);
     }
     if (abs(miss) > slip_tolerance(ws) + 1e-9 * size) return a;
+  }
+  return -1;
+}
+
+/// A transmission that has passed, since the point that was linearized last, a ratio at which the speed without inertia
+/// that follows from it is determined by nothing; -1: none. docs/theory/varying-ratios.md, shafts without inertia
+template <class T>
+int passed_over(const Ratios<T>& r) {
+  for (int a = 0; a < r.n; ++a) {
+    if (r.column[a] < 0) continue;
+    const double first = value(r.follows[2 * a * r.n + a]), second = value(r.follows[(2 * a + 1) * r.n + a]);
+    if ((first - value(r.some.ratio[a]) * second) * (first - value(r.plain.ratio[a]) * second) <= 0) return a;
+  }
+  return -1;
+}
+
+/// A transmission that, from the point that was evaluated last, reaches such a ratio at once; -1: none.
+template <class T>
+int passes_at_once(const Ratios<T>& r) {
+  constexpr double soon = 1e-7;
+  for (int a = 0; a < r.n; ++a) {
+    if (r.column[a] < 0) continue;
+    const double second = value(r.follows[(2 * a + 1) * r.n + a]);
+    const double share = value(r.follows[2 * a * r.n + a]) - value(r.plain.ratio[a]) * second;
+    if (!(abs(share) > soon * abs(value(r.plain.slope[a]) * second))) return a;
   }
   return -1;
 }

@@ -134,7 +134,7 @@ void torques_by_shared(Workspace<T>& ws, const T* rate, const T* state) {
   const int nx = int(sys.shared);
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];
-    T* row = ws.shared.torque_by + k * nx;
+    T* row = ws.jacobian.torque_by + k * nx;
     for (int j = 0; j < nx; ++j) row[j] = T(0);
     const int n = b.inputs + b.law_inputs;
     auto source = [&](int i) {
@@ -171,11 +171,11 @@ struct SharedRow {
   /// factor times the heat of branch k.
   void add_heat(int i, T factor, int k) {
     const Branch<T>& b = ws.branch[k];
-    ws.shared.by_rate[i * nd + k] += factor * ws.shared.heat_rate[k];
+    ws.jacobian.by_rate[i * nd + k] += factor * ws.shared.heat_rate[k];
     for (int s = 0; s < b.states; ++s)
-      ws.shared.by_state[i * ns + b.state + s] += factor * ws.shared.heat_share[k] * ws.jacobian.f_state[b.state + s];
+      ws.jacobian.by_state[i * ns + b.state + s] += factor * ws.shared.heat_share[k] * ws.jacobian.f_state[b.state + s];
     for (int j = 0; j < nx; ++j)
-      ws.shared.by_shared[i * nx + j] += factor * ws.shared.heat_share[k] * ws.shared.torque_by[k * nx + j];
+      ws.jacobian.by_shared[i * nx + j] += factor * ws.shared.heat_share[k] * ws.jacobian.torque_by[k * nx + j];
     dt[first + i] += factor * ws.shared.heat_time[k];
   }
   /// factor times the input that stands at a reference.
@@ -187,13 +187,13 @@ struct SharedRow {
       dt[first + i] += factor * ws.in.du[ref];
     } else if (code < sys.inputs + sys.shared) {
       const int j = code - int(sys.inputs);
-      ws.shared.by_shared[i * nx + j] += factor * T(sys.shared_scale[j]);
+      ws.jacobian.by_shared[i * nx + j] += factor * T(sys.shared_scale[j]);
     } else {
       bool heat;
       const int k = branch_behind(ws, ref, heat);
       if (k < 0) return;
       if (heat) return add_heat(i, factor, k);
-      ws.shared.by_rate[i * nd + k] += factor;
+      ws.jacobian.by_rate[i * nd + k] += factor;
       dt[first + i] += factor * offset_slope(ws, k);
     }
   }
@@ -252,7 +252,7 @@ void linearize_process(Workspace<T>& ws, SharedRow<T>& row, int c, const T* stat
     E::state_rates(p, process_at<T, S>(ws, c, own, input), rates);
     const int at = sys.process_state[c] - row.first;
     for (int s = 0; s < E::states; ++s) {
-      for (int j = 0; j < E::states; ++j) ws.shared.by_shared[(at + s) * nx + at + j] += rates[s].d[j];
+      for (int j = 0; j < E::states; ++j) ws.jacobian.by_shared[(at + s) * nx + at + j] += rates[s].d[j];
       for (int i = 0; i < E::inputs; ++i) row.add_input(at + s, rates[s].d[E::states + i], sys.process_input[c] + i);
     }
   });
@@ -268,9 +268,9 @@ template <class T>
   for (int k = 0; k < ws.n_branches; ++k) torque[k] = ws.jacobian.partial[k].torque;
   shared_rates(ws, rate, torque, state, d);
   linearize_heats(ws, rate, state);
-  for (int i = 0; i < nx * nd; ++i) ws.shared.by_rate[i] = T(0);
-  for (int i = 0; i < nx * ns; ++i) ws.shared.by_state[i] = T(0);
-  for (int i = 0; i < nx * nx; ++i) ws.shared.by_shared[i] = T(0);
+  for (int i = 0; i < nx * nd; ++i) ws.jacobian.by_rate[i] = T(0);
+  for (int i = 0; i < nx * ns; ++i) ws.jacobian.by_state[i] = T(0);
+  for (int i = 0; i < nx * nx; ++i) ws.jacobian.by_shared[i] = T(0);
   SharedRow<T> row(ws, dt);
   for (int h = 0; h < sys.heats; ++h) {
     const int k = ws.branch_of[sys.heat_direction[h]];

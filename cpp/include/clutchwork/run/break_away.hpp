@@ -56,18 +56,24 @@ void torques_at(Form& form, Step<Form>& step, double s) {
   ++ws.statistics.locations;
 }
 
+/// Margin of a locked contact where the torques were looked at last; the round-off is that of either end of the step,
+/// for all torques may be zero at one of them.
+template <class T>
+double margin_seen(const Workspace<T>& ws, int a) {
+  const T torque = ws.seen.carried[a];
+  const double more = larger(0.0, value(ws.there.noise[a] - ws.here.noise[a]));
+  return margin(ws, a, torque, capacity_at(ws, ws.held.contact[a], torque)) + more;
+}
+
 /// Smallest margin of the watched locked contacts at s, and whose it is.
 template <class Form>
 double least_margin(Form& form, Step<Form>& step, double s, const int* watched, int n, int& who) {
-  using T = typename Form::Scalar;
-  Workspace<T>& ws = form.ws;
+  auto& ws = form.ws;
   torques_at(form, step, s);
   double least = infinity;
   for (int i = 0; i < n; ++i) {
-    const int a = watched[i];
-    const T torque = ws.seen.carried[a];
-    const double m = margin(ws, a, torque, capacity_at(ws, ws.held.contact[a], torque));
-    if (m < least) least = m, who = a;
+    const double m = margin_seen(ws, watched[i]);
+    if (m < least) least = m, who = watched[i];
   }
   return least;
 }
@@ -108,7 +114,8 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
     double before, after;
     if (holds_on(ws, a, step.h, before, after)) continue;
     watched[n++] = a;
-    m0 = smaller(m0, before), m1 = smaller(m1, after);
+    const double more = larger(0.0, value(ws.there.noise[a] - ws.here.noise[a]));
+    m0 = smaller(m0, before + more), m1 = smaller(m1, after + more);
   }
   if (n == 0) return;
   fit(form, step);
@@ -118,7 +125,10 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
   if (!is_first(hit, s)) return;
   // where several are at their limits at once, the first that goes beyond
   double beyond = f(s);
+  const int at_limit = who;
   for (int k = 12; k > 0 && beyond >= 0; --k) beyond = f(s + (hit.s - s) / (1 << k));
+  torques_at(form, step, s);
+  if (margin_seen(ws, who) > 1e-6 * value(capacity_at(ws, ws.held.contact[who], ws.seen.carried[who]))) who = at_limit;
   hit = {Hit::multiplier, who, s, -1};
 }
 

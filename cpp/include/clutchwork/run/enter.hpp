@@ -123,6 +123,7 @@ template <class T>
 void list_locked_now(Workspace<T>& ws, bool again) {
   const BesideRatios<T> beside(ws, again ? Written::last : Written::now);
   list_locked(ws);
+  for (int a = 0; a < ws.ratios.n; ++a) ws.ratios.turned[a] = ws.ratios.present[a] = ws.ratios.value[a];
 }
 
 /// Reduced motion of the present modes; the state goes to ws.reduced.y. False: the inertias differ too much to tell

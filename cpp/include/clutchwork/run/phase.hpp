@@ -91,7 +91,11 @@ class Phase : public Pace<typename Form::Scalar> {
     ws_.in.time = -infinity;
     if constexpr (Form::full) {
       const auto& ratios = taken_form().ws.ratios;
-      const int lost = ratios.n > 0 ? vanished_row(ratios) : -1;
+      int lost = ratios.n > 0 ? vanished_row(ratios) : -1;
+      if (ratios.n > 0 && lost < 0) {
+        evaluate(taken_form(), ws_.time, taken_step().y0(), taken_step().slope());
+        lost = passes_at_once(ratios);
+      }
       if (lost >= 0) return jam(lost);
     }
     blame(form_, step_);
@@ -116,7 +120,7 @@ class Phase : public Pace<typename Form::Scalar> {
       if (ws_.ratios.jammed >= 0) return jam(ws_.ratios.jammed);
     }
     if constexpr (!Form::small) {
-      if (balance_massless(form_, step_) && event && may_decide_again()) return decide_again();
+      if (fresh && balance_massless(form_, step_) && event && may_decide_again()) return decide_again();
     }
     if constexpr (has_tangents<T>) {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
@@ -240,6 +244,7 @@ class Phase : public Pace<typename Form::Scalar> {
       keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
       auto& ws = taken_form().ws;
       if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = turned_over(ws);
+      if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = passed_over(ws.ratios);
     }
     look_at_end();
     return true;
@@ -345,7 +350,7 @@ class Phase : public Pace<typename Form::Scalar> {
   {
     varied_.rest();
     for (double at = 0; at < s;) {
-      const double to = varied_.follow(at, s);
+      const double to = varied_.follow(at, s, end_of_step());
       if (to < 0) return leave(Status::step_collapse), false;
       if (ws_.moved.parts++ >= ws_.options.max_steps) return leave(Status::too_many_steps), false;
       const double end = to == s ? time_at(s) : step_.t + step_.h;
@@ -354,13 +359,14 @@ class Phase : public Pace<typename Form::Scalar> {
       for (int i = 0; to < s && i < form_.n(); ++i) step_.y0()[i] = step_.y1()[i];
       at = to;
     }
-    if (s >= 1 && varied_.was_moved()) look_at_end();
     return true;
   }
   bool write_part(double end)
     requires has_tangents<T>
   {
     const bool rows = end > step_.t && sink_.at < sink_.count && sink_.times[sink_.at] <= end;
+    if (!(rows || ws_.options.work || ws_.options.angles)) return true;
+    varied_.fit_part();
     if (ws_.options.work) fit_power(form_, step_, 1.0);
     const Status shown = rows ? emit(form_, step_, 1.0, end, sink_) : Status::running;
     if (shown != Status::running) return leave(shown), false;
@@ -427,6 +433,7 @@ class Phase : public Pace<typename Form::Scalar> {
     before_ = 0, landings_ = 0, rejected_ = false;
     // a run with derivatives has a step that ends there
     const double at = has_tangents<T> ? 1.0 : hit.s;
+    if constexpr (has_tangents<T>) varied_.fit_part();
     note_before(form_, step_, at);
     interpolate(form_, step_, at, step_.u());
     ws_.time = smaller(ws_.time + hit.s * reach_, stop_);

@@ -77,6 +77,15 @@ double collision_step(Form& form, int k) {
   return square > 0 ? 0.5 / sqrt(square) : infinity;
 }
 
+/// Whether steps are short enough for the quadrature of the work.
+template <class T>
+CLUTCHWORK_INLINE bool resolves_work(const Workspace<T>& ws) {
+  if constexpr (has_tangents<T>) {
+    if (ws.moved.work_left_out) return true;
+  }
+  return ws.options.work;
+}
+
 /// Longest step that resolves the oscillating signals and elements, which the error estimate may not see: with work
 /// half a radian of a sine or half a time constant of a decay, for the quadrature; else what the samples of the guards
 /// need.
@@ -94,7 +103,7 @@ double signal_step(const Workspace<T>& ws) {
       if (ws.branch[k].law < 0) fastest = larger(fastest, own_pace(ws, ws.branch[k], ws.here.rate[k]));
     }
   }
-  return fastest > 0 ? (ws.options.work ? 0.5 : 1.5) / fastest : infinity;
+  return fastest > 0 ? (resolves_work(ws) ? 0.5 : 1.5) / fastest : infinity;
 }
 
 /// Error of the work over a step in units of the tolerance, by halving. Where speeds are prescribed no state may feel

@@ -165,8 +165,9 @@ void report_changes(Workspace<T>& ws, bool at_start, double energy_before) {
   const Happened<T>& before = ws.happened;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int mode = ws.contact.mode[c];
-    const bool struck = ws.contact.struck[c] != 0;
-    if (!struck && (mode == before.mode[c] || (at_start && !ws.contact.impulse[c]))) continue;
+    // one that jams may slip on as before
+    const bool struck = ws.contact.struck[c] != 0, jams = before.cause == Cause::jam && c == before.contact;
+    if (!struck && !(jams && !at_start) && (mode == before.mode[c] || (at_start && !ws.contact.impulse[c]))) continue;
     const bool own = c == before.contact || before.contact < 0;
     const Cause cause = at_start ? Cause::impulse : struck ? Cause::impact : own ? before.cause : Cause::other_event;
     const double hits = value(mode == locked ? before.slope[c] : ws.decision.acceleration[c]);
@@ -203,6 +204,10 @@ Status switch_modes(Workspace<T>& ws) {
   if (ws.happened.cause == Cause::slip_zero && located >= 0) ws.contact.forced[located] = 0;
   if (!at_start) jump(ws);
   const BesideRatios<T> beside(ws);
+  if (const int lost = lost_follower(ws); lost >= 0) {
+    ws.detail.component = first_of(ws, lost);
+    return Status::jammed;
+  }
   if (ws.ratios.n > 0) settle_rows(ws);
   if (!at_start) see_speeds(ws);
   if constexpr (has_tangents<T>) {

@@ -31,7 +31,8 @@ void list_slip(Workspace<T>& ws, int k) {
   const double slip = value(rate_of(ws, b.direction));
   if (may_stick(ws, c) && ws.contact.mode[c] != locked) {
     // what prescribed speeds drive cannot be stopped
-    const double level = ws.contact.forced[c] == 0 && !is_rigid(ws, c) ? value(ws.sys.contact_tolerance[c]) : 0.0;
+    const bool driven = is_rigid(ws, c) || (ws.ratios.n > 0 && value(ws.ratios.whole[b.direction]) == 0);
+    const double level = ws.contact.forced[c] == 0 && !driven ? value(ws.sys.contact_tolerance[c]) : 0.0;
     const bool outside = abs(slip) >= level * (1 - 1e-9);
     ws.guard.line[ws.guard.n_lines++] = {LineGuard::slip, k, ws.contact.mode[c],
                                          outside ? level * ws.contact.mode[c] : 0.0};
@@ -60,9 +61,10 @@ void list_lines(Workspace<T>& ws) {
     list_turn(ws, k);
     const int edges = edge_count(ws, b.direction), sign = contact ? b.sign : 1, interval = b.piece % (edges + 1);
     if (interval < edges)
-      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, -sign, sign * edge_at(ws, b.direction, interval)};
+      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, -sign, sign * value(edge_at(ws, b.direction, interval))};
     if (interval > 0)
-      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, sign, sign * edge_at(ws, b.direction, interval - 1)};
+      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, sign,
+                                           sign * value(edge_at(ws, b.direction, interval - 1))};
   }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) {
     // an open contact has passed zero when it is clear of it on the other side

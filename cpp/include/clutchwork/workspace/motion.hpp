@@ -6,16 +6,17 @@
 /// The motion of one mode: geometry, reduced coordinates, derivatives, shared states.
 namespace clutchwork {
 
-/// Rows of a matrix without their zeros.
+/// Rows of a matrix without their zeros. What they multiply may have derivatives where they are plain.
 template <class T>
 struct Compressed {
   int *first = nullptr, *col = nullptr;
   T* val = nullptr;
 
   /// Product of row i and x.
-  CLUTCHWORK_HOT T times(int i, const T* x) const {
-    T s = T(0);
-    for (int e = first[i]; e < first[i + 1]; ++e) s += val[e] * x[col[e]];
+  template <class X>
+  CLUTCHWORK_HOT X times(int i, const X* x) const {
+    X s = X(0);
+    for (int e = first[i]; e < first[i + 1]; ++e) add_times(val[e], x[col[e]], s);
     return s;
   }
   /// Size of what the product of row i and x is made of.
@@ -25,8 +26,9 @@ struct Compressed {
     return s;
   }
   /// x += factor times row i.
-  CLUTCHWORK_HOT void add(int i, T factor, T* x) const {
-    for (int e = first[i]; e < first[i + 1]; ++e) x[col[e]] += val[e] * factor;
+  template <class X>
+  CLUTCHWORK_HOT void add(int i, const X& factor, X* x) const {
+    for (int e = first[i]; e < first[i + 1]; ++e) add_times(val[e], factor, x[col[e]]);
   }
 
   template <class P, class A>
@@ -119,25 +121,28 @@ template <class T>
 struct Jacobian {
   Partial<T>* partial = nullptr;
   T *f_state = nullptr, *g_rate = nullptr, *g_time = nullptr;
-  T* g_state = nullptr;  ///< blocks of the branches
-  int* block = nullptr;  ///< of each branch: place of its block
+  T* g_state = nullptr;                                             ///< blocks of the branches
+  int* block = nullptr;                                             ///< of each branch: place of its block
+  T* torque_by = nullptr;                                           ///< torque of each branch by the shared states
+  T *by_rate = nullptr, *by_state = nullptr, *by_shared = nullptr;  ///< of the rates of the shared states
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.partial, n.directions), a.take(p.f_state, n.states), a.take(p.g_rate, n.states),
         a.take(p.g_time, n.states);
     a.take(p.g_state, n.blocks), a.take(p.block, n.directions);
+    const auto nx = n.shared, nd = nx > 0 ? n.directions : 0;
+    a.take(p.torque_by, nd * nx), a.take(p.by_rate, nd * nx);
+    a.take(p.by_state, n.states * nx), a.take(p.by_shared, nx * nx);
   }
 };
 
 /// Shared states: heats, and the border that they put around the motion.
 template <class T>
 struct Shared {
-  T *heat = nullptr, *heat_rate = nullptr, *heat_time = nullptr;    ///< of each branch [W], by its rate, by time
-  T* heat_share = nullptr;                                          ///< of each branch, by its torque
-  T *stage_rate = nullptr, *stage_torque = nullptr;                 ///< of each branch at the present stage
-  T* torque_by = nullptr;                                           ///< torque of each branch by the shared states
-  T *by_rate = nullptr, *by_state = nullptr, *by_shared = nullptr;  ///< of the shared rates
+  T *heat = nullptr, *heat_rate = nullptr, *heat_time = nullptr;  ///< of each branch [W], by its rate, by time
+  T* heat_share = nullptr;                                        ///< of each branch, by its torque
+  T *stage_rate = nullptr, *stage_torque = nullptr;               ///< of each branch at the present stage
   T *reach = nullptr, *inverse = nullptr, *rhs = nullptr;  ///< answer of the motion to a shared state; Schur complement
   int* pivot = nullptr;                                    ///< of its inversion
   int* piece = nullptr;                                    ///< smooth piece of each process
@@ -147,8 +152,7 @@ struct Shared {
     a.keep(p.piece, n.processes, 0, (1ll << 31) - 1);
     const auto nx = n.shared, nd = nx > 0 ? n.directions : 0;
     a.take(p.heat, nd), a.take(p.heat_rate, nd), a.take(p.heat_time, nd), a.take(p.heat_share, nd);
-    a.take(p.stage_rate, nd), a.take(p.stage_torque, nd), a.take(p.torque_by, nd * nx), a.take(p.by_rate, nd * nx);
-    a.take(p.by_state, n.states * nx), a.take(p.by_shared, nx * nx), a.take(p.reach, (n.speeds + n.states) * nx);
+    a.take(p.stage_rate, nd), a.take(p.stage_torque, nd), a.take(p.reach, (n.speeds + n.states) * nx);
     a.take(p.inverse, nx * nx), a.scratch(p.rhs, nx), a.take(p.pivot, nx);
   }
 };
@@ -159,13 +163,12 @@ struct Stages {
   T* rows = nullptr;     ///< of a step
   T* stiff = nullptr;    ///< effective damping of each branch
   T* inverse = nullptr;  ///< of the blocks of the own states
-  T* own = nullptr;      ///< own states of one branch
   int* pivot = nullptr;  ///< of the inversion of a block
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.scratch(p.rows, step_rows * (n.speeds + n.states)), a.scratch(p.stiff, n.directions);
-    a.take(p.inverse, n.blocks), a.scratch(p.own, n.states), a.take(p.pivot, n.states);
+    a.take(p.inverse, n.blocks), a.take(p.pivot, n.states);
   }
   static constexpr int step_rows = 20;
 };

@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/workspace/arena.hpp>
+#include <clutchwork/workspace/motion.hpp>
 #include <clutchwork/workspace/run.hpp>
 #include <clutchwork/workspace/settings.hpp>
 
@@ -39,10 +40,15 @@ struct Moved {
   double pace = infinity;              ///< [s] that a step of the derivatives may take
   std::int64_t parts = 0;              ///< of steps that the derivatives have taken
   double size[T::seen] = {};           ///< largest that each direction has had, over the size of the motion
+  bool work_left_out = false;          ///< steps are those of a run with work, which has no derivatives here
+  Jacobian<double> other;              ///< of the image, at the other end of a step of the derivatives
+  double* other_whole = nullptr;       ///< the same of the full form
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& s) {
     a.scratch(p.row, s.row);
+    const auto unknowns = s.full ? s.speeds + s.states : 0;
+    Jacobian<double>::lay_out(p.other, a, s), a.scratch(p.other_whole, unknowns * unknowns);
     a.scratch(p.event, EventBuffer::room + 2 * s.contacts), a.scratch(p.graze, room);
   }
 };

@@ -30,10 +30,12 @@ struct Tied {
 template <class T>
 struct Ratios {
   int n = 0;
-  T *value = nullptr, *before = nullptr;  ///< its ratio, and that before an event
-  T *pull = nullptr, *wanted = nullptr;   ///< what its row must give of the accelerations, and without followers
-  T* torque = nullptr;                    ///< along its first direction
-  T* row = nullptr;                       ///< n x speeds
+  T *value = nullptr, *before = nullptr;   ///< its ratio, and that before an event
+  T *pull = nullptr, *wanted = nullptr;    ///< what its row must give of the accelerations, and without followers
+  T* present = nullptr;                    ///< its ratio at the point of a phase that was evaluated last
+  T *turned = nullptr, *sorted = nullptr;  ///< that at which spares were turned last, and that of the phase meanwhile
+  T* torque = nullptr;                     ///< along its first direction
+  T* row = nullptr;                        ///< n x speeds
 
   // the rows that tie speeds with inertia, mass-weighted: row order[k] = sum of triangle[k, j] span[j]
   int rank = 0;
@@ -67,6 +69,7 @@ struct Ratios {
     const auto n = s.transmissions, nv = n > 0 ? s.speeds : 0, nd = n > 0 ? s.directions : 0,
                nc = n > 0 ? s.contacts : 0, rows = 2 * n + nc;
     a.take(p.value, n), a.take(p.before, n), a.take(p.pull, n), a.scratch(p.wanted, n), a.take(p.torque, n);
+    a.scratch(p.present, n), a.scratch(p.turned, n), a.scratch(p.sorted, n);
     a.scratch(p.row, n * nv), a.take(p.order, n), a.scratch(p.span, n * nv), a.scratch(p.triangle, n * n);
     a.scratch(p.share, n), a.scratch(p.drawn, n);
     Compressed<T>::lay_out(p.white, a, nd, nd * nv), a.scratch(p.own, nd), a.scratch(p.whole, nd);

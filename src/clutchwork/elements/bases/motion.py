@@ -39,19 +39,24 @@ class Motion(Component):
             if is_reference(value)
         ]
 
-    def speed_signal(self) -> Signal:
-        """The speed that the shaft is given, over time; `MotionError` where it has none."""
+    def speed_signal(self, speed: float) -> Signal:
+        """The speed from the base that the shaft is given, over time; `MotionError` where it has none.
+
+        Parameter: speed, that at the start [rad/s, m/s], where it begins with what the shaft does.
+        """
         raise NotImplementedError
+
+    def begins_with_shaft(self) -> bool:
+        """Whether its speed begins with that of the shaft."""
+        return self.integrates
 
     def start_angle(self) -> float | None:
         """Angle [rad] or position [m] from the base at the start; None: that of the shaft."""
         return None
 
-    def _started(self) -> tuple[float, float]:
-        """Angle and speed from the base at the start, as shaft and base say."""
-        base = (self.base.speed or 0.0) if self.base else 0.0
-        speed = base if self.shaft.speed is None else self.shaft.speed
-        return angle_of(self.shaft) - angle_of(self.base), speed - base
+    def _started(self) -> float:
+        """Angle from the base at the start, as shaft and base say."""
+        return angle_of(self.shaft) - angle_of(self.base)
 
     def _unit(self, rotation: str) -> str:
         """A unit of the shaft, or of a mass."""

@@ -57,14 +57,20 @@ struct Rodas5P {
     return regular;
   }
 
-  /// b := (scale M - J)^-1 b.
-  template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_HOT void solve(Form& form, T* b) {
+  /// b := (scale M - J)^-1 b. `rhs` is scratch, of the shared states. A plain factor solves for derivatives too.
+  template <class Form, class X>
+  static CLUTCHWORK_HOT void solve(Form& form, X* b, X* rhs) {
     if constexpr (Form::full) return form.solve_whole(b, form.n());
     solve_motion(form, b);
-    if constexpr (!Form::small) {
-      if (form.ws.sys.shared > 0) solve_border(form, b);
-    }
+    if (form.ws.sys.shared > 0) solve_border(form, b, rhs);
+  }
+
+  template <class Form, class T = typename Form::Scalar>
+  static CLUTCHWORK_HOT void solve(Form& form, T* b) {
+    if constexpr (Form::small)
+      solve_motion(form, b);
+    else
+      solve(form, b, form.ws.shared.rhs);
   }
 
   /// As factor, with the shared states held.
@@ -97,28 +103,28 @@ struct Rodas5P {
   }
 
   /// As solve, with the shared states held: own states condensed out and put back.
-  template <class Form, class T = typename Form::Scalar>
-  static CLUTCHWORK_HOT void solve_motion(Form& form, T* b) {
+  template <class Form, class X, class T = typename Form::Scalar>
+  static CLUTCHWORK_HOT void solve_motion(Form& form, X* b) {
     Workspace<T>& ws = form.ws;
     const int nz = form.nz();
     if (form.ns() == 0) {
       form.solve(b);
       return;
     }
-    T* own = b + nz;
+    X* own = b + nz;
     for (int k = 0; k < ws.n_branches; ++k) {
       const Branch<T>& br = ws.branch[k];
       if (br.states == 0) continue;
       const T* inverse = ws.stages.inverse + ws.jacobian.block[k];
-      T push = T(0);
+      X push = X(0);
       if (br.states == 1) {
-        own[br.state] *= inverse[0];
-        push = ws.jacobian.f_state[br.state] * own[br.state];
+        own[br.state] = own[br.state] * inverse[0];
+        push = own[br.state] * ws.jacobian.f_state[br.state];
       } else {
-        T* tmp = ws.stages.own;
-        for (int i = 0; i < br.states; ++i) tmp[i] = dot(br.states, inverse + i * br.states, own + br.state);
-        for (int i = 0; i < br.states; ++i) own[br.state + i] = tmp[i];
-        push = dot(br.states, ws.jacobian.f_state + br.state, tmp);
+        X found[larger(most_own_states, 1)];
+        for (int i = 0; i < br.states; ++i) found[i] = dot(br.states, inverse + i * br.states, own + br.state);
+        for (int i = 0; i < br.states; ++i) own[br.state + i] = found[i];
+        push = dot(br.states, ws.jacobian.f_state + br.state, found);
       }
       form.push(k, push, b);
     }
@@ -127,9 +133,9 @@ struct Rodas5P {
       const Branch<T>& br = ws.branch[k];
       if (br.states == 0) continue;
       const T* inverse = ws.stages.inverse + ws.jacobian.block[k];
-      const T rate = form.rate(k, b);
+      const X rate = form.rate(k, b);
       for (int i = 0; i < br.states; ++i)
-        own[br.state + i] += dot(br.states, inverse + i * br.states, ws.jacobian.g_rate + br.state) * rate;
+        add_times(dot(br.states, inverse + i * br.states, ws.jacobian.g_rate + br.state), rate, own[br.state + i]);
     }
   }
 
