@@ -285,7 +285,8 @@ class Model {
     add(flow_kind_), add(flow_param_), add(flow_input_), add(flow_from_), add(flow_to_);
     add(process_kind_), add(process_param_), add(process_input_), add(process_state);
     add(heat_direction), add(heat_to_), add(heat_share_), add(shared_scale_), add(shared_offset_);
-    add(given), add(Indices(np)), add(resolve(refs_)), add(input_first_), add(input_count_), add(input_period_), add(input_value_);
+    add(given), add(Indices(np)), add(resolve(refs_)), add(input_first_), add(input_count_), add(input_period_),
+        add(input_value_);
     add(segment_time_), add(segment_coef_), add(params_), add(points_), add(start), add(angles), add(states);
     return out;
   }

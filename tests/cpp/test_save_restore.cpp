@@ -108,6 +108,16 @@ Model full_of_wind(double speed) {
   return m;
 }
 
+/// The same without load: it forgets as a phase begins, and winds up in it.
+Model full_without_load() {
+  Model m;
+  const int in = m.shaft(0.3, 3), out = m.shaft(0.5);
+  m.contact<elements::Clutch, laws::Mykhalevych>(in, out, {1}, {m.constant(0)},
+                                                 {0.2, 0.15, 0.05, 3, 0.5, double(choice::Reset::saturate), 0.7, 0});
+  m.element<elements::Torque>(housing, in, {}, {m.signal({{0, {0, 0, 0, 0, 4, 9, 0, 0}}})});
+  return m;
+}
+
 }  // namespace
 
 int test_save_restore() {
@@ -135,5 +145,6 @@ int test_save_restore() {
   for (double speed : {-3.0, 3.0}) {
     for (double middle : {0.001, 0.3, 0.8, 1.3}) continues(full_of_wind(speed), middle, 2.0);
   }
+  for (double middle : {0.001, 0.3, 1.3}) continues(full_without_load(), middle, 2.0);
   return check::result();
 }

@@ -131,13 +131,13 @@ void list_locked_now(Workspace<T>& ws, bool again) {
 template <class T>
 bool enter_mode(Workspace<T>& ws, bool again = false) {
   const auto& sys = ws.sys;
-  relax_open(ws);
+  // the pieces and headings of a phase that goes on are its own
+  if (!again) relax_open(ws);
   list_locked_now(ws, again);
   pack_branches(ws);
   list_laws(ws);
   list_processes(ws);
   list_gaps(ws);
-  // the rates of a phase that goes on are not those that are there while it is made ready
   if (!again) turn_jumped(ws);
   if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);
