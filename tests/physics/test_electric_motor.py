@@ -219,3 +219,14 @@ def test_from_rest_either_way_drives(way, brakes):
 def test_mistakes_are_named(values, words):
     with pytest.raises(cw.ModelError, match=words):
         _driveline(0.0, 1.0, **({"max_torque": 100.0} | values)).assemble()
+
+
+@pytest.mark.parametrize("share", [0.0, 1.2])
+def test_efficiencies_of_the_torque_alone_are_checked(share: float) -> None:
+    """An efficiency of zero loses without bound: 0 W over 0 at rest."""
+    d = cw.Driveline("rest")
+    motor = {"speeds": [0.0, 5.0], "motoring": [12.0, 8.0], "generating": [9.0, 9.0], "torques": [0.0, 6.0]}
+    motor |= {"map": [[share, 0.5], [0.8, 0.9]], "map_of": "efficiencies", "derating": [[400.0, 0.8]], "command": 4.0}
+    d.add(cw.MotorTorque("motor", shaft=d.shaft("shaft", inertia=1.0), **motor))
+    with pytest.raises(cw.ModelError, match=rf"has the efficiency {share:g}; give efficiencies above 0"):
+        d.assemble()

@@ -407,3 +407,19 @@ def test_a_tolerance_between_prescribed_speeds_stops_nothing(seed):
     run = d.simulate(0.2)
     assert run.status == "done", seed
     assert run["tie.work"][-1] < 0.0, seed
+
+
+@pytest.mark.parametrize("seed", range(MODELS))
+def test_a_tolerance_on_a_mass_that_a_crank_holds_stops_nothing(seed):
+    """The shaft of the crank is prescribed: friction on the mass passes its tolerance and brakes against its speed."""
+    rng = np.random.default_rng([seed, 31])
+    d = cw.Driveline("held")
+    a, m = d.shaft("a", inertia=1.0), d.mass("m", mass=uniform(rng, 0.5, 5))
+    d.add(cw.CrankSlider("tie", shaft=a, mass=m, radius=0.05, rod=uniform(rng, 0.1, 1)))
+    law, tolerance = cw.Coulomb(static=0.2, kinetic=0.1), uniform(rng, 0.001, 0.02)
+    d.add(cw.Brake("brake", shaft=m, friction=law, gain=1.0, normal_force=10.0, tolerance=tolerance))
+    d.add(cw.PrescribedSpeed("motion", shaft=a, speed=uniform(rng, 5, 40)))
+    run = d.simulate(0.5)
+    assert run.status == "done", seed
+    sliding = np.abs(run["m.speed"]) > 1e-6
+    assert np.array_equal(np.sign(run["brake.torque"][sliding]), -np.sign(run["m.speed"][sliding])), seed

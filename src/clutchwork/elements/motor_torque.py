@@ -99,6 +99,9 @@ class MotorTorque(Heating):
             found.append(("generating", fault, "give at rest no more than it drives with: there it could not stand"))
         if len(self.map) != rows or any(len(row) != columns for row in self.map):
             found.append(("map", f"must have {rows} rows of {columns} numbers", "give a row for each speed"))
+        wrong = [share for row in self.map for share in row if not 0.0 < share <= 1.0]
+        if self.map_of == "efficiencies" and wrong:
+            found.append(("map", f"has the efficiency {wrong[0]:g}", "give efficiencies above 0 and up to 1"))
         return found
 
     def own_states(self) -> tuple[State, ...]:

@@ -95,12 +95,18 @@ Status settle(Workspace<T>& ws, int located) {
   return Status::no_mode;
 }
 
-/// A freewheel that runs backward although everything is decided; -1: none.
+/// A freewheel that runs backward although everything is decided, or that nothing keeps from starting to; -1: none.
 template <class T>
-int backward_freewheel(const Workspace<T>& ws) {
+int backward_freewheel(Workspace<T>& ws) {
+  const double tolerance = slip_tolerance(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) {
     if (!ws.contact.loaded[c]) continue;
-    if (value(rate_of(ws, int(ws.sys.elements) + c)) * free_way(ws, c) < -1e3 * slip_tolerance(ws)) return c;
+    const int way = free_way(ws, c);
+    const double slip = way * value(rate_of(ws, int(ws.sys.elements) + c));
+    if (slip < -1e3 * tolerance) return c;
+    if (!(slip < -tolerance) || !is_rigid(ws, c) || ws.contact.mode[c] == locked) continue;
+    accelerations_after(ws);
+    if (way * value(ws.decision.acceleration[c]) < 0) return c;
   }
   return -1;
 }

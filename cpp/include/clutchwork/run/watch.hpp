@@ -31,7 +31,7 @@ void list_slip(Workspace<T>& ws, int k) {
   const double slip = value(rate_of(ws, b.direction));
   if (may_stick(ws, c) && ws.contact.mode[c] != locked) {
     // what prescribed speeds drive cannot be stopped
-    const bool driven = is_rigid(ws, c) || (ws.ratios.n > 0 && value(ws.ratios.whole[b.direction]) == 0);
+    const bool driven = is_rigid(ws, c) || (ws.ratios.n > 0 && value(ws.ratios.own[b.direction]) == 0);
     const double level = ws.contact.forced[c] == 0 && !driven ? value(ws.sys.contact_tolerance[c]) : 0.0;
     const bool outside = abs(slip) >= level * (1 - 1e-9);
     ws.guard.line[ws.guard.n_lines++] = {LineGuard::slip, k, ws.contact.mode[c],
