@@ -96,3 +96,12 @@ def test_a_jump_that_stays_where_it_is_moves_no_extreme() -> None:
     d.add(cw.Torque("t", shaft=m, torque=cw.Table([(0.0, 20.0), (0.4, 20.0), (0.4, -12.0), (0.6, 6.0)])))
     of = [cw.minimum("m.speed"), cw.squared_jerk("b"), cw.peak("k1.torque")]
     compared(d, 0.7, of, ["t.torque.values[2]", "t.torque.values[3]"], **TIGHT)
+
+
+def test_the_last_of_many_bounces_is_as_well_known_as_the_first() -> None:
+    d = cw.Driveline("bounces")
+    a, b = d.shaft("a", inertia=0.3, speed=4.0), d.shaft("b", inertia=0.8)
+    d.add(cw.Backlash("k", base=a, follower=b, gap=0.15, restitution=0.3))
+    d.add(cw.Torque("t", shaft=a, torque=10.0))
+    d.add(cw.Damper("r", base=b, follower=d.housing, damping=0.3))
+    compared(d, 0.3, [cw.lock("k"), "k.heat", "b.speed"], ["a.inertia", "t.torque"], **TIGHT)
