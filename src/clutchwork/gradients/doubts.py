@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.beginning import at_rest
-from clutchwork.gradients.grazing import crowded, decided_at_knots, refused, struck_together
+from clutchwork.gradients.grazing import crowded, decided_at_knots, jumping_together, refused, struck_together
 from clutchwork.gradients.knots import times_of
 from clutchwork.gradients.lines import Line
 from clutchwork.gradients.pressing import unpressed
@@ -117,9 +117,12 @@ class Doubts:
 
     def _decisions(self) -> Iterator[Doubt]:
         primal, system, contacts = self.run.primal, self.runs.task.system, self.runs.wanted.contacts
-        knots = times_of(self.point.chart, self.point.words, primal.t_end)
+        knots, size = times_of(self.point.chart, self.point.words, primal.t_end), float(self.sizes.max())
+        for time, why in refused(system, primal.decided, size):
+            yield Doubt(why, self._up_to(time), self._all)
+        for time, why in jumping_together(system, primal.grazes, size):
+            yield Doubt(why, self._up_to(time), self._moving_knots())
         found = chain(
-            refused(system, primal.decided, float(self.sizes.max())),
             crowded(primal.events, contacts),
             struck_together(system, primal.events, contacts),
             decided_at_knots(primal.events, primal.grazes, knots[knots > self.runs.wanted.begin], contacts),

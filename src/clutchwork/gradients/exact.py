@@ -15,6 +15,7 @@ from clutchwork.base.errors import ModelError
 from clutchwork.gradients.bends import Bends, bends_of, spread
 from clutchwork.gradients.doubts import Doubt, Doubts
 from clutchwork.gradients.grazing import noted, together
+from clutchwork.gradients.jerk import massless
 from clutchwork.gradients.lines import Line, lines, without_derivatives
 from clutchwork.gradients.measures import Asked, measures
 from clutchwork.gradients.runs import Point, Run, Runs
@@ -48,7 +49,7 @@ class Exact:
     def _asked(self) -> Asked:
         wanted = self.runs.wanted
         kept = {one.name: wanted.kept_as(one) for one in wanted.outputs.values() if isinstance(one, Integral)}
-        return Asked(wanted.contacts, kept, wanted.begin)
+        return Asked(wanted.contacts, kept, wanted.begin, massless(self.task.system))
 
     # ---------------------------------------------------------------------------------------------------------- values
 
@@ -115,7 +116,7 @@ class Exact:
             return None
         run = self._refined(point, 1)
         found = [one for output in self.task.outputs.values() for one in measures(run.primal, output, self._asked)]
-        if any(len(one.changes) != 1 for one in found) or self._doubts(
+        if any(len(one.changes) != 1 or one.missed for one in found) or self._doubts(
             point, run, without_derivatives(self.task.labels, found)
         ):
             return None

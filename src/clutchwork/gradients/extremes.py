@@ -24,6 +24,8 @@ NOWHERE = np.zeros(0, dtype=np.intp)
 
 # two extremes are one where they differ by less, of the largest size of the signal
 EQUAL = 1e-9
+# of what equal ones may differ by: round-off
+LEVEL = 1e-3
 # slopes that differ by more are those of a bend, of the larger one
 BENT = 1e-3
 # limits from both sides that differ by more are those of a jump, of the larger one
@@ -45,6 +47,11 @@ class Found(NamedTuple):
     sign: float
     rough: float = 0.0  # last coefficient of the polynomial over the length of the step, of which slopes are off
     is_flat: bool = False  # all of the step is as large
+    is_level: bool = False  # but for round-off
+    holds: tuple[bool, bool] = (
+        False,
+        False,
+    )  # whether all is as large from the begin of the step to it, and to its end
 
     @property
     def begins(self) -> int | None:
@@ -99,8 +106,9 @@ def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[tuple[float, Ar
 
 def _in_step(step: int, coefficients: Array, samples: Array, sign: float, allowed: float) -> list[Found]:
     """The largest value of a polynomial, and where it is: at an end, where its slope is zero, or everywhere."""
-    if np.ptp(samples) <= allowed:
-        return [Found(float(samples[end]), step, float(-end), sign, is_flat=True) for end in (0, -1)]
+    if (rise := float(np.ptp(samples))) <= allowed:
+        level = rise <= LEVEL * allowed
+        return [Found(float(samples[end]), step, float(-end), sign, is_flat=True, is_level=level) for end in (0, -1)]
     best = int(np.argmax(samples))
     share, slope = best / (len(samples) - 1), coefficients[1:] * np.arange(1, len(coefficients))
     bend = slope[1:] * np.arange(1, len(slope))
@@ -110,17 +118,21 @@ def _in_step(step: int, coefficients: Array, samples: Array, sign: float, allowe
         share = min(max(share - float(polyval(share, slope)) / curved, low), high) if curved else share
     value = float(polyval(share, coefficients))
     # at an end it still rises, or there is no better place inside
-    is_inside = value > samples[best]
-    return [Found(value, step, share, sign) if is_inside else Found(float(samples[best]), step, best * WIDTH, sign)]
+    if value <= samples[best]:
+        return [Found(float(samples[best]), step, best * WIDTH, sign)]
+    low_enough = samples < value - allowed
+    before, behind = low_enough[: int(share / WIDTH) + 1], low_enough[int(share / WIDTH) + 1 :]
+    return [Found(value, step, share, sign, holds=(not before.any(), not behind.any()))]
 
 
 def apart(primal: Primal, found: list[Found]) -> list[Found]:
     """Without those that are another side of one extreme: at one instant, or on steps that go on smoothly.
 
-    Of both sides of an instant that one stays whose polynomial is the smoother one.
+    Of both sides of an instant that one stays whose polynomial is the smoother one, of a plateau and what leads to it
+    the plateau.
     """
     kept, kinds = list[Found](), primal.between[0]
-    for one in sorted(found, key=lambda one: (one.begins is not None, one.rough)):
+    for one in sorted(_without_slopes(found, kinds), key=lambda one: (one.begins is not None, one.rough)):
         near = [other for other in kept if abs(other.step - one.step) <= 1 and other.sign == one.sign]
         if (one.is_flat and all(other.is_flat for other in near)) or all(
             other.step != one.step
@@ -130,6 +142,28 @@ def apart(primal: Primal, found: list[Found]) -> list[Found]:
         ):
             kept.append(one)
     return kept
+
+
+def _without_slopes(found: list[Found], kinds: Places) -> list[Found]:
+    """Without those that lead to a plateau, which a law or a signal makes from one instant on."""
+    left = [one for one in found if not one.is_level]
+    ends = {(one.sign, one.step, way) for one in found if one.is_level for way in (-1, 1)}
+    while True:
+        gone = [one for one in left if any(_leads_to(one, end, kinds) for end in ends)]
+        if not gone:
+            return [one for one in found if one.is_level or one in left]
+        # from there on all that is joined to them
+        ends |= {(one.sign, one.step, 0) for one in gone}
+        left = [one for one in left if one not in gone]
+
+
+def _leads_to(one: Found, end: tuple[float, int, int], kinds: Places) -> bool:
+    """Whether it is as large up to the step of a plateau beside it; of what was joined to it by any way."""
+    sign, step, way = end
+    if one.sign != sign or abs(one.step - step) != 1 or (way != 0 and kinds[max(one.step, step)] == SMOOTH):
+        return False
+    place = int(step > one.step)
+    return one.is_flat or one.share == place or one.holds[place]
 
 
 def value(one: Extreme, found: list[Found]) -> float:

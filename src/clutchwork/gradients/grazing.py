@@ -78,6 +78,16 @@ def refused(system: System, grazes: Array, sizes: float) -> Iterator[tuple[float
             yield time, why
 
 
+def jumping_together(system: System, grazes: Array, sizes: float) -> Iterator[tuple[float, str]]:
+    """Signals that jump at one instant, and whose knots move apart: which of them jumps first is open.
+
+    Parameters: sizes, the largest size of a number.
+    """
+    for graze in grazes[(grazes[:, KIND] < 0) & (grazes[:, DIFFERENCE] * sizes > APART)]:
+        time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
+        yield time, f"{name} jumps at {time:.9g} s together with another signal, whose knot moves otherwise; move one"
+
+
 def crowded(events: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
     """Contacts that lock and let go again and again within an instant, which no derivative survives."""
     changed = _locking(events)

@@ -19,7 +19,7 @@ def add_shift(primal: Primal, step: int, share: float, into: Functional) -> None
     kind, number = (int(found[step]) for found in primal.between)
     if kind == EVENT:
         into.add_event(number, share)
-    elif kind == KNOT:
+    elif kind == KNOT and number >= 0:
         into.direct += share * primal.knots.moved[number]
     elif kind == KINK:
         _add_kink(primal, step, share, into)

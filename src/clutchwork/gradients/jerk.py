@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.wiring import wiring
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.instants import BEND, JUMP, add_shift
-from clutchwork.gradients.primal import EVENT, KNOT, Primal
+from clutchwork.gradients.primal import EVENT, KNOT, SMOOTH, Primal
 from clutchwork.gradients.signals import add_signal
 from clutchwork.gradients.steps import Steps
+from clutchwork.sweeps.parts import PARTS
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
 
 Array = NDArray[np.float64]
+
+# what a cubic, which slopes of a dense output of fourth order are, misses of its own slope at an end, over its last
+# coefficient: seen at steps on shafts without inertia at tolerances from 1e-12 to 1e-8
+MISSED = 0.1
 
 
 def add_jerk(primal: Primal, signal: str, acceleration: Array, into: Functional) -> None:
@@ -31,6 +42,22 @@ def add_jerk(primal: Primal, signal: str, acceleration: Array, into: Functional)
     add_signal(primal, signal, rows.ravel(), weights.ravel(), into)
     for step in np.flatnonzero(~smooth):
         add_shift(primal, int(step) + 1, float(before[step] ** 2 - behind[step] ** 2), into)
+
+
+def missed(primal: Primal, acceleration: Array) -> list[tuple[Functional, float]]:
+    """Instants that move and have another jerk on both sides, and how little is known of its square there.
+
+    Parameters: acceleration, of a shaft without inertia, whose rows are slopes of the dense output.
+    """
+    steps, found = primal.steps, list[tuple[Functional, float]]()
+    before, behind = _limits(steps, acceleration)
+    last = MISSED * np.abs(np.einsum("ni,ni->n", steps.basis[:, PARTS - 1], acceleration)) / steps.length
+    for step in np.flatnonzero(primal.between[0] != SMOOTH):
+        moves = primal.functional()
+        add_shift(primal, int(step), 1.0, moves)
+        known = abs(before[step]) * last[step - 1] + abs(behind[step]) * last[step]
+        found.append((moves, 2.0 * float(known)))
+    return found
 
 
 def kinks(primal: Primal, acceleration: Array) -> tuple[float, ...]:
@@ -62,3 +89,13 @@ def _varying(acceleration: Array) -> Array:
     """Without what is common to the rows of a step, which has no rate, but round-off."""
     found: Array = acceleration - acceleration[:, acceleration.shape[1] // 2, None]
     return found
+
+
+def massless(system: System) -> frozenset[str]:
+    """Accelerations of shafts that move with a speed without inertia."""
+    arrays, found, first = system.arrays, list[str](), 0
+    for node, end in zip(wiring(system).nodes, arrays["basis_end"].tolist(), strict=True):
+        if np.any(arrays["massless"][arrays["basis_column"][first:end]]):
+            found.append(f"{node.name}.acceleration")
+        first = end
+    return frozenset(found)

@@ -20,6 +20,8 @@ Places = NDArray[np.intp]
 
 # derivatives of equal extremes are one where they differ by less, of their size
 ALIKE = 1e-6
+# what is not known of a derivative may be so much of the value, for a number that changes by all of itself
+UNKNOWN = 1e-6
 NOWHERE, NONE = np.zeros(0, dtype=np.intp), np.zeros(0)
 
 
@@ -82,10 +84,21 @@ def _line(run: Run, name: str, one: Measure, sizes: Array) -> Line:
         when = f"{one.when[0]:.9g} s and at {one.when[apart[0]]:.9g} s"
         why = f"{name} is reached at {when}, and they move apart; {remedy}"
         least, most = found.min(axis=0), found.max(axis=0)
+    if one.missed and (unknown := _unknown(run, one, sizes)).any():
+        least, most = (np.where(unknown, np.nan, side) for side in (least, most))
+        what = "a jerk that jumps at an instant that moves, of a shaft without inertia, whose acceleration is not known"
+        why = why or f"{name} takes {what} well enough; give the shaft an inertia"
     left, right = (most, least) if one.is_least else (least, most)
     columns = _columns(one)
     size = one.size if one.at is None else _size(run.primal, columns, one.at)
     return Line(name, one.value, size, left, right, one.until, one.at, columns, one.kinks, several=why)
+
+
+def _unknown(run: Run, one: Measure, sizes: Array) -> NDArray[np.bool_]:
+    """By which numbers too little is known of what moves."""
+    lost = sum((amount * np.abs(run.slope(moves)) for moves, amount in one.missed), start=np.zeros(len(sizes)))
+    found: NDArray[np.bool_] = lost * sizes > UNKNOWN * abs(one.value)
+    return found
 
 
 def _size(primal: Primal, columns: Places, time: float) -> float:

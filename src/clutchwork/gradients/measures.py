@@ -32,6 +32,7 @@ class Measure(NamedTuple):
     kinks: tuple[float, ...] = ()  # s, where knots meet that it depends on
     size: float = 0.0  # of the signal whose extreme it is
     is_least: bool = False  # a minimum, which of equal ones is the one that falls most
+    missed: tuple[tuple[Functional, float], ...] = ()  # what moves, and by how much its share in the value is not known
 
 
 class Asked(NamedTuple):
@@ -40,6 +41,7 @@ class Asked(NamedTuple):
     contacts: tuple[str, ...]
     kept_as: Mapping[str, str]  # integrals by name -> signal
     begin: float  # s
+    massless: frozenset[str] = frozenset()  # accelerations of shafts without inertia
 
 
 def measures(primal: Primal, one: Output, asked: Asked) -> Iterator[Measure]:
@@ -56,7 +58,7 @@ def measures(primal: Primal, one: Output, asked: Asked) -> Iterator[Measure]:
         case Extreme():
             yield _extreme(primal, one)
         case SquaredJerk():
-            yield _jerk(primal, one)
+            yield _jerk(primal, one, one.signal in asked.massless)
 
 
 def _at(primal: Primal, signal: str, time: float) -> Measure:
@@ -112,7 +114,9 @@ def _extreme(primal: Primal, one: Extreme) -> Measure:
     )
 
 
-def _jerk(primal: Primal, one: SquaredJerk) -> Measure:
+def _jerk(primal: Primal, one: SquaredJerk, is_massless: bool) -> Measure:
     into, acceleration = primal.functional(), signal_at(primal, one.signal, primal.steps.rows)
     jerk.add_jerk(primal, one.signal, acceleration, into)
-    return Measure(primal.jerks[one.signal], (into,), primal.t_end, kinks=jerk.kinks(primal, acceleration))
+    missed = tuple(jerk.missed(primal, acceleration)) if is_massless else ()
+    kinks = jerk.kinks(primal, acceleration)
+    return Measure(primal.jerks[one.signal], (into,), primal.t_end, kinks=kinks, missed=missed)

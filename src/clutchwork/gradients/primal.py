@@ -93,9 +93,10 @@ class Primal:
 
     @cached_property
     def between(self) -> tuple[Places, Places]:
-        """What each step begins with: its kind, and the number of the event or the knot."""
+        """What each step begins with: its kind, and the number of the event or the knot, -1 of a knot that stays."""
         kinds, which = np.full(len(self.steps), SMOOTH, dtype=np.intp), np.full(len(self.steps), -1, dtype=np.intp)
-        met = [(KINK, float(time), -1) for time in self.grazes[:, 0]]
+        # a knot that does not move is none of those below
+        met = [(KNOT if what < 0 else KINK, float(time), -1) for time, what in self.grazes[:, :2]]
         met += [(KNOT, float(time), number) for number, time in enumerate(self.knots.times)]
         met += [(EVENT, float(time), number) for number, time in enumerate(self.events[:, 0])]
         for kind, time, number in met:

@@ -65,7 +65,7 @@ def checked(made: model.Plain, seed: int, count: int) -> Tally:
 def _pair(tally: Tally, system: cw.System, t_end: float, one: Any, output: Any, scale: float) -> None:
     """One derivative against its differences."""
     refusal, exact = "", np.nan
-    function = cw.differentiable(system, t_end, of=output, by=one.name, rtol=1e-10, atol=1e-12)
+    function = cw.differentiable(system, t_end, of=output, by=one.name, rtol=1e-10, atol=1e-12, t_start=0.0)
     try:
         found = function.gradient()
         exact, refusal = float(found.matrix[0, 0]), "; ".join(found.notes)

@@ -130,14 +130,13 @@ CLUTCHWORK_INLINE double room_for_slip(const auto& axis, double slip) {
 inline constexpr double nowhere = 1e300;
 
 /// Slip at which a table that is continued linearly beyond its end falls to zero.
-template <class At_>
-CLUTCHWORK_INLINE double vanishing_slip(const auto& axis, const Manner& manner, At_&& at) {
+template <class G, class At_>
+CLUTCHWORK_INLINE G vanishing_slip(const Axis<G>& axis, const Manner& manner, At_&& at) {
   const int last = axis.count - 1;
-  if (last < 1) return nowhere;
-  const double secant = value((at(last) - at(last - 1)) / axis.width(last - 1));
-  const double slope =
-      manner.smooth() ? value(smooth_slope<std::remove_cvref_t<decltype(at(0))>>(axis, at, last)) : secant;
-  return slope < 0 ? value(axis.last()) - value(at(last)) / slope : nowhere;
+  if (last < 1) return G(nowhere);
+  const G secant = (at(last) - at(last - 1)) / axis.width(last - 1);
+  const G slope = manner.smooth() ? smooth_slope<G>(axis, at, last) : secant;
+  return value(slope) < 0 ? axis.last() - at(last) / slope : G(nowhere);
 }
 
 /// Kinks of a table over the slip: its inner points, where a smooth one changes its curvature and no step may run over
@@ -147,18 +146,18 @@ struct Kinks {
   Axis<G> axis;
   Manner manner;
   bool falls = false;  ///< whether the table ends at zero, once there
-  double zero = nowhere;
+  G zero = G(nowhere);
 
   int inner() const { return axis.count < 3 ? 0 : axis.count - 2; }
   int ends() const { return int(manner.kept() && axis.count > 1); }
   int zeros() const { return int(falls && manner.extrapolation == choice::Extrapolation::linear); }
   int count() const { return inner() + 2 * ends() + zeros(); }
-  double at(int i) const {
+  G at(int i) const {
     // an end at zero is no kink, for slips are not below
-    if (ends() > 0 && i == 0) return value(axis[0]) > 0 ? value(axis[0]) : -nowhere;
+    if (ends() > 0 && i == 0) return value(axis[0]) > 0 ? axis[0] : G(-nowhere);
     i -= ends();
-    if (i < inner()) return value(axis[i + 1]);
-    return ends() > 0 ? value(axis.last()) : zero;
+    if (i < inner()) return axis[i + 1];
+    return ends() > 0 ? axis.last() : zero;
   }
 };
 
@@ -202,7 +201,7 @@ struct SlipTable {
     return Kinks<double>{Axis<double>{nullptr, int(value(p.kinetic.count))}, Law::manner(p), true}.count();
   }
   template <class P>
-  static double edge(const P& p, const auto* points, int i) {
+  static auto edge(const P& p, const auto* points, int i) {
     return kinks(p, points).at(i);
   }
 };

@@ -37,7 +37,7 @@ struct LossTable {
   }
   /// Speeds at which one line follows another.
   int edges() const { return rows() > 2 ? rows() - 2 : 0; }
-  double edge(const auto* points, int i) const { return value(at(points, i + 1, 0)); }
+  auto edge(const auto* points, int i) const { return at(points, i + 1, 0); }
 
   template <class S>
   Losses<S> on(const auto* points, int piece, const S& speed) const {

@@ -153,16 +153,28 @@ int edge_count(const Workspace<T>& ws, int direction) {
   return visit_law(sys.contact_law[c], [&](auto tag) { return count(tag, ws.params + sys.contact_law_param[c]); });
 }
 
+/// A kink of a component, with its derivatives where it says them.
+template <class E, class P, class T>
+T edge_of(const P& p, const Workspace<T>& ws, int i) {
+  if constexpr (requires {
+                  { E::edge(p, points_of(ws), i) } -> std::same_as<T>;
+                }) {
+    return E::edge(p, points_of(ws), i);
+  } else {
+    return T(E::edge(p, ws.sys.points, i));
+  }
+}
+
 /// Kink number i of the function behind a direction.
 template <class T>
-double edge_at(const Workspace<T>& ws, int direction, int i) {
+T edge_at(const Workspace<T>& ws, int direction, int i) {
   const auto& sys = ws.sys;
   auto at = [&](auto tag, const T* params) {
     using E = typename decltype(tag)::type;
     if constexpr (Kinked<E>) {
-      return E::edge(*reinterpret_cast<const typename E::template Params<T>*>(params), sys.points, i);
+      return edge_of<E>(*reinterpret_cast<const typename E::template Params<T>*>(params), ws, i);
     } else {
-      return 0.0;
+      return T(0);
     }
   };
   if (direction < sys.elements) {
@@ -181,7 +193,7 @@ int piece_of(const Workspace<T>& ws, int direction, double x) {
   int low = 0, high = edge_count(ws, direction);
   while (low < high) {
     const int middle = (low + high) / 2;
-    if (edge_at(ws, direction, middle) <= x) {
+    if (value(edge_at(ws, direction, middle)) <= x) {
       low = middle + 1;
     } else {
       high = middle;

@@ -57,9 +57,11 @@ struct Mirrored {
 
   int borders() const { return 2 * points - 1; }
   int intervals() const { return 2 * points; }
-  double border(const auto& grid, int i) const {
+  template <class Grid>
+  auto border(const Grid& grid, int i) const {
+    using G = std::remove_cvref_t<decltype(grid[0])>;
     const int middle = points - 1;
-    return i == middle ? 0.0 : i < middle ? -value(grid[middle - i]) : value(grid[i - middle]);
+    return i == middle ? G(0.0) : i < middle ? G(-grid[middle - i]) : grid[i - middle];
   }
   int side(int interval) const { return interval < points ? -1 : 1; }
   /// Number of the cell from point to point; the last one lies beyond the grid.

@@ -111,6 +111,7 @@ struct NumberOf<Tangent<N, R>> : NumberOf<double> {
 CLUTCHWORK_CHAIN(exp, exp(x.v), f)
 CLUTCHWORK_CHAIN(log, log(x.v), 1 / x.v)
 CLUTCHWORK_CHAIN(sqrt, sqrt(x.v), f > 0 ? 0.5 / f : 0.0)
+CLUTCHWORK_CHAIN(cbrt, cbrt(x.v), f > 0 ? 1 / (3 * f * f) : 0.0)
 CLUTCHWORK_CHAIN(sin, sin(x.v), cos(x.v))
 CLUTCHWORK_CHAIN(cos, cos(x.v), -sin(x.v))
 CLUTCHWORK_CHAIN(atan, atan(x.v), 1 / (1 + x.v * x.v))

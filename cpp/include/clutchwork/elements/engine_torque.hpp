@@ -68,7 +68,7 @@ struct EngineTorque : declared::EngineTorque {
     return Mirrored{count_of(p.speeds)}.borders();
   }
   template <class T>
-  static double edge(const Params<T>& p, const auto* points, int i) {
+  static auto edge(const Params<T>& p, const auto* points, int i) {
     return Mirrored{count_of(p.speeds)}.border(NumberList(p.speeds, points), i);
   }
   template <class T>

@@ -20,7 +20,7 @@ struct MeshFriction {
     return LossTable{p.loss_table}.edges();
   }
   template <class P>
-  static double edge(const P& p, const auto* points, int i) {
+  static auto edge(const P& p, const auto* points, int i) {
     return LossTable{p.loss_table}.edge(points, i);
   }
   template <class P>

@@ -55,7 +55,7 @@ struct MotorTorque : declared::MotorTorque {
     return Mirrored{count_of(p.speeds)}.borders();
   }
   template <class T>
-  static double edge(const Params<T>& p, const auto* points, int i) {
+  static auto edge(const Params<T>& p, const auto* points, int i) {
     return Mirrored{count_of(p.speeds)}.border(NumberList(p.speeds, points), i);
   }
   template <class T>

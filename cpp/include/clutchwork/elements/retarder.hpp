@@ -34,9 +34,9 @@ struct Retarder : declared::Retarder {
     return 2 * middle(p) + 1;
   }
   template <class T>
-  static double edge(const Params<T>& p, const double*, int i) {
+  static T edge(const Params<T>& p, const double*, int i) {
     const int m = middle(p);
-    return i == m ? 0.0 : i < m ? -border(p, m - 1 - i) : border(p, i - m - 1);
+    return i == m ? T(0) : i < m ? -border(p, m - 1 - i) : border(p, i - m - 1);
   }
 
  private:
@@ -58,9 +58,9 @@ struct Retarder : declared::Retarder {
   }
   /// Speed at the end of range i.
   template <class T>
-  static double border(const Params<T>& p, int i) {
-    if (!is_flat(p)) return cbrt(value(p.max_power) / value(p.capacity));
-    return i == 0 ? std::sqrt(value(p.max_torque) / value(p.capacity)) : value(p.max_power) / value(p.max_torque);
+  static T border(const Params<T>& p, int i) {
+    if (!is_flat(p)) return cbrt(p.max_power / p.capacity);
+    return i == 0 ? sqrt(p.max_torque / p.capacity) : p.max_power / p.max_torque;
   }
   /// Size of the torque of a full one in range i away from rest.
   template <class T, class S>

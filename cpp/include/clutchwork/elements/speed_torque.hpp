@@ -24,7 +24,7 @@ struct SpeedTorque : declared::SpeedTorque {
     return curve_edges(p.torque);
   }
   template <class T>
-  static double edge(const Params<T>& p, const auto* points, int i) {
+  static auto edge(const Params<T>& p, const auto* points, int i) {
     return curve_edge(p.torque, points, i);
   }
 };

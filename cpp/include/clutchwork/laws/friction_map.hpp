@@ -80,7 +80,7 @@ struct FrictionMap : declared::FrictionMap {
     return Kinks<double>{Axis<double>{nullptr, int(value(p.speeds.count))}, manner(p)}.count();
   }
   template <class T>
-  static double edge(const Params<T>& p, const auto* points, int i) {
+  static auto edge(const Params<T>& p, const auto* points, int i) {
     return Kinks{axis_of(p.speeds, points), manner(p)}.at(i);
   }
 };

@@ -24,8 +24,8 @@ struct Karnopp : declared::Karnopp {
     return stribeck_reach(p) > value(p.band) ? 2 : 1;
   }
   template <class T>
-  static double edge(const Params<T>& p, const double*, int i) {
-    return i == 0 ? value(p.band) : stribeck_reach(p);
+  static T edge(const Params<T>& p, const double*, int i) {
+    return i == 0 ? p.band : T(stribeck_reach(p));
   }
 };
 

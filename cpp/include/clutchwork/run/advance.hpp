@@ -125,7 +125,7 @@ bool start(Workspace<T>& ws) {
   refresh_loads(ws);
   ws.happened.cause = Cause::initial;
   ws.happened.contact = -1;
-  if constexpr (has_tangents<T>) ws.moved.here_time = ws.time;
+  if constexpr (has_tangents<T>) ws.moved.here_time = ws.time, floor_sizes(ws);
   ws.started = true;
   return true;
 }

@@ -48,8 +48,8 @@ template <class T>
 bool is_on_piece(const Workspace<T>& ws, const Branch<T>& b, int edges, double rate) {
   const int interval = b.piece % (edges + 1);
   const double zero = slip_tolerance(ws);
-  return (interval == 0 || rate >= edge_at(ws, b.direction, interval - 1) - zero) &&
-         (interval == edges || rate <= edge_at(ws, b.direction, interval) + zero);
+  return (interval == 0 || rate >= value(edge_at(ws, b.direction, interval - 1)) - zero) &&
+         (interval == edges || rate <= value(edge_at(ws, b.direction, interval)) + zero);
 }
 
 /// The elements that feel a speed without inertia go to the pieces that hold their rates at y; whether any does.

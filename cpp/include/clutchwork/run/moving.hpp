@@ -49,7 +49,12 @@ T rate_at(Form& form, int d, double t, const T* y) {
 /// Level of a line guard with its derivatives.
 template <class T>
 T level_of(const Workspace<T>& ws, const LineGuard& guard) {
-  const int d = ws.branch[guard.branch].direction, c = d - int(ws.sys.elements);
+  const Branch<T>& b = ws.branch[guard.branch];
+  const int d = b.direction, c = d - int(ws.sys.elements);
+  if (guard.kind == LineGuard::edge) {
+    const int sign = b.law >= 0 ? b.sign : 1, interval = b.piece % (edge_count(ws, d) + 1);
+    return T(sign) * edge_at(ws, d, guard.sign == -sign ? interval : interval - 1);
+  }
   // one that was forced to slip, or that is driven, is watched at zero
   const bool own = guard.kind == LineGuard::slip && abs(guard.level) == value(ws.sys.contact_tolerance[c]);
   return own ? T(guard.sign) * T(ws.sys.contact_tolerance[c]) : T(guard.level);
@@ -244,6 +249,33 @@ bool leave_event(Form& form, Step<Form>& step) {
   for (int i = 0; i < form.ns(); ++i) ws.state[i] = step.y0()[form.nz() + i];
   expand(form, step.y0(), ws.v);
   return true;
+}
+
+// ---------------------------------------------------------------------------------------------------------- how large
+
+/// Sizes that derivatives have at least, so that no step looks for digits in round-off: of what each direction changes
+/// the numbers of the model by. docs/theory/gradients.md (22)
+template <class T>
+void floor_sizes(Workspace<T>& ws) {
+  constexpr double round_off = 1e-14;
+  double sum[T::seen] = {};
+  int n[T::seen] = {};
+  auto look_at = [&](const T* number, std::int64_t count) {
+    for (std::int64_t i = 0; i < count; ++i) {
+      const double size = abs(value(number[i]));
+      for (int j = 0; j < T::seen && size > 0; ++j) {
+        const double slope = abs(number[i].seen_slope(j));
+        if (slope > 0) sum[j] += log(slope / size), ++n[j];
+      }
+    }
+  };
+  visit_fields(ws.sys, ws.moved.plain->sys, [&](auto& field, const auto*, std::int64_t count) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(*field)>, T>) look_at(field, count);
+  });
+  look_at(ws.moved.points, 3 * ws.moved.plain->sys.n_points);
+  for (int j = 0; j < T::seen; ++j) {
+    if (n[j] > 0) ws.moved.size[j] = round_off / ws.options.rtol * exp(sum[j] / n[j]);
+  }
 }
 
 // -------------------------------------------------------------------------------------------------------- how it moves

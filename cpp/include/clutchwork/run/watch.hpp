@@ -60,9 +60,10 @@ void list_lines(Workspace<T>& ws) {
     list_turn(ws, k);
     const int edges = edge_count(ws, b.direction), sign = contact ? b.sign : 1, interval = b.piece % (edges + 1);
     if (interval < edges)
-      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, -sign, sign * edge_at(ws, b.direction, interval)};
+      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, -sign, sign * value(edge_at(ws, b.direction, interval))};
     if (interval > 0)
-      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, sign, sign * edge_at(ws, b.direction, interval - 1)};
+      ws.guard.line[ws.guard.n_lines++] = {LineGuard::edge, k, sign,
+                                           sign * value(edge_at(ws, b.direction, interval - 1))};
   }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) {
     // an open contact has passed zero when it is clear of it on the other side

@@ -1,0 +1,98 @@
+"""Borders of tables and laws, plateaus, and what round-off would make of derivatives that are zero."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from support import by_differences
+
+COULOMB = cw.Coulomb(static=0.12, kinetic=0.1)
+TIGHT: dict[str, Any] = {"rtol": 1e-10, "atol": 1e-12}
+
+
+def stalling() -> cw.Driveline:
+    """An engine that is braked below the speed from which on it burns, and comes back."""
+    d = cw.Driveline("stalling")
+    e, w = d.shaft("e", inertia=0.3, speed=100.0), d.shaft("w", inertia=1.0)
+    full, drag = ((0.0, 100.0), (300.0, 150.0), (500.0, 90.0)), ((0.0, -10.0), (500.0, -40.0))
+    d.add(cw.Engine("eng", shaft=e, throttle=0.6, full_load=full, motoring=drag, stall_speed=60.0))
+    d.add(cw.Torque("t", shaft=e, torque=cw.Table([(0.0, -60.0), (0.5, -160.0), (1.0, -20.0)])))
+    d.add(cw.SpringDamper("k", base=e, follower=w, stiffness=300.0, damping=2.0))
+    return d
+
+
+def compared(model: cw.Driveline, t_end: float, of: Any, by: list[str], **options: Any) -> None:
+    """Derivatives are those of differences at a tight tolerance."""
+    function = cw.differentiable(model, t_end, of=of, by=by, **options)
+    scales = by_differences.scales(model.simulate(t_end, rtol=1e-8), function.task.outputs)
+    for one in by_differences.compared(function, function.jacobian(function.x0), scales):
+        assert np.all(one.missed < 1e-6), str(one)
+
+
+def test_a_border_at_which_a_torque_jumps_moves_with_it() -> None:
+    of = ["e.speed", cw.at("e.speed", 0.4), cw.minimum("e.speed"), cw.peak("k.torque"), cw.squared_jerk("w")]
+    compared(stalling(), 0.6, of, ["eng.stall_speed", "e.inertia"], **TIGHT)
+
+
+def test_a_band_in_which_a_coefficient_is_another_one_moves_with_it() -> None:
+    d = cw.Driveline("band")
+    a, b = d.shaft("a", inertia=0.3, speed=30.0), d.shaft("b", inertia=0.8)
+    law = cw.Karnopp(static=0.16, kinetic=0.1, speed=4.0, band=1.0)
+    d.add(cw.Clutch("c", base=a, follower=b, friction=law, gain=5e-4, pressure=2e5))
+    d.add(cw.SpringDamper("k", base=b, follower=d.housing, stiffness=60.0, damping=0.5))
+    compared(d, 1.0, ["b.speed", cw.at("a.speed", 0.9), "c.heat"], ["c.friction.band", "a.inertia"], **TIGHT)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
+def test_what_moves_nothing_yet_takes_no_shorter_steps(rtol: float) -> None:
+    # before it stalls round-off is all that a derivative by that speed has
+    function = cw.differentiable(
+        stalling(), 0.01, of="e.speed", by="eng.stall_speed", rtol=rtol, atol=rtol / 100, max_steps=3000
+    )
+    assert abs(function.gradient().matrix[0, 0]) < 1e-12
+
+
+@pytest.mark.parametrize("side", ["left", "right", None])
+def test_a_plateau_has_the_derivative_of_all_of_it(side: str | None) -> None:
+    d = cw.Driveline("plateau")
+    a, b = d.shaft("a", inertia=0.3, speed=20.0), d.shaft("b", inertia=0.8)
+    law = cw.Dahl(kinetic=0.1, stiffness=50.0, exponent=0.5)
+    d.add(cw.Clutch("c", base=a, follower=b, friction=law, gain=5e-4, pressure=2e5))
+    found = d.simulate(0.3, **TIGHT).gradient(of=cw.maximum("c.torque"), by="c.friction.kinetic", side=side)
+    assert found.matrix[0, 0] == pytest.approx(100.0, rel=1e-9)
+
+
+def test_a_jerk_of_a_shaft_without_inertia_that_jumps_where_a_step_moves_is_refused() -> None:
+    d = cw.Driveline("light")
+    a, m, b = d.shaft("a", inertia=0.3, speed=20.0), d.shaft("m"), d.shaft("b", inertia=0.8)
+    d.add(cw.SpringDamper("k1", base=a, follower=m, stiffness=400.0, damping=3.0))
+    d.add(cw.SpringDamper("k2", base=m, follower=b, stiffness=900.0, damping=1.0))
+    d.add(cw.Torque("t", shaft=m, torque=cw.Step(height=30.0, start=0.3, offset=5.0)))
+    of, by = [cw.squared_jerk("m"), cw.squared_jerk("a"), "m.speed"], ["t.torque.start", "t.torque.height"]
+    found = d.simulate(1.0, rtol=1e-8, atol=1e-10).gradient(of=of, by=by)
+    assert np.isnan(found.matrix).tolist() == [[True, False], [False, False], [False, False]]
+    assert "squared_jerk(m)" in found.problems[0]
+    assert "without inertia" in found.problems[0]
+
+
+def test_steps_at_one_instant_move_apart() -> None:
+    d = cw.Driveline("two steps")
+    a, b = d.shaft("a", inertia=0.3, speed=20.0), d.shaft("b", inertia=0.8)
+    d.add(cw.SpringDamper("k", base=a, follower=b, stiffness=400.0, damping=3.0))
+    d.add(cw.Torque("t1", shaft=a, torque=cw.Step(height=30.0, start=0.3, offset=5.0)))
+    d.add(cw.Torque("t2", shaft=b, torque=cw.Step(height=-70.0, start=0.3, offset=5.0)))
+    compared(d, 1.0, ["a.speed", "b.speed", "k.torque"], ["t1.torque.start", "t2.torque.start"], **TIGHT)
+
+
+def test_a_jump_that_stays_where_it_is_moves_no_extreme() -> None:
+    d = cw.Driveline("light")
+    a, m, b = d.shaft("a", inertia=0.3, speed=10.0), d.shaft("m"), d.shaft("b", inertia=0.8)
+    d.add(cw.SpringDamper("k1", base=a, follower=m, stiffness=400.0, damping=3.0))
+    d.add(cw.SpringDamper("k2", base=m, follower=b, stiffness=900.0, damping=1.0))
+    d.add(cw.Torque("t", shaft=m, torque=cw.Table([(0.0, 20.0), (0.4, 20.0), (0.4, -12.0), (0.6, 6.0)])))
+    of = [cw.minimum("m.speed"), cw.squared_jerk("b"), cw.peak("k1.torque")]
+    compared(d, 0.7, of, ["t.torque.values[2]", "t.torque.values[3]"], **TIGHT)
