@@ -49,7 +49,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     if found.structure is None:
         raise ModelError(found.problems)
     parts, model = found.structure.parts, found.structure.mechanism
-    made, speeds, motions = _chosen(found.structure, independent)
+    made, speeds, motions = chosen(found.structure, independent)
     shared = Shared(parts.thermal, tuple(model.role(Role.PROCESS)))
     where = places(parts.thermal, shared.processes, [component for component, _ in model.acting])
     pools, wires, columns = Pools(), Wires(where), Columns(model, made)
@@ -98,7 +98,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     }
 
 
-def _chosen(found: Structure, wanted: Sequence[str]) -> tuple[Kinematics, list[Fraction], list[Any]]:
+def chosen(found: Structure, wanted: Sequence[str]) -> tuple[Kinematics, list[Fraction], list[Any]]:
     """The structure with the independent speeds that are wanted, else in a good order: speeds at the start, motions."""
     model = found.mechanism
     if wanted:
@@ -150,20 +150,25 @@ def _matrix(rows: Sequence[Row], places: Mapping[int, int]) -> Array:
 
 
 def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, Any]:
-    """Basis and mass matrix, computed as fractions and rounded once."""
-    rows: dict[int, Row] = {node: {} for node in made.independent}
-    for inertia, speed in zip(model.inertia, made.speeds, strict=True):
-        for node in speed.keys() & rows.keys() if inertia else ():
-            rows[node] = plus(rows[node], product(inertia, speed[node]), speed)
-    for node in made.followers.values():
-        # what follows from a transmission has no inertia; a unit keeps the matrix regular
-        rows[node] = {node: ONE}
-    arrays = columns.split("basis", made.speeds) | columns.split("mass", list(rows.values()))
+    """Basis and mass matrix."""
+    arrays = columns.split("basis", made.speeds) | mass_arrays(model.inertia, made, columns)
     return arrays | {
         "inertia": [float(inertia) for inertia in model.inertia],
         "massless": [node in made.massless for node in made.independent],
         "initial_angle": initial_angles(model),
     }
+
+
+def mass_arrays(inertia: Sequence[Fraction], made: Kinematics, columns: Columns) -> dict[str, Any]:
+    """The mass matrix, computed as fractions and rounded once."""
+    rows: dict[int, Row] = {node: {} for node in made.independent}
+    for own, speed in zip(inertia, made.speeds, strict=True):
+        for node in speed.keys() & rows.keys() if own else ():
+            rows[node] = plus(rows[node], product(own, speed[node]), speed)
+    for node in made.followers.values():
+        # what follows from a transmission has no inertia; a unit keeps the matrix regular
+        rows[node] = {node: ONE}
+    return columns.split("mass", list(rows.values()))
 
 
 def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role, prefix: str) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
-from clutchwork.gradients.packed import Structure, finite, made, words_of
+from clutchwork.gradients.packed import Structure, finite, made, with_masses, words_made, words_of
 from clutchwork.gradients.stencils import Bent, Rebuilt, slope
 from clutchwork.results.gradient import NoGradient
 
@@ -47,7 +47,8 @@ class Assembled:
         """The words for values of the numbers; None where the structure is another one there."""
         if np.array_equal(x, self.start):
             return self.structure.words
-        found = words_of(self._system(x))
+        quick = with_masses(self.system, self.parameters, x)
+        found = words_of(self._system(x)) if quick is None else quick
         return found if self.structure.is_that_of(found) else None
 
     def _system(self, x: Array) -> System:
@@ -135,13 +136,20 @@ class Assembled:
         return True
 
     def _beside(self, system: System, x: Array) -> Array:
-        words = words_of(made(system, self.parameters, x))
+        words = words_made(system, self.parameters, x)
         if not self.structure.is_that_of(words):
             raise Rebuilt
         return finite(words)
 
     def _pinned(self, x: Array) -> System:
         """The System at a point, with its independent speeds asked for, so that values beside do not choose others."""
+        return self._pinned_start if np.array_equal(x, self.start) else self._with_speeds(x)
+
+    @cached_property
+    def _pinned_start(self) -> System:
+        return self._with_speeds(self.start)
+
+    def _with_speeds(self, x: Array) -> System:
         system = self._system(x)
         asked = replace(system, wanted=system.independent)
         try:

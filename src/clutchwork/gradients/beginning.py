@@ -22,18 +22,19 @@ PIECE = 12
 
 def at_rest(chart: Chart, words: Array, slopes: Slopes) -> Iterator[tuple[str, Mask]]:
     """What is said of contacts without slip at the start, and numbers that would make one."""
-    parts = [chart.words_in(name) for name in ("contact_rate_value", "initial_speed", "segment_coef")]
-    if not any(slopes.touch(*part) for part in parts):
+    known = [chart.words_in(name) for name in ("contact_rate_value", "initial_speed", "segment_coef")]
+    moves, drives = any(slopes.touch(*part) for part in known[:2]), slopes.touch(*known[2])
+    if not moves and not drives:
         return
-    system, (rates, _), (starts, _) = chart.assembled.system, *parts[:2]
+    system, (rates, _), (starts, _) = chart.assembled.system, *known[:2]
     ends = system.arrays["contact_rate_end"]
     for number, contact in enumerate(system.contacts):
-        if is_stop(contact):
+        driven = _driven(chart, number)
+        if is_stop(contact) or not (moves or len(driven)):
             continue
         first, last = int(ends[number - 1]) if number else 0, int(ends[number])
         factors, speeds = rates + np.arange(first, last), starts + system.arrays["contact_rate_column"][first:last]
         parts = words[factors] * words[speeds]
-        driven = _driven(chart, number)
         if not len(driven) and abs(parts.sum()) > ZERO * (1.0 + np.abs(parts).max(initial=0.0)):
             continue
         moved = words[factors] @ slopes.of(speeds) + words[speeds] @ slopes.of(factors)

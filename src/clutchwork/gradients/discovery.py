@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import ModelError
-from clutchwork.gradients.packed import Structure, made, words_of
+from clutchwork.gradients.packed import Structure, words_made
 from clutchwork.gradients.parameters import Parameter
 from clutchwork.gradients.tables import TableWords
 from clutchwork.model.changes import field_of, named, target
@@ -34,7 +34,7 @@ def identity(system: System, structure: Structure, one: Parameter, value: float)
     for share in PROBES:
         there = value + share * one.scale
         try:
-            words = words_of(made(system, [one], np.array([there])))
+            words = words_made(system, [one], np.array([there]))
         except ModelError:
             continue
         places = structure.changed(words) if structure.is_that_of(words) else np.zeros(0, dtype=np.int64)
@@ -87,7 +87,7 @@ def together(system: System, parameters: Sequence[Parameter], x: Array, fixed: S
     for share in PROBES:
         try:
             there = x + share * moves
-            return there, words_of(made(system, parameters, there))
+            return there, words_made(system, parameters, there)
         except ModelError:
             continue
     return x, np.zeros(0)

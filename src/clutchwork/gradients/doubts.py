@@ -117,11 +117,12 @@ class Doubts:
 
     def _decisions(self) -> Iterator[Doubt]:
         primal, system, contacts = self.run.primal, self.runs.task.system, self.runs.wanted.contacts
-        for time, why in jumping_together(system, primal.grazes, float(self.sizes.max())):
+        knots, size = times_of(self.point.chart, self.point.words, primal.t_end), float(self.sizes.max())
+        for time, why in refused(system, primal.decided, size):
+            yield Doubt(why, self._up_to(time), self._all)
+        for time, why in jumping_together(system, primal.grazes, size):
             yield Doubt(why, self._up_to(time), self._moving_knots())
-        knots = times_of(self.point.chart, self.point.words, primal.t_end)
         found = chain(
-            refused(system, primal.decided, float(self.sizes.max())),
             crowded(primal.events, contacts),
             struck_together(system, primal.events, contacts),
             decided_at_knots(primal.events, primal.grazes, knots[knots > self.runs.wanted.begin], contacts),

@@ -245,5 +245,11 @@ class Exact:
         return Exact(replace(self.task, system=self.runs.words.assembled(x), parameters=parameters))
 
     def _sizes(self, x: Array) -> Array:
-        own = [one.scale if one.places or not v else 0.0 for one, v in zip(self.task.parameters, x, strict=True)]
-        return np.maximum(np.abs(x), own)
+        scales, are_entries = self._scales
+        return np.maximum(np.abs(x), np.where(are_entries | (x == 0.0), scales, 0.0))
+
+    @cached_property
+    def _scales(self) -> tuple[Array, NDArray[np.bool_]]:
+        """Of each number its scale, and whether it is an entry of a table."""
+        own = self.task.parameters
+        return np.array([one.scale for one in own]), np.array([bool(one.places) for one in own])

@@ -69,8 +69,10 @@ def candidates(one: Extreme, steps: Steps, values: Array) -> list[Found]:
     Parameters: values of the signal, a line for the rows of each step.
     """
     found, allowed = list[Found](), _allowed(values)
-    for sign, coefficients, near in _near(one, steps, values):
-        for step in near.tolist():
+    sides = list(_near(one, steps, values))
+    best = max((side.best for side in sides), default=0.0)
+    for sign, coefficients, near, _, bound in sides:
+        for step in near.tolist() if bound >= best - allowed else ():
             own = sign * coefficients[step]
             rough = float(abs(own[-1]) / steps.length[step])
             found += [place._replace(rough=rough) for place in _in_step(step, own, PLACES @ own, sign, allowed)]
@@ -80,28 +82,38 @@ def candidates(one: Extreme, steps: Steps, values: Array) -> list[Found]:
 
 def reaching(one: Extreme, steps: Steps, values: Array) -> Places:
     """Steps that may reach the extreme."""
-    return np.unique(np.concatenate([NOWHERE, *(near for _, _, near in _near(one, steps, values))]))
+    return np.unique(np.concatenate([NOWHERE, *(side.near for side in _near(one, steps, values))]))
 
 
 def _allowed(values: Array) -> float:
     return EQUAL * float(np.abs(values).max(initial=0.0))
 
 
-def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[tuple[float, Array, Places]]:
-    """For each sign of what is asked for: the polynomials, and the steps that may reach their largest value."""
-    coefficients, signs = np.einsum("nki,ni->nk", steps.basis, values), SIGNS[one.kind]
+class Side(NamedTuple):
+    """Steps that may reach the extreme of one sign."""
+
+    sign: float
+    coefficients: Array  # of the polynomials of all steps
+    near: Places
+    best: float  # the largest sample
+    bound: float  # which no value exceeds
+
+
+def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[Side]:
+    """For each sign of what is asked for the steps that may reach its largest value."""
+    coefficients = np.einsum("nki,ni->nk", steps.basis, values)
     samples = coefficients @ PLACES.T
-    uppers = [(sign * samples).max(axis=1) for sign in signs]
-    least = max(float(upper.max(initial=-np.inf)) for upper in uppers) - _allowed(values)
     # between samples a polynomial rises by less than an eighth of its second difference
     rise = np.abs(np.diff(samples, 2)).max(axis=1, initial=0.0) / 8
-    for sign, upper in zip(signs, uppers, strict=True):
-        near = np.flatnonzero(upper + rise >= least)
+    for sign in SIGNS[one.kind]:
+        upper = (sign * samples).max(axis=1)
+        best = float(upper.max(initial=-np.inf))
+        near = np.flatnonzero(upper + rise >= best - _allowed(values))
         if len(near) > MOST_EQUAL:
             first = near[np.argsort(-upper[near], kind="stable")][:MOST_EQUAL]
             # of a plateau its ends are among those that are looked at
             near = np.unique([*first, near[0], near[-1]])
-        yield sign, coefficients, near
+        yield Side(sign, coefficients, near, best, float((upper + rise).max(initial=-np.inf)))
 
 
 def _in_step(step: int, coefficients: Array, samples: Array, sign: float, allowed: float) -> list[Found]:

@@ -76,7 +76,6 @@ def _line(run: Run, name: str, one: Measure, sizes: Array) -> Line:
         why = f"{name} does not happen before {run.primal.t_end:g} s; {remedy}"
         return Line(name, one.value, 0.0, nothing, nothing, one.until, none=why)
     found = np.array([run.slope(change) for change in one.changes])
-    unknown = _unknown(run, one, sizes)
     least = most = found[0]
     why = ""
     apart = _apart(found, one.size / sizes) if len(found) > 1 else NOWHERE
@@ -85,7 +84,7 @@ def _line(run: Run, name: str, one: Measure, sizes: Array) -> Line:
         when = f"{one.when[0]:.9g} s and at {one.when[apart[0]]:.9g} s"
         why = f"{name} is reached at {when}, and they move apart; {remedy}"
         least, most = found.min(axis=0), found.max(axis=0)
-    if unknown.any():
+    if one.missed and (unknown := _unknown(run, one, sizes)).any():
         least, most = (np.where(unknown, np.nan, side) for side in (least, most))
         what = "a jerk that jumps at an instant that moves, of a shaft without inertia, whose acceleration is not known"
         why = why or f"{name} takes {what} well enough; give the shaft an inertia"

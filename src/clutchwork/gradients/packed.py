@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.masses import is_mass, masses
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelWarning
+from clutchwork.base.kept import kept
 from clutchwork.declare.layout import FIELDS
 from clutchwork.gradients.parameters import Parameter, changes
 from clutchwork.sweeps.words import Layout
@@ -35,6 +37,31 @@ def made(system: System, parameters: Sequence[Parameter], x: Array) -> System:
         return system.changed(changes(system, parameters, x))
 
 
+def words_made(system: System, parameters: Sequence[Parameter], x: Array) -> Array:
+    """The words of a System with other values, as those of `made`."""
+    found = with_masses(system, parameters, x)
+    return words_of(made(system, parameters, x)) if found is None else found
+
+
+def with_masses(system: System, parameters: Sequence[Parameter], x: Array) -> Array | None:
+    """The same where the numbers are inertias, and nothing but the mass matrix follows from them; else None."""
+    known = masses(system) if parameters and all(is_mass(one.field) for one in parameters) else None
+    changes = {one.field: value for one, value in zip(parameters, x.tolist(), strict=True)}
+    found = None if known is None else known.arrays(changes)
+    if found is None:
+        return None
+    words, starts = words_of(system).copy(), layout(system).starts
+    for name, array in found.items():
+        words[starts[name] // 8 : starts[name] // 8 + array.size] = array.ravel()
+    return words
+
+
+@kept
+def layout(system: System) -> Layout:
+    """Where the arrays of a System begin, found once."""
+    return Layout.of(system)
+
+
 def finite(words: Array) -> Array:
     """Words without those that are not a number, as a parameter that is left out."""
     return np.where(np.isfinite(words), words, 0.0)
@@ -51,13 +78,13 @@ class Structure:
     @classmethod
     def of(cls, system: System) -> Structure:
         """That of a System."""
-        layout, words = Layout.of(system), words_of(system)
+        where, words = layout(system), words_of(system)
         is_number = np.zeros(len(words), dtype=bool)
         for name, kind, _, _ in FIELDS:
             if kind == "f8":
-                first = layout.starts[name] // 8
+                first = where.starts[name] // 8
                 is_number[first : first + system.arrays[name].size] = True
-        return cls(words, is_number, layout)
+        return cls(words, is_number, where)
 
     def is_that_of(self, words: Array) -> bool:
         """Whether other words are built alike: they have the same length, and the same words that are not numbers."""

@@ -15,7 +15,7 @@ from clutchwork.declare.layout import DONE
 from clutchwork.gradients import extremes
 from clutchwork.gradients.measures import number_of
 from clutchwork.gradients.refined import Sharing, refined
-from clutchwork.gradients.steps import Steps
+from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.sweeps.batch import Wanted
 from clutchwork.sweeps.columns import all_needed, moved
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When
@@ -110,13 +110,11 @@ class Plain:
         """Outputs of each of the bytes, with the forms of its signals; NaN for what there is not."""
         modes = self.sharing.columns if self.sharing is not None and self.wanted.signals(Extreme) else ()
         columns, own = over_columns(forms, modes)
-        runs, places = (
-            self.runs(systems, columns, grid=self.on_grid, steps=self.in_steps),
-            np.searchsorted(columns, modes),
-        )
+        runs = self.runs(systems, columns, grid=self.on_grid, steps=self.in_steps)
+        places = [columns.index(mode) for mode in modes]
         return np.array(
             [
-                self._of(run, some, places.tolist(), partial(self.rows_at, system, columns))
+                self._of(run, some, places, partial(self.rows_at, system, columns))
                 for system, run, some in zip(systems, runs, own, strict=True)
             ]
         )
@@ -154,9 +152,10 @@ class Plain:
         self, run: Run, forms: Mapping[str, Form], modes: Sequence[int], rows_at: Callable[[Array], Array]
     ) -> list[float]:
         found = list[float]()
-        steps = Steps.of_parts(run.times)
+        steps = Steps.of_parts(run.times) if self.in_steps else NO_STEPS
         reached = run.status == DONE
-        split = self.refined(steps.long(), run.rows, forms, modes, rows_at) if reached else (steps, run.rows)
+        looks = reached and bool(self.wanted.signals(Extreme))
+        split = self.refined(steps.long(), run.rows, forms, modes, rows_at) if looks else (steps, run.rows)
         for one in self.wanted.outputs.values():
             if isinstance(one, When):
                 number = number_of(run.events, one, self.wanted.contacts)

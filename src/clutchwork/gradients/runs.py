@@ -20,7 +20,7 @@ from clutchwork.gradients.plain import Detail, Plain
 from clutchwork.gradients.primal import Knots, Primal
 from clutchwork.gradients.refined import Sharing
 from clutchwork.gradients.signals_at import SignalsAt
-from clutchwork.gradients.steps import Steps
+from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.gradients.task import Task
 from clutchwork.gradients.words import Words
 from clutchwork.results.gradient import NoGradient
@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 TAPES = (1 << 28, 1 << 31)
 # parts of a row that are integrals over time
 INTEGRALS = ("angle", "element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy")
-NO_TANGENTS, NO_STEPS = np.zeros((0, 0, 0)), Steps.of_parts(np.zeros(1))
+NO_TANGENTS = np.zeros((0, 0, 0))
 
 
 class Point(NamedTuple):

@@ -40,7 +40,8 @@ class Steps:
         first = steps_of(times)
         shares = np.broadcast_to(np.arange(PARTS + 1) / PARTS, (len(first), PARTS + 1))
         rows = first[:, None] + np.arange(PARTS + 1)
-        return cls(times[first], times[first + PARTS] - times[first], shares, rows, np.diff(first, prepend=-1) != PARTS)
+        jumps = np.append(True, first[1:] - first[:-1] != PARTS)[: len(first)]
+        return cls(times[first], times[first + PARTS] - times[first], shares, rows, jumps)
 
     def long(self) -> Steps:
         """Those that a run with derivatives can look into."""
@@ -139,3 +140,6 @@ class Steps:
         """Weights of the rows of a step for the value at a place in it."""
         found: Array = share ** np.arange(PARTS + 1) @ self.basis[step]
         return found
+
+
+NO_STEPS = Steps.of_parts(np.zeros(1))

@@ -16,6 +16,7 @@ from clutchwork.model.structure import Kinematics, Mechanism, RigidRow
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from fractions import Fraction
 
 
 def kinematics(
@@ -28,8 +29,8 @@ def kinematics(
     """
     problems, places = _wanted_places(model, wanted)
     rows = list(model.rigid_rows())
-    order = _order(model, places)
-    echelon = eliminate((row.coefficients for row in rows), order, traced=False)
+    solved = order(model.inertia, places)
+    echelon = eliminate((row.coefficients for row in rows), solved, traced=False)
     # what contradicting gears leave is looked at all the same
     problems += _contradictions(model, rows, echelon)
     sound = not problems
@@ -39,13 +40,13 @@ def kinematics(
     if series:
         loose = frozenset(place for speed in series for place in made.moved_by(speed))
         rows += series.values()
-        echelon = eliminate((row.coefficients for row in rows), order, traced=False)
+        echelon = eliminate((row.coefficients for row in rows), solved, traced=False)
         made = _solve(model, echelon)
         made.loose = loose
     problems += [*unbalanced, *(_choice_problems(model, made, wanted) if sound else ())]
     problems += massless.problems(model, made, incomplete)
     problems += transmissions.problems(model, made)
-    made.notes += _redundant(rows, order, echelon) + [
+    made.notes += _redundant(rows, solved, echelon) + [
         f"{row.owner}: its springs act in series" for row in series.values()
     ]
     return (None if problems else made), problems
@@ -61,11 +62,11 @@ def _wanted_places(model: Mechanism, wanted: Sequence[str]) -> tuple[list[Proble
     return problems, [names.index(name) for name in wanted if name in names]
 
 
-def _order(model: Mechanism, wanted: Sequence[int]) -> list[int]:
+def order(inertia: Sequence[Fraction], wanted: Sequence[int]) -> list[int]:
     """Nodes in the order in which they are solved for: what is left are the independent ones."""
-    rest = [place for place in range(len(model.nodes)) if place not in wanted]
+    rest = [place for place in range(len(inertia)) if place not in wanted]
     # floats compare faster than fractions, and mostly tell them apart
-    by_inertia = sorted(rest, key=lambda place: (float(model.inertia[place]), model.inertia[place], -place))
+    by_inertia = sorted(rest, key=lambda place: (float(inertia[place]), inertia[place], -place))
     return [*by_inertia, *reversed(wanted)]
 
 

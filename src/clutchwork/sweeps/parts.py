@@ -34,8 +34,9 @@ def steps_of(times: Array) -> Places:
 
     Parameters: times, of the rows that the core gives. A row behind a jump stands at the time of the row before.
     """
-    firsts = np.flatnonzero(np.r_[True, times[1:] <= times[:-1]])[: len(times)]
-    counts = (np.diff(np.r_[firsts, len(times)]) - 1) // PARTS
+    ends = np.append(np.flatnonzero(times[1:] <= times[:-1]) + 1, len(times))
+    firsts = np.append(0, ends[:-1])[: len(times)]
+    counts = (ends[: len(firsts)] - firsts - 1) // PARTS
     within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     found: Places = np.repeat(firsts, counts) + PARTS * within
     return found
