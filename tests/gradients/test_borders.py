@@ -96,3 +96,36 @@ def test_a_jump_that_stays_where_it_is_moves_no_extreme() -> None:
     d.add(cw.Torque("t", shaft=m, torque=cw.Table([(0.0, 20.0), (0.4, 20.0), (0.4, -12.0), (0.6, 6.0)])))
     of = [cw.minimum("m.speed"), cw.squared_jerk("b"), cw.peak("k1.torque")]
     compared(d, 0.7, of, ["t.torque.values[2]", "t.torque.values[3]"], **TIGHT)
+
+
+def test_the_last_of_many_bounces_is_as_well_known_as_the_first() -> None:
+    d = cw.Driveline("bounces")
+    a, b = d.shaft("a", inertia=0.3, speed=4.0), d.shaft("b", inertia=0.8)
+    d.add(cw.Backlash("k", base=a, follower=b, gap=0.15, restitution=0.3))
+    d.add(cw.Torque("t", shaft=a, torque=10.0))
+    d.add(cw.Damper("r", base=b, follower=d.housing, damping=0.3))
+    compared(d, 0.3, [cw.lock("k"), "k.heat", "b.speed"], ["a.inertia", "t.torque"], **TIGHT)
+
+
+def test_a_lag_that_is_not_there_yet_is_refused_alone() -> None:
+    d = cw.Driveline("lag")
+    e = d.shaft("e", inertia=0.3, speed=100.0)
+    d.add(cw.Engine("eng", shaft=e, throttle=0.6, full_load=((0.0, 100.0), (500.0, 90.0))))
+    d.add(cw.BearingFriction("f", shaft=e, friction=COULOMB, torque=5.0))
+    # a lag would be a state of its own, behind which others stand elsewhere in the rows
+    found = d.simulate(0.2).gradient(of=["housing.torque", "e.speed"], by=["eng.lag", "e.inertia"])
+    assert np.isnan(found.matrix).tolist() == [[True, False], [True, False]]
+
+
+def test_a_lag_that_comes_and_goes_leaves_nothing_behind() -> None:
+    d = cw.Driveline("lag")
+    e = d.shaft("e", inertia=0.3, speed=100.0)
+    d.add(cw.Engine("eng", shaft=e, throttle=0.6, full_load=((0.0, 100.0), (500.0, 90.0))))
+    d.add(cw.BearingFriction("f", shaft=e, friction=COULOMB, torque=5.0))
+    function = cw.differentiable(d, 0.2, of=["e.speed", "f.heat"], by=["eng.lag", "e.inertia"])
+    with_lag = np.array([0.05, 0.3])
+    first, lagging = function(function.x0), function(with_lag)
+    # values are remembered of the last point that was differentiated, none here
+    assert np.array_equal(function(function.x0), first)
+    assert np.array_equal(function(with_lag), lagging)
+    assert function(function.x0)[1] == pytest.approx(d.simulate(0.2)["f.heat"][-1], rel=1e-5)

@@ -55,6 +55,7 @@ class Chart:
     tables: tuple[TableWords, ...]
     bound: list[int]  # numbers that words are assembled from
     assembled: Assembled
+    zeros: NDArray[np.bool_]  # numbers that are zero here: with another one an element may have a state more
 
     def words_in(self, name: str) -> tuple[int, int]:
         """The first word of an array of a System, and how many there are."""
@@ -88,18 +89,22 @@ class Chart:
         written = {*scalars, *(number for table in signals for number in table.numbers)}
         bound = [number for number in range(len(x)) if number not in written]
         chosen = tuple(parameters[number] for number in bound)
-        return cls(scalars, signals, bound, Assembled(system, structure, chosen, x[bound]))
+        return cls(scalars, signals, bound, Assembled(system, structure, chosen, x[bound]), x == 0.0)
 
     def holds(self, given: tuple[Array, Array]) -> bool | None:
         """Whether the words at a point are those that are given; None where the structure is another one there."""
         there, words = given
         if not len(words) or not self.assembled.structure.is_that_of(words):
             return None
-        own = self.words(there)
+        own = self._written(there)
         return own is not None and own.tobytes() == words.tobytes()
 
     def words(self, x: Array) -> Array | None:
-        """The words at a point; None where the structure is another one there, or numbers only fit together."""
+        """The words at a point; None where the structure may be another one there, or numbers only fit together."""
+        written = [*self.scalars]
+        return self._written(x) if np.array_equal((x == 0.0)[written], self.zeros[written]) else None
+
+    def _written(self, x: Array) -> Array | None:
         try:
             assembled = self.assembled.words(x[self.bound])
         except ModelError:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.discovery import PROBES
@@ -17,7 +18,7 @@ from clutchwork.gradients.stencils import Bent, slope
 from clutchwork.gradients.words import Words
 from clutchwork.results.channels import channels
 from clutchwork.results.gradient import NoGradient
-from clutchwork.sweeps.columns import fixed, needed
+from clutchwork.sweeps.columns import fixed
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -50,8 +51,8 @@ class SignalsAt:
         if not self._open:
             return ()
         start = np.array([one.start for one in self.words.parameters])
-        width = max(column for name in self._open for column in needed(self.plain[name])) + 1
-        rows = np.random.default_rng(0).uniform(0.5, 1.5, (2, width))
+        # whole rows: a number that is zero may take a part of them into a form only where it is moved
+        rows = np.random.default_rng(0).uniform(0.5, 1.5, (2, wiring(self.words.system).row_size))
         return tuple(n for n in range(len(start)) if self._is_within(n, start, rows))
 
     def _is_within(self, number: int, start: Array, rows: Array) -> bool:

@@ -329,10 +329,17 @@ T knot_shift(Workspace<T>& ws) {
   return shift;
 }
 
-/// Time derivative of the guard that was hit, by differences along the motion, close enough that no other is less.
+/// Time derivative of the guard that was hit: of what is linear in the state that of the motion, else by differences
+/// along it, close enough that no other is less.
 template <class Form, class T = typename Form::Scalar>
 double guard_rate(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
   constexpr double closest = 1e-5;
+  Workspace<T>& ws = form.ws;
+  if (hit.what == Hit::gap) return -hit.who * value(velocity[form.nz() + place_of(ws, hit.index)]);
+  if (hit.what == Hit::line && ws.sys.prescribed == 0) {
+    const LineGuard& guard = ws.guard.line[hit.index];
+    return guard.sign * value(form.rate(guard.branch, velocity));
+  }
   T* probe = step.k(1);
   double rate = 0;
   for (double share = 1; share > 0.5 * closest; share *= 0.1) {
