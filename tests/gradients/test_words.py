@@ -7,7 +7,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.base.errors import ModelError
-from clutchwork.gradients.packed import made, words_of
+from clutchwork.gradients.packed import made, with_masses, words_of
 from clutchwork.gradients.parameters import parameters
 from clutchwork.gradients.words import Words
 from support import free_numbers, random_drivelines, random_parts, random_stops, six_speed
@@ -44,6 +44,40 @@ def test_words_are_those_of_assembling(seed):
         assert words.bytes_at(x) == exact.to_bytes()
         seen += 1
     assert seen > 0
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_words_with_other_inertias_are_those_of_assembling(seed):
+    system, rng = model(seed), np.random.default_rng(seed)
+    chosen = [one for one in free_numbers.free(system) if one.field.endswith((".inertia", ".mass"))]
+    # far enough that other speeds become independent
+    for share in (1e-3, 0.3, 3.0):
+        x = free_numbers.start(chosen) * (1.0 + share * rng.random(len(chosen)))
+        found = with_masses(system, chosen, x)
+        assert found is None or found.tobytes() == made(system, chosen, x).to_bytes()
+
+
+def test_a_gearbox_with_other_inertias_is_not_assembled():
+    system = six_speed.gearbox(six_speed.SHIFT).assemble()
+    chosen = parameters(system, [f"{name}.inertia" for name in six_speed.INERTIA])
+    x = free_numbers.start(chosen) * 1.01
+    found = with_masses(system, chosen, x)
+    assert found is not None
+    assert found.tobytes() == made(system, chosen, x).to_bytes()
+    # another order of inertias may make other speeds independent
+    assert with_masses(system, chosen, x[::-1].copy()) is None
+
+
+def test_the_weight_of_a_vehicle_follows_its_mass():
+    d = cw.Driveline("car")
+    wheel, car = d.shaft("wheel", inertia=1.0), d.mass("body", mass=1200.0)
+    d.add(cw.RollingWheel("tyre", shaft=wheel, mass=car, radius=0.3))
+    d.add(cw.Vehicle("car", mass=car))
+    system = d.assemble()
+    chosen = parameters(system, ["body.mass"])
+    x = np.array([1300.0])
+    assert with_masses(system, chosen, x) is None
+    assert Words(system, chosen).bytes_at(x) == made(system, chosen, x).to_bytes()
 
 
 def differences(system, chosen, x, number, width):
