@@ -56,13 +56,19 @@ void torques_at(Form& form, Step<Form>& step, double s) {
   ++ws.statistics.locations;
 }
 
-/// Margin of a locked contact where the torques were looked at last; the round-off is that of either end of the step,
-/// for all torques may be zero at one of them.
+/// Round-off of the other end of the step, for a contact that holds less than that: all torques may be zero at the
+/// start.
+template <class T>
+double more_noise(const Workspace<T>& ws, int a, T capacity) {
+  const double more = value(ws.there.noise[a] - ws.here.noise[a]);
+  return value(capacity) < more ? more : 0.0;
+}
+
+/// Margin of a locked contact where the torques were looked at last.
 template <class T>
 double margin_seen(const Workspace<T>& ws, int a) {
-  const T torque = ws.seen.carried[a];
-  const double more = larger(0.0, value(ws.there.noise[a] - ws.here.noise[a]));
-  return margin(ws, a, torque, capacity_at(ws, ws.held.contact[a], torque)) + more;
+  const T torque = ws.seen.carried[a], capacity = capacity_at(ws, ws.held.contact[a], torque);
+  return margin(ws, a, torque, capacity) + more_noise(ws, a, capacity);
 }
 
 /// Smallest margin of the watched locked contacts at s, and whose it is.
@@ -114,8 +120,8 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
     double before, after;
     if (holds_on(ws, a, step.h, before, after)) continue;
     watched[n++] = a;
-    const double more = larger(0.0, value(ws.there.noise[a] - ws.here.noise[a]));
-    m0 = smaller(m0, before + more), m1 = smaller(m1, after + more);
+    m0 = smaller(m0, before + more_noise(ws, a, ws.here.capacity[a]));
+    m1 = smaller(m1, after + more_noise(ws, a, ws.there.capacity[a]));
   }
   if (n == 0) return;
   fit(form, step);
