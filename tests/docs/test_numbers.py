@@ -32,8 +32,8 @@ CONTACTS = {
 EVENTS = {
     r"Coefficients above $-10^{-9} \max_j |\beta_j|$": "larger(1e-9 * scale, noise)",
     r"$10^{-10} (1 + \max |v|)$ beyond zero": "return 1e-10 * (1 + largest)",
-    r"most $1.5/\omega$ long": "work ? 0.5 : 1.5) / fastest",
-    r"and $0.5/\omega$ where the work is integrated": "work ? 0.5 : 1.5) / fastest",
+    r"most $1.5/\omega$ long": "resolves_work(ws) ? 0.5 : 1.5) / fastest",
+    r"and $0.5/\omega$ where the work is integrated": "resolves_work(ws) ? 0.5 : 1.5) / fastest",
     "after 25 time constants a decay has ended": "* s > 25 ?",
     "Above 0.3 of the tolerance": "most_cut_error = 0.3",
     "repeated at most four times to land": "most_landings = 4",

@@ -145,7 +145,7 @@ class Runs:
         return Run(primal, slope, is_forward=False, notes=point.notes)
 
     def _how(self, point: Point) -> tuple[Any, ...]:
-        """What both kinds of runs with derivatives are told behind their numbers."""
+        """Instants, options and sizes of both kinds of runs with derivatives."""
         options = list(self._options.items())
         return point.grid, self.wanted.t_end, options, wiring(self.task.system).row_size, self._has_work
 

@@ -187,6 +187,11 @@ CLUTCHWORK_INLINE Dual<T, N> sqrt(const Dual<T, N>& x) {
   return Dual<T, N>::chain(x, r, T(0.5) / r);
 }
 template <class T, int N>
+CLUTCHWORK_INLINE Dual<T, N> cbrt(const Dual<T, N>& x) {
+  const T r = cbrt(x.v);
+  return Dual<T, N>::chain(x, r, T(1) / (T(3) * r * r));
+}
+template <class T, int N>
 CLUTCHWORK_INLINE Dual<T, N> sin(const Dual<T, N>& x) {
   return Dual<T, N>::chain(x, sin(x.v), cos(x.v));
 }

@@ -170,6 +170,8 @@ class Variation {
 
   void swap_jacobians() {
     std::swap(form.ws.jacobian, ws_.moved.other);
+    // where the blocks stand is no derivative, and the same at both ends
+    std::swap(form.ws.jacobian.block, ws_.moved.other.block);
     if constexpr (Form::full) std::swap(form.ws.full.jacobian, ws_.moved.other_whole);
     std::swap(at_, other_at_);
   }
@@ -314,7 +316,6 @@ class Variation {
     for (int i = 0; i < n; ++i) start[i] = u[i] = step_.y0()[i], start[i].v = u[i].v = 0;
     if (!known_) slopes_at(0, start, first);
     known_ = true;
-    if (stays(start, first)) return 0;
     drift_at_start(h, start, drift);
     for (int s = 0; s < 8; ++s) {
       T* k = step_.k(s);
@@ -333,20 +334,6 @@ class Variation {
     add_linear(step_.k(7), last);
     for (int i = 0; i < n; ++i) start[i] = u[i] + step_.k(7)[i];
     return error_of(step_.k(7), start);
-  }
-  /// Whether derivatives that are zero stay zero over the part: nothing makes any at its ends and at its thirds.
-  /// Signals that swing are resolved by the steps, and tables end them where they bend.
-  bool stays(const T* start, const T* first) {
-    if (moves(start, form.n()) || moves(first, form.n())) return false;
-    T* last = step_.dt1();
-    for (int third = 1; third <= 3; ++third) {
-      slopes_at(third / 3.0, start, last);
-      if (moves(last, form.n())) return false;
-    }
-    for (int s = 0; s < 8; ++s) {
-      for (int i = 0; i < form.n(); ++i) step_.k(s)[i] = T(0);
-    }
-    return true;
   }
   /// The derivatives at stage s.
   void stage_from(int s, const T* start, T* u) {
