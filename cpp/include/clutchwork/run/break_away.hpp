@@ -135,8 +135,9 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
   for (int k = 12; k > 0 && beyond >= 0; --k) beyond = f(s + (hit.s - s) / (1 << k));
   torques_at(form, step, s);
   if (margin_seen(ws, who) > 1e-6 * value(capacity_at(ws, ws.held.contact[who], ws.seen.carried[who]))) who = at_limit;
-  // what round-off alone has kept from the start is at the start
-  hit = {Hit::multiplier, who, s * step.h > 1e-14 * (1 + abs(step.t)) ? s : 0.0, -1};
+  // what round-off alone has kept from the start of the run is at the start
+  const bool kept = ws.statistics.steps <= 1 && s * step.h <= 1e-14 * (1 + abs(step.t));
+  hit = {Hit::multiplier, who, kept ? 0.0 : s, -1};
 }
 
 /// The same for a set with contacts that follow loads: its limit load has kinks where a load changes its sign. Far from
