@@ -154,7 +154,7 @@ def test_a_run_may_begin_later() -> None:
 @pytest.mark.parametrize("order", ["ab", "ba"])
 @pytest.mark.parametrize("given", ["a", "b", ""])
 def test_speeds_that_nobody_gave_follow_what_is_prescribed_at_a_later_start(order: str, given: str) -> None:
-    """b turns faster than a by what is prescribed then, c by a third of it; without a given speed the first one rests."""
+    """b is faster than a by what is prescribed then, c follows from both; without a given speed the first one rests."""
     d = cw.Driveline("later")
     shafts = {name: d.shaft(name, inertia=1.0, **({"speed": 5.0} if name == given else {})) for name in (*order, "c")}
     faster = cw.Table([(0.0, 1.0), (0.5, 4.0), (1.0, 4.0)])

@@ -34,6 +34,7 @@ from clutchwork.model.transmissions import ordered, transmissions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
+    from fractions import Fraction
 
 
 Array = NDArray[Any]
