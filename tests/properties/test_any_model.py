@@ -91,6 +91,7 @@ MENDED: dict[str, list[int]] = {
     "shares that did not turn with a ratio": [50171, 60233],
     "a jam of a gear that slips on": [60047, 60450],
     "a ratio of zero before a shaft without inertia": [50079],
+    "a shaft that a ratio beside the housing stopped for nothing": [70123],
     "a contact without capacity that broke another loose": [60419],
     "round-off of large torques beside a freewheel that carries none": [60223],
 }
