@@ -46,6 +46,7 @@ OPEN: dict[str, set[int]] = {
     "creeping beside a transmission": {1051},
     "power of a cam": {1142},
     "friction that a speed presses, where that jumps": {102},
+    "a lag that begins with a speed, of a start that is later": {70044},
 }
 
 
