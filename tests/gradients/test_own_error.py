@@ -76,3 +76,23 @@ def test_a_prescribed_acceleration_that_begins_later_keeps_its_derivatives(t_sta
     rise = 0.5 * (0.6 - t_start) / 0.8
     found = run.gradient(of="w.speed", by=["w.inertia", "c.friction.kinetic"]).matrix[0]
     assert found == pytest.approx([-rise / 0.8, rise / 0.1], rel=1e-9)
+
+
+@pytest.mark.parametrize("t_start", [0.0, 0.3])
+def test_speeds_that_follow_at_a_later_start_have_derivatives(t_start: float) -> None:
+    """What is free begins with what is prescribed, or with the ratio, at that time."""
+    begin, end = (math.sin(4.0 * math.pi * t) for t in (t_start, 0.55))
+    d = cw.Driveline("prescribed")
+    a, b = d.shaft("a", inertia=0.8), d.shaft("b", inertia=0.4, speed=5.0)
+    d.add(cw.PrescribedSpeed("pull", base=a, shaft=b, speed=cw.Sine(amplitude=3.0, frequency=2.0)))
+    found = cw.simulate(d, 0.55, t_start=t_start).gradient(of="a.speed", by="pull.speed.amplitude").matrix[0, 0]
+    assert found == pytest.approx(-begin + 0.4 / 1.2 * (begin - end), rel=1e-6)
+    d = cw.Driveline("ratio")
+    a, b = d.shaft("a", inertia=0.8), d.shaft("b", inertia=0.4, speed=5.0)
+    d.add(cw.VariableGear("v", input=a, output=b, ratio=cw.Sine(amplitude=0.5, frequency=2.0, offset=1.5)))
+    found = cw.simulate(d, 0.55, t_start=t_start).gradient(of="b.speed", by="v.ratio.amplitude").matrix[0, 0]
+    # free, the energy stays what it is at the start
+    first, last = 1.5 + 0.5 * begin, 1.5 + 0.5 * end
+    inertias = 0.8 * first**2 + 0.4, 0.8 * last**2 + 0.4
+    speed = 5.0 * math.sqrt(inertias[0] / inertias[1])
+    assert found == pytest.approx(0.8 * speed * (first * begin / inertias[0] - last * end / inertias[1]), rel=1e-6)

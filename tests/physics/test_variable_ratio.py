@@ -183,3 +183,24 @@ def test_a_ratio_that_follows_through_a_lag():
     assert np.allclose(run["a.speed"], i * run["b.speed"], rtol=1e-7)
     assert np.ptp(energy) <= 2e-8 * energy[0]
     clean(run)
+
+
+@pytest.mark.parametrize("leaves", [cw.Step(height=-0.4, start=0.5), cw.Ramp(height=-0.4, duration=0.1, start=0.5)])
+def test_a_ratio_that_leaves_zero_beside_the_housing_jams(leaves):
+    """At zero the shaft is free, at any other ratio it stands: nothing could take its energy."""
+    d = cw.Driveline("grounded")
+    a = d.shaft("a", inertia=1.0, speed=3.0)
+    d.add(cw.VariableGear("gear", input=d.housing, output=a, ratio=leaves))
+    with pytest.warns(cw.StoppedEarly):
+        run = d.simulate(1.0)
+    assert (run.status, run.time[-1], run["a.speed"][-1]) == ("jammed", 0.5, 3.0)
+    assert "'gear'" in run.message
+    clean(run)
+
+
+def test_a_ratio_that_leaves_zero_beside_the_housing_goes_on_at_rest():
+    d = cw.Driveline("grounded")
+    a = d.shaft("a", inertia=1.0)
+    d.add(cw.VariableGear("gear", input=d.housing, output=a, ratio=cw.Step(height=-0.4, start=0.5)))
+    d.add(cw.Torque("push", shaft=a, torque=cw.Step(height=5.0, start=0.6)))
+    assert d.simulate(1.0)["a.speed"][-1] == 0.0

@@ -151,6 +151,49 @@ def test_a_run_may_begin_later() -> None:
     assert (sim.time, sim["a.speed"]) == (0.5, 100.0)
 
 
+@pytest.mark.parametrize("order", ["ab", "ba"])
+@pytest.mark.parametrize("given", ["a", "b", ""])
+def test_speeds_that_nobody_gave_follow_what_is_prescribed_at_a_later_start(order: str, given: str) -> None:
+    """b is faster than a by what is prescribed then, c follows from both; without a given speed the first one rests."""
+    d = cw.Driveline("later")
+    shafts = {name: d.shaft(name, inertia=1.0, **({"speed": 5.0} if name == given else {})) for name in (*order, "c")}
+    faster = cw.Table([(0.0, 1.0), (0.5, 4.0), (1.0, 4.0)])
+    d.add(cw.PrescribedSpeed("pull", base=shafts["a"], shaft=shafts["b"], speed=faster))
+    d.add(cw.Planetary("gear", sun=shafts["a"], ring=shafts["b"], carrier=shafts["c"], ratio=2.0))
+    run = d.simulate(1.0, t_start=0.5)
+    a = 5.0 - 4.0 * (given == "b") if given else -4.0 * (order == "ba")
+    speeds = [run[f"{name}.speed"][0] for name in "abc"]
+    assert speeds == pytest.approx([a, a + 4.0, a + 8.0 / 3.0], abs=1e-14)
+    assert not run.events.at_start()
+
+
+def test_speeds_follow_a_ratio_at_a_later_start() -> None:
+    """A chain of two transmissions: the shaft with a given speed keeps it, no impulse is shared out."""
+    d = cw.Driveline("ratios")
+    a, b, c = d.shaft("a", inertia=1.0), d.shaft("b", inertia=2.0, speed=6.0), d.shaft("c", inertia=3.0)
+    d.add(cw.VariableGear("one", input=a, output=b, ratio=cw.Table([(0.0, 1.0), (0.5, 3.0), (1.0, 3.0)])))
+    d.add(cw.VariableGear("two", input=b, output=c, ratio=cw.Table([(0.0, 2.0), (0.5, -4.0), (1.0, -4.0)])))
+    run = d.simulate(1.0, t_start=0.5)
+    assert [run[f"{name}.speed"][0] for name in "abc"] == pytest.approx([18.0, 6.0, -1.5], rel=1e-14)
+
+
+def test_a_run_that_is_left_between_steps_has_the_same_bits() -> None:
+    """The slip that counts as zero is that of the last event, also where rows or a state are asked for in between."""
+    d = cw.Driveline("parting")
+    fast, slow = d.shaft("fast", inertia=0.01), d.shaft("slow")
+    gently = cw.Sine(amplitude=1e-4, frequency=0.1, phase=-0.5 * np.pi, offset=1e-4)
+    d.add(cw.Spring("spring", base=fast, follower=d.housing, stiffness=1.0, initial_twist=1.0))
+    d.add(cw.PrescribedSpeed("pull", shaft=slow, speed=gently))
+    d.add(cw.TorqueLimiter("limiter", base=d.housing, follower=slow, torque=1.0))
+    whole = d.simulate(0.3, **STEPS)
+    instant = next(event.time for event in whole.events if event.cause == "torque limit")
+    before = whole.time[whole.time < instant]
+    for at in before[1:].tolist():
+        run = d.simulate(0.3, start=whole.state(at), **STEPS)
+        for mine, theirs in zip(tail(run, at), tail(whole, at), strict=True):
+            assert mine.tobytes() == theirs.tobytes()
+
+
 def test_a_repeated_signal_is_in_step_wherever_a_run_begins() -> None:
     d = cw.Driveline("pulses")
     d.add(cw.Torque("m", shaft=d.shaft("a", inertia=1.0), torque=cw.Pulse(height=2.0, period=0.1, width=0.03)))

@@ -28,9 +28,9 @@ from clutchwork.model.loads import load_arrays
 from clutchwork.model.model import Model
 from clutchwork.model.parts import Place, is_stop, place_of
 from clutchwork.model.pools import Pools
-from clutchwork.model.start import initial_angles, speed_at_start, start
+from clutchwork.model.start import Started, initial_angles, speed_at_start, start
 from clutchwork.model.structure import Kinematics, Mechanism, follows_load
-from clutchwork.model.transmissions import ordered
+from clutchwork.model.transmissions import ordered, transmissions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -49,7 +49,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     if found.structure is None:
         raise ModelError(found.problems)
     parts, model = found.structure.parts, found.structure.mechanism
-    made, speeds, motions = chosen(found.structure, independent)
+    made, begun, motions = chosen(found.structure, independent)
     shared = Shared(parts.thermal, tuple(model.role(Role.PROCESS)))
     where = places(parts.thermal, shared.processes, [component for component, _ in model.acting])
     pools, wires, columns = Pools(), Wires(where), Columns(model, made)
@@ -68,13 +68,13 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     arrays |= _transmissions(model, made, columns)
     arrays |= flow_arrays(model, pools, wires)
     arrays |= heat_arrays(model, where)
-    arrays |= shared.arrays(pools, wires, states, partial(speed_at_start, model, made, speeds, motions))
+    arrays |= shared.arrays(pools, wires, states, partial(speed_at_start, model, made, begun.speeds, motions))
     arrays |= {
         "prescribed_input": wires.prescribe(motions),
         "prescribed_sums": [int(one.integrates) for one, _ in motions],
     }
     arrays |= wires.arrays()
-    arrays |= {"params": pools.params, "points": pools.points, "initial_speed": [float(speed) for speed in speeds]}
+    arrays |= {"params": pools.params, "points": pools.points} | _start(model, made, begun)
     return {
         "name": whole.name,
         "arrays": frozen(_shaped(arrays, model, made)),
@@ -98,8 +98,8 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     }
 
 
-def chosen(found: Structure, wanted: Sequence[str]) -> tuple[Kinematics, list[Fraction], list[Any]]:
-    """The structure with the independent speeds that are wanted, else in a good order: speeds at the start, motions."""
+def chosen(found: Structure, wanted: Sequence[str]) -> tuple[Kinematics, Started, list[Any]]:
+    """The structure with the independent speeds that are wanted, else in a good order: its start, motions."""
     model = found.mechanism
     if wanted:
         made, problems = kinematics(model, wanted)
@@ -107,13 +107,14 @@ def chosen(found: Structure, wanted: Sequence[str]) -> tuple[Kinematics, list[Fr
             raise ModelError(problems)
         order = sorted(made.independent, key=lambda node: wanted.index(model.nodes[node].name))
         made = replace(made, independent=order)
-        speeds, motions, problems = start(model, made)
+        begun, motions, problems = start(model, made)
         if problems:
             raise ModelError(problems)
-        return made, speeds, motions
-    speed_of = dict(zip(found.kinematics.independent, found.speeds, strict=True))
+        return made, begun, motions
     made = replace(found.kinematics, independent=_arranged(found.rates, found.kinematics))
-    return made, [speed_of[node] for node in made.independent], found.motions
+    order = [found.kinematics.independent.index(node) for node in made.independent]
+    speeds, answers = found.begun
+    return made, Started([speeds[place] for place in order], [answers[place] for place in order]), found.motions
 
 
 def _arranged(rates: Sequence[Row], made: Kinematics) -> list[int]:
@@ -175,6 +176,17 @@ def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role,
     own = [row for row, (component, _) in zip(found, model.acting, strict=True) if component.role is role]
     return columns.split(f"{prefix}_rate", own) | {
         f"{prefix}_kind": [number(type(component)) for component, _ in model.acting if component.role is role],
+    }
+
+
+def _start(model: Mechanism, made: Kinematics, begun: Started) -> dict[str, Any]:
+    """Speeds at the start, and how they answer to prescribed speeds and to transmissions, in the order of those."""
+    driven, place = len(model.role(Role.MOTION)), {id(tie.component): n for n, tie in enumerate(transmissions(model))}
+    ties = [driven + place[id(tie.component)] for tie, _ in ordered(model, made)]
+    return {
+        "initial_speed": [float(speed) for speed in begun.speeds],
+        "initial_by_prescribed": _matrix(begun.answers, {number: number for number in range(driven)}),
+        "initial_by_ratio": _matrix(begun.answers, {number: column for column, number in enumerate(ties)}),
     }
 
 
@@ -257,6 +269,7 @@ def _shaped(arrays: Mapping[str, Any], model: Mechanism, made: Kinematics) -> di
     """The arrays with the type and shape that the layout says."""
     sizes = {"nodes": len(model.nodes), "speeds": len(made.independent), "prescribed": len(model.role(Role.MOTION))}
     sizes |= {"elements": len(arrays["element_kind"]), "contacts": len(arrays["contact_kind"])}
+    sizes |= {"transmissions": len(arrays["transmission_element"])}
     shaped = {}
     for name, kind, shape, _ in FIELDS:
         given = arrays[name]

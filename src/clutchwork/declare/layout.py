@@ -137,6 +137,8 @@ FIELDS = (
     ("params", "f8", ("params",), "parameters of all components; a curve is (first point, number of points)"),
     ("points", "f8", ("points", 3), "x, y, slope to the next point"),
     ("initial_speed", "f8", ("speeds",), "v at the start"),
+    ("initial_by_prescribed", "f8", ("speeds", "prescribed"), "v at a later start per change of a prescribed speed"),
+    ("initial_by_ratio", "f8", ("speeds", "transmissions"), "the same per rate by which a transmission misses its row"),
     ("initial_angle", "f8", ("nodes",), "angle [rad] or position [m] at the start"),
     ("initial_state", "f8", ("states",), "states at the start"),
 )

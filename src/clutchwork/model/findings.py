@@ -13,12 +13,11 @@ from clutchwork.model.loads import load_problems
 from clutchwork.model.parts import Parts, Sensor
 from clutchwork.model.problems import TOO_FAR_APART, model_advice, no_shaft, part_problems
 from clutchwork.model.settings import settings_problems
-from clutchwork.model.start import start
+from clutchwork.model.start import Started, start
 from clutchwork.model.structure import Kinematics, Mechanism
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-    from fractions import Fraction
 
     from clutchwork.base.errors import Problem
     from clutchwork.declare.node import Component, Signal
@@ -33,7 +32,7 @@ class Structure:
     parts: Parts
     mechanism: Mechanism
     kinematics: Kinematics
-    speeds: list[Fraction]  # of the independent nodes at the start
+    begun: Started  # how the independent nodes turn at the start
     motions: list[tuple[Component, Signal]]  # prescribed speeds
 
     @cached_property
@@ -132,9 +131,9 @@ def _find(model: Model, incomplete: Sequence[str]) -> Findings:
         made, wrong = kinematics(mechanism, incomplete=frozenset((*incomplete, *touched)))
         if made is None:
             return Findings(problems + wrong, advice, None)
-        speeds, motions, wrong = start(mechanism, made)
+        begun, motions, wrong = start(mechanism, made)
         wrong += load_problems(mechanism)
     except ArithmeticError:
         return Findings([*problems, TOO_FAR_APART], advice, None)
     problems += wrong
-    return Findings(problems, advice, None if problems else Structure(sound, mechanism, made, speeds, motions))
+    return Findings(problems, advice, None if problems else Structure(sound, mechanism, made, begun, motions))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from contextlib import suppress
 from math import isfinite
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from clutchwork.base.errors import Problem
 from clutchwork.declare.node import Domain
-from clutchwork.declare.rational import ONE, ZERO, Echelon, Row, exact, plus, smallest
+from clutchwork.declare.rational import MINUS, ONE, ZERO, Echelon, Row, exact, plus, smallest
 from clutchwork.declare.schema import Role, specs
 from clutchwork.declare.speech import path_of
 from clutchwork.elements.bases.motion import Motion, MotionError
@@ -23,6 +23,17 @@ if TYPE_CHECKING:
     from clutchwork.declare.node import Component, Node, Signal
     from clutchwork.model.structure import Kinematics, Mechanism
 
+
+class Started(NamedTuple):
+    """Speeds of the independent nodes at the start, and how they answer where a run begins later than at 0.
+
+    Columns of the answers: prescribed speeds, then what each transmission misses of its ratio at 0 s.
+    """
+
+    speeds: list[Fraction]
+    answers: list[Row]
+
+
 # prescribed speeds and what gives them
 Motions: TypeAlias = "list[tuple[Component, Signal]]"
 # speeds that were rounded when they were written may differ by this share
@@ -31,7 +42,7 @@ ROUNDING = exact(1e-6)
 KNOWN = -1
 
 
-def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], Motions, list[Problem]]:
+def start(model: Mechanism, made: Kinematics) -> tuple[Started, Motions, list[Problem]]:
     """Independent speeds at the start, the prescribed speeds with their signals, and what is wrong with both."""
     motions: Motions = []
     problems: list[Problem] = []
@@ -43,7 +54,7 @@ def start(model: Mechanism, made: Kinematics) -> tuple[list[Fraction], Motions, 
             problems.append(Problem(path_of(motion), bad.quantity, bad.message, bad.value, bad.remedy))
             motions.append((motion, Constant(0.0)))
     if problems:
-        return [ZERO] * len(made.independent), motions, problems
+        return Started([ZERO] * len(made.independent), [{} for _ in made.independent]), motions, problems
     speeds, wrong = initial_speeds(model, made, [value(signal, 0.0) for _, signal in motions])
     return speeds, motions, [*problems, *wrong, *_position_problems(model)]
 
@@ -134,15 +145,16 @@ def _fixed(node: Node | None) -> bool:
     return node is None or node.fixed
 
 
-def initial_speeds(
-    model: Mechanism, made: Kinematics, prescribed: Sequence[float]
-) -> tuple[list[Fraction], list[Problem]]:
+def initial_speeds(model: Mechanism, made: Kinematics, prescribed: Sequence[float]) -> tuple[Started, list[Problem]]:
     """Speeds of the independent nodes, and given speeds that contradict each other.
 
     A shaft without a given speed takes the one that follows from the others; what is free starts at rest, in the
     order in which the shafts were added. A shaft inside of a composite turns so that its springs stay in balance.
     """
-    inputs = {len(model.nodes) + number: exact(speed) for number, speed in enumerate(prescribed)}
+    first = len(model.nodes)
+    inputs = {first + number: exact(speed) for number, speed in enumerate(prescribed)}
+    # what transmissions miss of their ratios: nothing at 0 s
+    inputs |= {first + len(prescribed) + number: ZERO for number in range(len(start_rows(model, made)))}
     given = {node: speed for node, speed in enumerate(model.speed) if speed is not None and node not in made.loose}
     slack = ROUNDING * max([ONE, *map(abs, given.values())])
     echelon, used, problems = Echelon(made.independent, traced=False), dict[str, Row](), list[Problem]()
@@ -151,30 +163,48 @@ def initial_speeds(
     free = set(range(len(model.nodes))) - given.keys()
     rest = sorted(free, key=lambda node: (node in made.loose, node >= own, node))
     for node in given:
-        row = _row(made.speeds[node], inputs, given[node])
+        row = _row(made.speeds[node], given[node])
         left = echelon.rest(row)
-        if left.keys() - {KNOWN}:
+        if _free(left, inputs):
             echelon.add(row)
             used[model.node_label(node)] = row
-        elif abs(left.get(KNOWN, ZERO)) > slack:
-            problems.append(_problem(model, used, node, row, left[KNOWN]))
+        elif abs(excess := _known(left, inputs)) > slack:
+            problems.append(_problem(model, node, _guilty(used, row, inputs), excess))
     problems += _follow_ratios(model, made, inputs, echelon, used, slack)
     for name, tie in start_grips(model, made):
-        row = _row(tie, inputs, ZERO)
-        if echelon.rest(row).keys() - {KNOWN}:
-            echelon.add(row)
-            used[name] = row
+        if _free(echelon.rest(tie), inputs):
+            echelon.add(tie)
+            used[name] = tie
     for node in rest:
         # all speeds are known: those that nobody gave follow
         if len(used) == len(made.independent):
             break
-        row = _row(made.speeds[node], inputs, ZERO)
-        if echelon.rest(row).keys() - {KNOWN}:
-            balance = _row(_balance(model, made, node), inputs, ZERO) if node >= own else {}
-            row = balance if echelon.rest(balance).keys() - {KNOWN} else row
+        row = made.speeds[node]
+        if _free(echelon.rest(row), inputs):
+            balance = _balance(model, made, node) if node >= own else {}
+            row = balance if _free(echelon.rest(balance), inputs) else row
             echelon.add(row)
             used[model.node_label(node)] = row
-    return [echelon.solved[node].get(KNOWN, ZERO) for node in made.independent], problems
+    return _solved(made, echelon, inputs), problems
+
+
+def _solved(made: Kinematics, echelon: Echelon, inputs: dict[int, Fraction]) -> Started:
+    """The speeds of the independent nodes from their rows, and how they answer to what the rows have beside them."""
+    rows = [echelon.solved[node] for node in made.independent]
+    first = min(inputs, default=0)
+    answers = [{column - first: -value for column, value in row.items() if column in inputs} for row in rows]
+    return Started([_known(row, inputs) for row in rows], answers)
+
+
+def _free(row: Row, inputs: dict[int, Fraction]) -> bool:
+    """Whether speeds that are not known are left in a row."""
+    return any(column != KNOWN and column not in inputs for column in row)
+
+
+def _known(row: Row, inputs: dict[int, Fraction]) -> Fraction:
+    """What the known parts of a row make of it."""
+    given = (value * inputs[column] for column, value in row.items() if column in inputs)
+    return row.get(KNOWN, ZERO) - sum(given, ZERO)
 
 
 def _follow_ratios(
@@ -186,24 +216,27 @@ def _follow_ratios(
     slack: Fraction,
 ) -> Iterator[Problem]:
     """Rates that the ratios tie together at the start, and given speeds that contradict them."""
-    for component, tie in start_rows(model, made):
-        row = _row(tie, inputs, ZERO)
+    ties = start_rows(model, made)
+    first = len(model.nodes) + len(model.role(Role.MOTION))
+    for number, (component, tie) in enumerate(ties, first):
+        row = {**tie, number: MINUS}
         left = echelon.rest(row)
-        if left.keys() - {KNOWN}:
+        if _free(left, inputs):
             echelon.add(row)
             used[path_of(component)] = row
-        elif abs(left.get(KNOWN, ZERO)) > slack:
-            guilty = _guilty(used, row)
+        elif abs(_known(left, inputs)) > slack:
+            guilty = _guilty(used, row, inputs)
             message = f"has the ratio {component.start_ratio():.9g} at the start, which contradicts "
             message += f"the initial speed of {' and '.join(guilty)}" if guilty else "the prescribed speeds"
             remedy = "correct one of them, or remove a speed: it then follows from the ratio"
             yield Problem(path_of(component), "ratio", message, remedy=remedy)
 
 
-def _guilty(used: dict[str, Row], row: Row) -> list[str]:
+def _guilty(used: dict[str, Row], row: Row, inputs: dict[int, Fraction]) -> list[str]:
     """Whose rows together make another one."""
-    kinematic = [{column: value for column, value in other.items() if column != KNOWN} for other in used.values()]
-    target = {column: value for column, value in row.items() if column != KNOWN}
+    known = inputs.keys() | {KNOWN}
+    kinematic = [{column: value for column, value in other.items() if column not in known} for other in used.values()]
+    target = {column: value for column, value in row.items() if column not in known}
     return [list(used)[place] for place in smallest(kinematic, target)]
 
 
@@ -219,18 +252,13 @@ def _balance(model: Mechanism, made: Kinematics, node: int) -> Row:
     return row
 
 
-def _row(speed: Row, inputs: dict[int, Fraction], wanted: Fraction) -> Row:
-    """Node speed over the independent ones = wanted, with the prescribed inputs on the right."""
-    if inputs.keys().isdisjoint(speed):
-        return {**speed, KNOWN: wanted} if wanted else dict(speed)
-    row = {column: factor for column, factor in speed.items() if column not in inputs}
-    known = wanted - sum((factor * inputs[column] for column, factor in speed.items() if column in inputs), ZERO)
-    return {**row, KNOWN: known} if known else row
+def _row(speed: Row, wanted: Fraction) -> Row:
+    """Node speed over the independent ones and the prescribed ones = wanted."""
+    return {**speed, KNOWN: wanted} if wanted else speed
 
 
-def _problem(model: Mechanism, used: dict[str, Row], node: int, row: Row, excess: Fraction) -> Problem:
+def _problem(model: Mechanism, node: int, guilty: list[str], excess: Fraction) -> Problem:
     unit = "m/s" if model.nodes[node].domain is Domain.TRANSLATION else "rad/s"
-    guilty = _guilty(used, row)
     speed = model.speed[node] or ZERO
     message = (
         f"contradicts the initial speed of {' and '.join(guilty)}, which gives {float(speed - excess):.9g} {unit}"

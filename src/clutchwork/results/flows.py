@@ -155,7 +155,11 @@ def _before_start(run: Recorded, after: Array) -> Array:
     system, before, speeds = run.system, after.copy(), run.wiring.columns["speed"]
     given = [float(after[speeds] @ _direction(run.wiring, branch)) for branch in run.wiring.motions]
     before[run.wiring.columns["contact_work"]] = 0.0
-    before[speeds] = system.basis @ system.initial_speed + system.basis_prescribed @ np.array(given)
+    # at a later start speeds have followed what is prescribed: docs/theory/reduction.md (13)
+    change = np.array(given) - system.input_value[system.prescribed_input]
+    later = np.where(system.prescribed_sums, 0.0, change) if run.options.t_start else np.zeros(len(given))
+    begun = system.initial_speed + system.initial_by_prescribed @ later
+    before[speeds] = system.basis @ begun + system.basis_prescribed @ np.array(given)
     return before
 
 

@@ -20,6 +20,8 @@ BALANCE = 1e-6
 VARYING = 1e-5
 # of a torque at its capacity
 CAPACITY = 1e-6
+# of the sum of all torques: round-off of it that the search for a break-away concedes, and as much of the row
+ROUND_OFF = 2e-12
 # of a speed beside the largest one there
 SPEED = 1e-8
 FORWARD, BACKWARD, LOCKED, OPEN = 1, -1, 0, 2
@@ -77,7 +79,9 @@ def _locked(seen: Seen, number: int, branch: Branch) -> Iterator[Fault]:
         return
     held = capacity * (1.0 + CAPACITY)
     beyond = np.maximum(-torque - held, torque - np.maximum(held, _ahead(component)))
-    over = np.where(locked, beyond, 0.0) - 1e-7 - 1e-8 * np.abs(torque).max(initial=0.0)
+    all_torques = sum(np.abs(seen.part(name)).sum(axis=1) for name in ("element_torque", "contact_torque"))
+    noise = 1e-7 + 1e-8 * np.abs(torque).max(initial=0.0) + ROUND_OFF * all_torques
+    over = np.where(locked, beyond, 0.0) - noise
     yield from seen.worst(
         "capacity", of, over, lambda at: f"{branch.name} holds {torque[at]:.6g} of {capacity[at]:.6g} N m"
     )

@@ -3,6 +3,7 @@
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/contacts/impulses.hpp>
 #include <clutchwork/contacts/ratios.hpp>
+#include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Jumps of the ratios of transmissions. docs/theory/varying-ratios.md
@@ -23,8 +24,19 @@ void impulses_for(T p11, T p12, T p22, T c1, T c2, T m1, T m2, T& j1, T& j2) {
   if (value(workless) != 0) j1 = change * m2 / workless, j2 = -change * m1 / workless;
 }
 
+/// Whether the row of a transmission has vanished: a ratio of zero beside the housing.
+template <class T>
+bool holds_nothing(const Workspace<T>& ws, int a) {
+  const int nv = int(ws.sys.speeds);
+  for (int i = 0; i < nv; ++i) {
+    if (value(ws.ratios.row[a * nv + i]) != 0) return false;
+  }
+  return true;
+}
+
 /// The ratio of a transmission has jumped: the limit of a fast change, in which it acts alone, the others kept. The
-/// square of its second rate goes with the inverse of the mobility of its row. docs/theory/varying-ratios.md (12)
+/// square of its second rate goes with the inverse of the mobility of its row. From a ratio at which it holds nothing
+/// no such change leads to speeds that another one forbids: it jams. docs/theory/varying-ratios.md (12)
 template <class T>
 void jump_ratio(Workspace<T>& ws, int a, T ratio) {
   Ratios<T>& r = ws.ratios;
@@ -35,6 +47,7 @@ void jump_ratio(Workspace<T>& ws, int a, T ratio) {
   auto mobility = [&](T i) { return p11 - T(2) * i * p12 + i * i * p22; };
   const T r1 = rate_of(ws, d), r2 = rate_of(ws, d + 1), before = mobility(r.value[a]), after = mobility(ratio);
   r.value[a] = ratio;
+  if (holds_nothing(ws, a) && value(after) > 0 && abs(value(r1 - ratio * r2)) > slip_tolerance(ws)) r.jammed = a;
   if (!(value(before) > 0) || !(value(after) > 0)) return;
   const T to = r2 * sqrt(before / after);
   T j1, j2, *x = ws.decision.speed;
@@ -57,6 +70,7 @@ void jump_ratio(Workspace<T>& ws, int a, T ratio) {
 template <class T>
 void jump_ratios(Workspace<T>& ws, double tolerance) {
   Ratios<T>& r = ws.ratios;
+  r.jammed = -1;
   if (!ratios_jump(ws)) return;
   for (int a = 0; a < r.n; ++a) r.value[a] = r.before[a];
   for (int a = 0; a < r.n; ++a) {

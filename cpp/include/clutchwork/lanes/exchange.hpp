@@ -165,7 +165,7 @@ void put_lines(Workspace<Lanes<R>>& ws, const Workspace<double>& run, int i) {
   for (int l = 0; l < ws.guard.n_lines; ++l) {
     ws.guard.line[l].sign[i] = run.guard.line[l].sign, ws.guard.line[l].level[i] = run.guard.line[l].level;
   }
-  ws.noise[i] = 1e-3 * slip_tolerance(run);
+  ws.noise[i] = 1e-3 * run.guard.zero;
 }
 
 }  // namespace clutchwork

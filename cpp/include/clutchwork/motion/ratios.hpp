@@ -383,7 +383,7 @@ int settle_ties(Form& form, T* y) {
     if (value(w.gram[t * r.ties + t]) != 0) continue;
     const int a = r.tie[t];
     const double first = value(rate(2 * a)), second = value(w.ratio[a] * rate(2 * a + 1));
-    if (abs(first - second) > 1e3 * slip_tolerance(ws) + most * (abs(first) + abs(second))) return a;
+    if (abs(first - second) > 1e3 * ws.guard.zero + most * (abs(first) + abs(second))) return a;
   }
   return -1;
 }
@@ -419,7 +419,7 @@ int turned_over(const Workspace<T>& ws) {
                    second = now * value(ws.reduced.offset[(k + 1) * np + p] * ws.in.prescribed[p]);
       miss += first - second, size += abs(first) + abs(second);
     }
-    if (abs(miss) > slip_tolerance(ws) + 1e-9 * size) return a;
+    if (abs(miss) > ws.guard.zero + 1e-9 * size) return a;
   }
   return -1;
 }

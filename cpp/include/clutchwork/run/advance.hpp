@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/components/kinds.hpp>
@@ -100,6 +101,55 @@ void begin_sums(Workspace<T>& ws) {
   }
 }
 
+/// The speeds at a start that is later than at 0, where transmissions have other ratios: what their rows miss of those
+/// at 0 is that much of the rate behind each.
+template <class T>
+void follow_start_ratios(Workspace<T>& ws) {
+  const auto& sys = ws.sys;
+  Ratios<T>& r = ws.ratios;
+  const int n = r.n, nv = int(sys.speeds);
+  T *matrix = r.triangle, *miss = r.wanted, *change = r.share;
+  for (int a = 0; a < n; ++a) {
+    change[a] = ratio_now(ws, a).v - r.before[a];
+    miss[a] = change[a] * rate_of(ws, first_of(ws, a) + 1);
+    const auto row = rate_row(sys, first_of(ws, a) + 1);
+    for (int b = 0; b < n; ++b) {
+      T answer = T(0);
+      for (int e = 0; e < row.n; ++e) answer += T(row.value[e] * sys.initial_by_ratio[row.column[e] * n + b]);
+      matrix[a * n + b] = T(a == b ? 1 : 0) - change[a] * answer;
+    }
+  }
+  if (!factor_lu(n, matrix, r.order)) return;
+  solve_lu(n, matrix, r.order, miss);
+  for (int i = 0; i < nv; ++i) {
+    for (int a = 0; a < n; ++a) ws.v[i] += T(sys.initial_by_ratio[i * n + a]) * miss[a];
+  }
+}
+
+/// The inputs at the start, and the speeds there: where that is later than at 0, what nobody gave follows from what is
+/// prescribed then. docs/theory/reduction.md (13)
+template <class T>
+void begin_inputs(Workspace<T>& ws) {
+  const auto& sys = ws.sys;
+  const int nv = int(sys.speeds), np = int(sys.prescribed);
+  const bool later = ws.time != 0 && (np > 0 || ws.ratios.n > 0);
+  if (later) {
+    load_inputs(ws, 0);
+    shared_inputs(ws, ws.state);
+    keep_prescribed(ws), keep_ratios(ws);
+  }
+  load_inputs(ws, ws.time);
+  shared_inputs(ws, ws.state);
+  if (!later) return;
+  for (int p = 0; p < np; ++p) {
+    // an integral begins where the run does
+    if (sys.prescribed_sums[p] != 0) continue;
+    const T change = ws.in.prescribed[p] - ws.in.prescribed_before[p];
+    for (int i = 0; i < nv; ++i) ws.v[i] += T(sys.initial_by_prescribed[i * np + p]) * change;
+  }
+  if (ws.ratios.n > 0) follow_start_ratios(ws);
+}
+
 /// State at the start. False when the mass matrix is not positive definite.
 template <class T>
 bool start(Workspace<T>& ws) {
@@ -113,8 +163,7 @@ bool start(Workspace<T>& ws) {
   ws.params_changed = false;
   take_initial(ws);
   begin_sums(ws);
-  load_inputs(ws, ws.time);
-  shared_inputs(ws, ws.state);
+  begin_inputs(ws);
   present_rates(ws);
   keep_prescribed(ws);
   input_slopes_at(ws, ws.time);

@@ -89,7 +89,7 @@ template <class Form>
 double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
   auto& ws = form.ws;
   const int d = int(ws.sys.elements) + ws.held.contact[a];
-  const double zero = slip_tolerance(ws);
+  const double zero = ws.guard.zero;
   auto f = [&](double s) {
     double slip = 0;
     for (int p = 0; p < ws.sys.prescribed; ++p) {
@@ -203,7 +203,7 @@ void find_parting_beside(Form& form, Step<Form>& step, Hit& hit) {
   fit(form, step);
   for (int i = 0; i < ws.held.n_driven; ++i) {
     const int spare = ws.held.driven[i], c = ws.held.spare[spare];
-    const double end = abs(slip_beside(form, step, c, 1.0)), zero = slip_tolerance(ws);
+    const double end = abs(slip_beside(form, step, c, 1.0)), zero = ws.guard.zero;
     if (end <= zero) continue;
     const double clear = larger(zero, 0.01 * end);
     auto f = [&](double s) { return clear - abs(slip_beside(form, step, c, s)); };
@@ -217,7 +217,7 @@ template <class Form>
 void find_parting(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
   if (ws.ratios.n > 0) return find_parting_beside(form, step, hit);
-  const double zero = slip_tolerance(ws);
+  const double zero = ws.guard.zero;
   for (int i = 0; i < ws.held.n_driven; ++i) {
     auto f = [&](double s) {
       double slip = 0;

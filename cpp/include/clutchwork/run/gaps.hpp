@@ -70,7 +70,7 @@ double gap_crossing(Form& form, Step<Form>& step, int c, int side, double limit)
   const double q0 = -side * value(step.p(0)[i]), q1 = -side * value(step.p(1)[i]), q2 = -side * value(step.p(2)[i]);
   const double a1 = g1 - g0 + q0, a2 = q1 - q0, a3 = q2 - q1;
   GapGuard guard{{g0, g0 + a1 / 4, g0 + a1 / 2 + a2 / 6, g0 + 0.75 * a1 + a2 / 2 + a3 / 4, g1}};
-  const bool fresh = g0 <= noise, rests = abs(leaves) <= step.h * slip_tolerance(ws);
+  const bool fresh = g0 <= noise, rests = abs(leaves) <= step.h * ws.guard.zero;
   if (fresh && rests) return guard.late_crossing(ws.options.rtol * abs(end) + ws.options.atol, noise, limit);
   if (fresh) guard.mend(leaves);
   return guard.crossing(fresh, noise, limit);

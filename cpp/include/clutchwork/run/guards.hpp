@@ -233,7 +233,7 @@ template <class Form>
 CLUTCHWORK_INLINE void find_line(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
   // round-off of a rate: far below the slip that counts as zero
-  const double noise = 1e-3 * slip_tolerance(ws);
+  const double noise = 1e-3 * ws.guard.zero;
   for (int i = 0; i < ws.guard.n_lines; ++i) {
     const LineGuard& g = ws.guard.line[i];
     double g0, g1;

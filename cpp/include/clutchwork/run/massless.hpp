@@ -121,6 +121,7 @@ bool balance_massless(Form& form, Step<Form>& step) {
   }
   for (int i = 0; i < nz; ++i) way = larger(way, abs(value(y[i] - step.y1()[i])));
   expand(form, y, ws.v);
+  ws.guard.zero = slip_tolerance(ws);
   if (moved) list_lines(ws);
   return way > jump * (1 + fastest);
 }

@@ -31,6 +31,7 @@ void export_state(Form& form, const T* y) {
   inputs_with(ws, ws.time, ws.state);
   expand(form, y, ws.v);
   present_rates(ws);
+  ws.guard.zero = slip_tolerance(ws);
 }
 
 /// Whether torques that have jumped are beyond what locked contacts hold, or take a load to the other line of the bound

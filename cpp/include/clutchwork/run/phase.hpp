@@ -103,13 +103,17 @@ class Phase : public Pace<typename Form::Scalar> {
   }
   /// To where the phase stands.
   [[gnu::noinline]] void leave(Status status) {
+    // a run that is left, to make room for rows, goes on as if it were not
+    const double zero = ws_.guard.zero;
     export_state(form_, step_.y0());
+    ws_.guard.zero = zero;
     status_ = status;
     over_ = true;
   }
 
   [[gnu::noinline]] void begin() {
     const bool fresh = ws_.fresh_phase, event = fresh && !ws_.stiffened;
+    if (fresh) ws_.guard.zero = slip_tolerance(ws_);
     if constexpr (!Form::small) {
       if (fresh) form_.solve_mass(ws_.reduced.y);
     }

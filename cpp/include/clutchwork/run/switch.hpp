@@ -210,7 +210,8 @@ Status switch_modes(Workspace<T>& ws) {
   if (ws.happened.cause == Cause::slip_zero && located >= 0) ws.contact.forced[located] = 0;
   if (!at_start) jump(ws);
   const BesideRatios<T> beside(ws);
-  if (const int lost = lost_follower(ws); lost >= 0) {
+  const int stuck = at_start ? -1 : ws.ratios.jammed;
+  if (const int lost = stuck >= 0 ? stuck : lost_follower(ws); lost >= 0) {
     ws.detail.component = first_of(ws, lost);
     return Status::jammed;
   }
