@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 import clutchwork as cw
+from clutchwork.assembly.wiring import HOUSING
+from clutchwork.run.failure import JAMS
 from support.any_model import agree, rows
 from support.any_model.seen import Fault
 from support.any_model.values import Plain
@@ -16,6 +18,8 @@ from support.any_model.values import Plain
 CAUSES = {"jammed": "prescribed", "unbalanced": "prescribed", "out_of_table": "", "fault": "", "chatter": ""}
 # a speed beside which slips of others count as zero that do not: 1e-10 of it is the tolerance of all
 LOST = 1e9
+# of a speed behind a ratio that vanishes, the one before it: the last row is a step short of the zero
+VANISHED = 1e-2
 
 
 def faults(made: Plain, seed: int, depth: int = 2, only: str = "") -> list[Fault]:
@@ -66,10 +70,21 @@ def ending(made: Plain, base: Any) -> list[Fault]:
     grounded = any("ratio" in one and "housing" in (one.get("input"), one.get("output")) for one in made["element"])
     if base.status == "jammed" and grounded:
         return []
-    # a ratio that vanishes before a shaft without inertia, which leaves its speed to nothing
-    if base.status == "jammed" and "without inertia" in base.message and any(n["inertia"] == 0 for n in made["shaft"]):
+    if base.status == "jammed" and loses_light(base):
         return []
     return [Fault("status", base.status, base.message[:300])]
+
+
+def loses_light(base: Any) -> bool:
+    """Whether the end is told, and is, a ratio that vanishes before a shaft without inertia: what leaves its speed to
+    nothing is the transmission that is named, between such a shaft and one that stands."""
+    if JAMS["light"][0] not in base.message:
+        return False
+    speed, nodes = base.rows[-1, base.wiring.columns["speed"]], base.wiring.nodes
+    ways = [branch for branch in base.wiring.elements if repr(branch.component.name) in base.message]
+    light = any(nodes[node].inertia == 0 for branch in ways for node in branch.direction if node != HOUSING)
+    rates = [sum(f * speed[node] for node, f in branch.direction.items() if node != HOUSING) for branch in ways]
+    return light and len(rates) == 2 and abs(rates[0]) <= VANISHED * abs(rates[1])
 
 
 def explodes(base: Any, most: float = 1e4) -> bool:

@@ -107,6 +107,8 @@ def integrals(seen: Seen) -> Iterator[Fault]:
     for part, rate in (("speed", "acceleration"), ("angle", "speed")):
         value, slope = seen.part(part), seen.part(rate)
         rest = 1e-7 * max(1.0, seen.rtol / 1e-6) * np.abs(value).max(initial=0.0) + 1e-12
+        # what locks is brought to rest from a slip that counts as zero
+        rest += seen.zero if part == "speed" else 0.0
         for number in np.flatnonzero(seen.inertia):
             y, dy = value[:, number], slope[:, number]
             spread = np.abs(np.diff(dy))
@@ -114,6 +116,9 @@ def integrals(seen: Seen) -> Iterator[Fault]:
             around = np.convolve(spread, np.ones(5), mode="same") + spread
             slack = step * around + 1e-4 * np.abs(np.diff(y)) + rest
             slack = slack + max(1e-6, 100.0 * seen.rtol) * (np.abs(y).max(initial=0.0) + 1e-9)
+            # an acceleration is no better than the sum of the torques that make it
+            if part == "speed":
+                slack = slack + step * 1e-10 * seen.terms[1:, number] / seen.inertia[number]
             change, wanted = np.diff(y), 0.5 * step * (dy[1:] + dy[:-1])
             bad = np.where(step > 0.0, np.abs(change - wanted) - slack, 0.0)
             name = seen.wiring.nodes[number].name
