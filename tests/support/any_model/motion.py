@@ -82,9 +82,11 @@ def motions(seen: Seen) -> Iterator[Fault]:
 def steady(seen: Seen) -> Iterator[Fault]:
     """Between both limits of an instant angles stay, and speeds of what has inertia, unless there is an impulse."""
     pairs = np.flatnonzero(np.diff(seen.time) == 0.0)
-    # an impact may take less than the round-off of the energy
+    # an impact may take less than the round-off of the energy, and so may what locks within a tolerance of its own
+    soon = {branch.name for branch in seen.wiring.contacts if getattr(branch.component, "tolerance", 0.0) > 0.0}
     impulses = [event for event in seen.run.events if event.energy_before != event.energy_after]
-    struck = [event.time for event in (*impulses, *(e for e in seen.run.events if e.cause in ("impact", "jam")))]
+    small = [e for e in seen.run.events if e.cause in ("impact", "jam") or (e.after == "locked" and e.element in soon)]
+    struck = [event.time for event in (*impulses, *small)]
     free = not seen.wiring.motions and not any("ratio" in b.component.hooks for b in seen.wiring.elements)
     for number, node in enumerate(seen.wiring.nodes):
         angle, speed = seen.part("angle")[:, number], seen.speed[:, number]
