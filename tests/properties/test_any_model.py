@@ -95,7 +95,15 @@ MENDED: dict[str, list[int]] = {
     "a slow parting of what was held together": [138],
     "a jam whose load was left on the wrong side of zero": [80593],
     "states of contacts that came back without end": [50554],
-    "rows and partings beside transmissions, between the ends of steps": [1051, 70075, 80039, 80100, 80240, 60166, 80476],
+    "rows and partings beside transmissions, between the ends of steps": [
+        1051,
+        70075,
+        80039,
+        80100,
+        80240,
+        60166,
+        80476,
+    ],
     "what counts as zero beside a fast shaft, or at rest": [70189, 80145],
     "a limit that rises at once with a speed": [102],
     "a row behind an impulse that was taken back": [50452],
@@ -114,7 +122,8 @@ def test_a_jam_beside_a_light_shaft_has_its_own_sentence() -> None:
     run = agree.run(made)
     assert run.status == "jammed"
     assert not judge.ending(made, run)
-    for words in ("the ratio is zero at 'e1'", JAMS["light"][0], f"{JAMS['light'][0]} at 'e0'"):
+    sentence = JAMS["light"][0]
+    for words in ("the ratio is zero at 'e1'", sentence, f"{sentence} at 'e0'"):
         assert judge.ending(made, replace(run, message=words)), words
 
 

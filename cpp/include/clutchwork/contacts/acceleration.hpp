@@ -10,7 +10,8 @@
 namespace clutchwork {
 
 /// Mass-weighted acceleration without contacts that may stick: L^-1 (forces - M_p du/dt).
-/// ws.decision.effort: sum of the sizes of all contributions, what round-off of q is measured against; pull: of torques.
+/// ws.decision.effort: sum of the sizes of all contributions, what round-off of q is measured against; pull: of
+/// torques.
 template <class T>
 void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   const auto& sys = ws.sys;

@@ -80,8 +80,8 @@ bool jumps_between(Workspace<T>& ws, int d, int piece, int other) {
   return abs(there - here) > least * larger(abs(here), abs(there));
 }
 
-/// The piece that element d enters in the motion that was decided, of which decision.motion is the acceleration: the one
-/// behind a kink at which its rate is, where its torque jumps there; else its own.
+/// The piece that element d enters in the motion that was decided, of which decision.motion is the acceleration: the
+/// one behind a kink at which its rate is, where its torque jumps there; else its own.
 template <class T>
 int entered_piece(Workspace<T>& ws, int d) {
   const int piece = ws.piece[d], edges = edge_count(ws, d), interval = piece % (edges + 1);
@@ -96,8 +96,8 @@ int entered_piece(Workspace<T>& ws, int d) {
   return piece;
 }
 
-/// Elements go to the pieces that the decided motion enters: whether a torque jumps with that, so that the modes must be
-/// decided anew. docs/theory/events.md, rule 17
+/// Elements go to the pieces that the decided motion enters: whether a torque jumps with that, so that the modes must
+/// be decided anew. docs/theory/events.md, rule 17
 template <class T>
 bool enter_pieces(Workspace<T>& ws) {
   auto may_jump = [&](int d) {
