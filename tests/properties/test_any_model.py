@@ -117,7 +117,7 @@ def test_models_that_failed_once(seed: int) -> None:
 
 
 def test_a_jam_beside_a_light_shaft_has_its_own_sentence() -> None:
-    """A ratio of zero leaves the speed of a shaft without inertia to nothing; other words, or another part, are wrong."""
+    """A ratio of zero leaves the speed of a light shaft to nothing; other words, or another part, are wrong."""
     made = model.model(50079)
     run = agree.run(made)
     assert run.status == "jammed"
