@@ -108,6 +108,7 @@ MENDED: dict[str, list[int]] = {
     "a limit that rises at once with a speed": [102],
     "a row behind an impulse that was taken back": [50452],
     "a belt of any force": [80583],
+    "a load that died away with a state": [320168],
 }
 
 
