@@ -195,3 +195,13 @@ def test_the_housing_may_hold_a_pulley():
 def test_axes_too_close():
     d, _ = _drive(0.0, centre_distance=0.15)
     assert "centre_distance is 0.15 m, not above both radii together, 0.17 m" in str(d.check()[0])
+
+
+@pytest.mark.parametrize(("values", "quantity"), [({"groove_angle": 0.01}, "groove_angle"), ({}, "friction_coeff")])
+def test_grip_of_any_force_is_refused(values, quantity):
+    """The ratio of the tensions would be as e^100 and more: no belt, and no number of use."""
+    friction = 0.3 if values else 40.0
+    with pytest.raises(cw.ModelError, match=quantity):
+        _drive(5.0, tensioner=250.0, friction_coefficient=friction, **values)[0].simulate(0.01)
+    # without a tensioner the preload bounds the force
+    _drive(5.0, friction_coefficient=friction, **values)[0].simulate(0.01)

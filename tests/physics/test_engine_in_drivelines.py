@@ -96,3 +96,21 @@ def test_random_drivelines_against_a_finer_tolerance(seed):
         # a swing behind the clutch carries what 1e-7 of the torque leaves
         np.testing.assert_allclose(coarse[name], fine[name], atol=2e-5 * size, err_msg=name)
     assert [e.element for e in coarse.events] == [e.element for e in fine.events]
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_an_engine_at_rest_that_is_drawn_backward_does_not_burn(swapped):
+    """With the torque of the burning engine the clutch would hold, without it it slips."""
+    burning, load, held, inertia = 80.0, 100.0, 30.0, 0.5
+    d = cw.Driveline()
+    a, b = d.shaft("a", inertia=inertia), d.shaft("b", inertia=inertia)
+    torques = ((0.0, burning), (0.0, burning))
+    grid = {"speeds": (0.0, 100.0), "throttles": (0.0, 1.0), "torques": torques}
+    d.add(cw.Engine("e", shaft=a, throttle=1.0, **grid))
+    d.add(cw.Torque("t", shaft=a, torque=-load))
+    ends = {"base": b, "follower": a} if swapped else {"base": a, "follower": b}
+    d.add(cw.Clutch("c", **ends, friction=cw.Coulomb(static=held, kinetic=held), gain=1.0, normal_force=1.0))
+    run = d.simulate(0.1)
+    assert run.status == "done"
+    np.testing.assert_allclose(run["a.speed"], -(load - held) / inertia * run.time, atol=1e-9)
+    np.testing.assert_allclose(run["b.speed"], -held / inertia * run.time, atol=1e-9)

@@ -26,6 +26,9 @@ from clutchwork.elements.belt_contact import BeltContact
 from clutchwork.elements.gear import Gear
 from clutchwork.elements.rolling_wheel import RollingWheel
 
+# of the logarithm of the ratio of the tensions: a force that much above the tension is none of a belt
+MOST_POWER = 20.0
+
 
 @component(Role.COMPOSITE)
 class BeltDrive(Heating):
@@ -74,9 +77,23 @@ class BeltDrive(Heating):
         if self.tensioned is not None and self.tensioner is None:
             return [("tensioned", "needs a tensioner", "give `tensioner` in place of `preload`, or leave it out")]
         if self.centre_distance > least:
-            return []
+            return self._grips()
         message = f"is {self.centre_distance:g} m, not above both radii together, {least:g} m"
         return [("centre_distance", message, "set the axes farther apart")]
+
+    def _grips(self) -> Found:
+        """A groove that holds the belt as a clamp: with a tensioner the other strand would have any force."""
+        power = self._power
+        if self.tensioner is None or power <= MOST_POWER:
+            return []
+        what = f"and the wrap give tensions of both strands that are as exp({power:.3g}) to 1"
+        quantity = "friction_coefficient" if self.groove_angle is None else "groove_angle"
+        return [(quantity, f"{what}, more than exp({MOST_POWER:g})", "give less friction or a wider groove")]
+
+    @property
+    def _power(self) -> float:
+        mu = self.friction_coefficient
+        return (mu if self.groove_angle is None else mu / sin(self.groove_angle / 2.0)) * self.wrap
 
     @property
     def wrap(self) -> float:
@@ -88,8 +105,7 @@ class BeltDrive(Heating):
     @property
     def limits(self) -> tuple[float, float]:
         """Largest forces against forward and backward slip, over what is left of the tension."""
-        mu = self.friction_coefficient
-        power = (mu if self.groove_angle is None else mu / sin(self.groove_angle / 2.0)) * self.wrap
+        power = self._power
         if self.tensioner is None:
             return 2.0 * tanh(power / 2.0), 2.0 * tanh(power / 2.0)
         # a positive force resists backward slip

@@ -99,6 +99,9 @@ def _twin(name: str, made: Plain, tight: Any, noise: float, times: list[float], 
     settings, late = other["simulation"], _begin(other) - _begin(made)
     instants = [min(t + late, settings["t_end"]) for t in times]
     found = run(other, times=instants, **TIGHT)
+    # an explicit method spends any budget where the motion is stiff
+    if found.status == "too_many_steps" and settings.get("method") == "dopri5":
+        return
     if found.status != "done":
         yield Fault("twin status", f"{name} {found.status}", found.message[:200])
         return

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 import clutchwork as cw
+from clutchwork.assembly.wiring import HOUSING
+from clutchwork.run.failure import JAMS
 from support.any_model import agree, rows
 from support.any_model.seen import Fault
 from support.any_model.values import Plain
@@ -16,6 +18,8 @@ from support.any_model.values import Plain
 CAUSES = {"jammed": "prescribed", "unbalanced": "prescribed", "out_of_table": "", "fault": "", "chatter": ""}
 # a speed beside which slips of others count as zero that do not: 1e-10 of it is the tolerance of all
 LOST = 1e9
+# of a speed behind a ratio that vanishes, the one before it: the last row is a step short of the zero
+VANISHED = 1e-2
 
 
 def faults(made: Plain, seed: int, depth: int = 2, only: str = "") -> list[Fault]:
@@ -60,16 +64,32 @@ def ending(made: Plain, base: Any) -> list[Fault]:
     laws = [one["friction"]["type"] for one in made["element"] if isinstance(one.get("friction"), dict)]
     if "naive_sign" in laws and base.status in ("chatter", "too_many_steps", "too_many_events", "zeno"):
         return []
+    if base.status == "jammed" and not is_told(base):
+        return [Fault("status", base.status, f"without its sentence: {base.message[:300]}")]
     if base.status in CAUSES and any(CAUSES[base.status] in kind for kind in kinds):
         return []
     # a ratio that leaves zero against what stands
     grounded = any("ratio" in one and "housing" in (one.get("input"), one.get("output")) for one in made["element"])
     if base.status == "jammed" and grounded:
         return []
-    # a ratio that vanishes before a shaft without inertia, which leaves its speed to nothing
-    if base.status == "jammed" and "without inertia" in base.message and any(n["inertia"] == 0 for n in made["shaft"]):
+    if base.status == "jammed" and JAMS["light"][0] in base.message:
         return []
     return [Fault("status", base.status, base.message[:300])]
+
+
+def is_told(base: Any) -> bool:
+    """Whether a jam is told by one of its sentences, and that of a ratio that vanishes before a shaft without inertia
+    where it is so: the transmission that is named joins such a shaft, and one that stands."""
+    if JAMS["light"][0] not in base.message:
+        return any(sentence in base.message for sentence, _ in JAMS.values())
+    nodes = base.wiring.nodes
+    ways = [branch for branch in base.wiring.elements if repr(branch.component.name) in base.message]
+    light = any(nodes[node].inertia == 0 for branch in ways for node in branch.direction if node != HOUSING)
+    if not light or not len(base.rows):
+        return light
+    speed = base.rows[-1, base.wiring.columns["speed"]]
+    rates = [sum(f * speed[node] for node, f in branch.direction.items() if node != HOUSING) for branch in ways]
+    return len(rates) == 2 and bool(abs(rates[0]) <= VANISHED * abs(rates[1]))
 
 
 def explodes(base: Any, most: float = 1e4) -> bool:

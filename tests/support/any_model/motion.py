@@ -82,9 +82,11 @@ def motions(seen: Seen) -> Iterator[Fault]:
 def steady(seen: Seen) -> Iterator[Fault]:
     """Between both limits of an instant angles stay, and speeds of what has inertia, unless there is an impulse."""
     pairs = np.flatnonzero(np.diff(seen.time) == 0.0)
-    # an impact may take less than the round-off of the energy
+    # an impact may take less than the round-off of the energy, and so may what locks within a tolerance of its own
+    soon = {branch.name for branch in seen.wiring.contacts if getattr(branch.component, "tolerance", 0.0) > 0.0}
     impulses = [event for event in seen.run.events if event.energy_before != event.energy_after]
-    struck = [event.time for event in (*impulses, *(e for e in seen.run.events if e.cause in ("impact", "jam")))]
+    small = [e for e in seen.run.events if e.cause in ("impact", "jam") or (e.after == "locked" and e.element in soon)]
+    struck = [event.time for event in (*impulses, *small)]
     free = not seen.wiring.motions and not any("ratio" in b.component.hooks for b in seen.wiring.elements)
     for number, node in enumerate(seen.wiring.nodes):
         angle, speed = seen.part("angle")[:, number], seen.speed[:, number]
@@ -107,6 +109,8 @@ def integrals(seen: Seen) -> Iterator[Fault]:
     for part, rate in (("speed", "acceleration"), ("angle", "speed")):
         value, slope = seen.part(part), seen.part(rate)
         rest = 1e-7 * max(1.0, seen.rtol / 1e-6) * np.abs(value).max(initial=0.0) + 1e-12
+        # what locks is brought to rest from a slip that counts as zero
+        rest += seen.zero if part == "speed" else 0.0
         for number in np.flatnonzero(seen.inertia):
             y, dy = value[:, number], slope[:, number]
             spread = np.abs(np.diff(dy))
@@ -114,6 +118,9 @@ def integrals(seen: Seen) -> Iterator[Fault]:
             around = np.convolve(spread, np.ones(5), mode="same") + spread
             slack = step * around + 1e-4 * np.abs(np.diff(y)) + rest
             slack = slack + max(1e-6, 100.0 * seen.rtol) * (np.abs(y).max(initial=0.0) + 1e-9)
+            # an acceleration is no better than the sum of the torques that make it
+            if part == "speed":
+                slack = slack + step * 1e-10 * seen.terms[1:, number] / seen.inertia[number]
             change, wanted = np.diff(y), 0.5 * step * (dy[1:] + dy[:-1])
             bad = np.where(step > 0.0, np.abs(change - wanted) - slack, 0.0)
             name = seen.wiring.nodes[number].name

@@ -53,6 +53,11 @@ class Seen:
         # round-off of the others reaches those at rest
         return own + 1e-5 * own.max(initial=0.0) + 1e-4
 
+    @cached_property
+    def zero(self) -> float:
+        """The slip that counts as zero: docs/theory/contacts.md (14), with its round-off."""
+        return 1.001e-10 * (1.0 + float(np.abs(self.speed).max(initial=0.0)))
+
     def scale(self, branch: Branch) -> float:
         """The largest speed at the ends of a branch."""
         ends = [self.fastest[node] * abs(factor) for node, factor in branch.direction.items() if node != HOUSING]

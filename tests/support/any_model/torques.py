@@ -71,7 +71,8 @@ def _locked(seen: Seen, number: int, branch: Branch) -> Iterator[Fault]:
     scale, slip = seen.scale(branch), seen.speed @ seen.contacts[:, number]
     torque, capacity = (seen.part(name)[:, number] for name in ("contact_torque", "contact_capacity"))
     locked = seen.part("contact_mode")[:, number] == LOCKED
-    creeping = np.where(locked, np.abs(slip), 0.0) - SPEED * scale - (1e-7 if is_stop(component) else 1e-9)
+    still = max(SPEED * scale + (1e-7 if is_stop(component) else 1e-9), seen.zero)
+    creeping = np.where(locked, np.abs(slip), 0.0) - still
     words = lambda at: f"{branch.name} locked with slip {slip[at]:.3g} of {scale:.3g}"  # noqa: E731
     yield from seen.worst("creeps", of, creeping, words)
     # what a fault has shut holds all

@@ -10,13 +10,14 @@
 namespace clutchwork {
 
 /// Mass-weighted acceleration without contacts that may stick: L^-1 (forces - M_p du/dt).
-/// ws.decision.effort: sum of the sizes of all contributions, what round-off of q is measured against.
+/// ws.decision.effort: sum of the sizes of all contributions, what round-off of q is measured against; pull: of
+/// torques.
 template <class T>
 void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   const auto& sys = ws.sys;
   const int nv = int(sys.speeds);
   for (int i = 0; i < nv; ++i) q[i] = T(0);
-  ws.decision.effort = 0;
+  ws.decision.effort = ws.decision.pull = 0;
   for (int l = 0; l < sys.loads; ++l) {
     ws.coupled.given[l] = T(0);
     for (int p = 0; p < sys.prescribed; ++p)
@@ -26,6 +27,7 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
     ws.geometry.white.add(d, size, q);
     for (int l = 0; l < sys.loads; ++l) ws.coupled.given[l] += ws.loads.by_torque[l * ws.n_directions + d] * size;
     ws.decision.effort += abs(value(size)) * sqrt(value(ws.geometry.own[d]));
+    ws.decision.pull += abs(value(size));
   };
   for (int p = 0; p < sys.prescribed; ++p)
     axpy(nv, -ws.in.prescribed_slope[p], ws.geometry.prescribed_momentum + p * nv, q);
@@ -54,13 +56,16 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
     ws.coupled.given[l] += dot(ws.ratios.rank, ws.loads.by_drawn + l * ws.ratios.n, ws.ratios.drawn);
 }
 
-/// Acceleration of a slip for mass-weighted acceleration q.
+/// Acceleration along a direction for mass-weighted acceleration q; that of the slip of a contact.
 template <class T>
-T slip_acceleration(const Workspace<T>& ws, int c, const T* q) {
-  const int d = int(ws.sys.elements) + c;
+T acceleration_along(const Workspace<T>& ws, int d, const T* q) {
   T a = ws.geometry.white.times(d, q);
   for (int p = 0; p < ws.sys.prescribed; ++p) a += prescribed_share(ws, d, p) * ws.in.prescribed_slope[p];
   return ws.ratios.inside ? a + pulled(ws, d) : a;
+}
+template <class T>
+T slip_acceleration(const Workspace<T>& ws, int c, const T* q) {
+  return acceleration_along(ws, int(ws.sys.elements) + c, q);
 }
 
 /// Acceleration of a slip that the prescribed speeds give.

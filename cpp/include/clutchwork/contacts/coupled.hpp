@@ -2,6 +2,7 @@
 #include <clutchwork/components/bound.hpp>
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/workspace/settings.hpp>
+#include <cstdint>
 
 /// Torques of contacts at rest and in slip where some of them follow loads that all of them make:
 /// docs/theory/load-dependent.md.
@@ -180,14 +181,27 @@ void start_states(CoupledProblem<T>& p) {
   }
 }
 
+/// A number of the present states and lines, another one for others.
+template <class T>
+std::uint64_t mark_of_states(const CoupledProblem<T>& p) {
+  std::uint64_t mark = 0;
+  for (int i = 0; i < p.n; ++i) mark = mark * 0x9e3779b97f4a7c15u + std::uint64_t(2 * (p.state[i] + 1) + p.line[i] + 1);
+  return mark;
+}
+
 /// Policy iteration from all at rest: each round solves for the torques and gives all contacts the state that they ask
-/// for, or the first of those that want another one. False: it does not settle.
+/// for, or the first of those that want another one. False: it does not settle, as where states come back.
 template <class T>
 bool iterate_states(CoupledProblem<T>& p, bool single) {
   start_states(p);
-  for (int round = 0; round < 40 * p.n + 60; ++round) {
+  std::uint64_t seen = 0;
+  for (int round = 0, kept = 1; round < 40 * p.n + 60; ++round) {
     if (!solve_states(p)) return false;
     if (change_states(p, single) == 0) return true;
+    const std::uint64_t mark = mark_of_states(p);
+    if (mark == seen) return false;
+    // a cycle comes back to what is kept for twice as long each time
+    if (round == kept) seen = mark, kept *= 2;
   }
   return false;
 }

@@ -125,7 +125,7 @@ BoundedProblem<T> pose_problem(Workspace<T>& ws, bool warm) {
 
 /// Acceleration of the slip of candidate a that counts as none: round-off. Between prescribed speeds only what leaves
 /// zero within a microsecond is a departure; for a contact that has just come to rest, what leaves it within a
-/// millisecond.
+/// millisecond; for one that has jammed, where its load is zero, what more than the round-off of the load makes.
 template <class T>
 double slope_noise(const Workspace<T>& ws, const BoundedProblem<T>& p, int a, int located, double tolerance) {
   const int c = ws.decision.list[a];
@@ -135,6 +135,9 @@ double slope_noise(const Workspace<T>& ws, const BoundedProblem<T>& p, int a, in
   const double mobility = value(sqrt(p.matrix.diagonal[a]));
   const double round_off = larger(1e-10 * scale, 1e-12 * ws.decision.effort * mobility);
   const bool arrived = c == located && ws.happened.cause == Cause::slip_zero;
+  const bool jammed = c == ws.happened.contact && ws.happened.cause == Cause::jam;
+  // twice what the guard of the load concedes
+  if (jammed) return larger(round_off, 2e-12 * ws.decision.pull * mobility * mobility);
   return arrived ? larger(round_off, 1e3 * tolerance) : round_off;
 }
 
@@ -393,6 +396,12 @@ bool hold_together(Workspace<T>& ws, double tolerance) {
   return true;
 }
 
+/// Whether prescribed speeds have parted what was held together: the slip of a spare has left zero, however slowly.
+template <class T>
+bool has_parted(const Workspace<T>& ws, int located) {
+  return located >= 0 && ws.happened.cause == Cause::torque_limit && ws.contact.forced[located] == 0;
+}
+
 /// As settle_contacts where contacts follow loads: torques, loads and modes are found together.
 /// docs/theory/load-dependent.md, rule 2
 template <class T>
@@ -401,7 +410,7 @@ Verdict settle_coupled(Workspace<T>& ws, int located, double tolerance) {
   if (ws.geometry.redundant) {
     const int jammed = release_driven(ws, tolerance);
     if (jammed >= 0) return {Settled::jams, jammed};
-    if (hold_together(ws, tolerance)) return {Settled::yes};
+    if (!has_parted(ws, located) && hold_together(ws, tolerance)) return {Settled::yes};
   }
   for (int round = 0; round <= 4 * ws.sys.contacts + 4; ++round) {
     BoundedProblem<T> p{};

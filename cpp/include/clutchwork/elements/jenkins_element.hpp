@@ -100,11 +100,15 @@ struct JenkinsElement : declared::JenkinsElement {
   template <class T>
   static int settle(const Params<T>& p, const At<T>& at) {
     const int k = segment(at.piece), m = mode(at.piece);
-    return kept(p, at, piece_of(count(p) > 1 ? stretch_of(p.limit, at.points, value(at.state[twist]), k) : k, m));
+    const int to = piece_of(count(p) > 1 ? stretch_of(p.limit, at.points, value(at.state[twist]), k) : k, m);
+    if (m != sticks && follows_speed(p) && is_above(p, at, to)) return piece_of(segment(to), sticks);
+    return kept(p, at, to);
   }
 
  private:
   static constexpr double after = 1e-4;  // [s]
+  // of the limit, by which the state may lag behind it while it slides
+  static constexpr double lag = 1e-3;
 
   /// Rate at which the state comes after a limit that a speed changes.
   template <class T, class S>
@@ -112,6 +116,13 @@ struct JenkinsElement : declared::JenkinsElement {
     return (spring(p, at) - at.state[friction_torque]) / T(after);
   }
 
+  /// Whether the limit of a piece that slides has jumped above the spring, which must be wound up first.
+  template <class T>
+  static bool is_above(const Params<T>& p, const At<T>& at, int piece) {
+    const At<T> there{at.rate, at.state, at.input, piece, at.points};
+    const double most = value(limit(p, there));
+    return most - side(piece) * value(at.state[friction_torque]) > lag * most;
+  }
   /// A piece, and where it slides whether it goes on: the spring would grow faster than the limit, however slowly.
   /// Where the limit follows a speed, its guard tells.
   template <class T>

@@ -182,12 +182,15 @@ template <class Form>
   }
 }
 
-/// Slip of a locked contact at s, which transmissions hold.
+/// Slip of a locked contact at s, which transmissions hold: the interpolant is brought onto their ties.
 template <class Form, class T = typename Form::Scalar>
 double slip_beside(Form& form, Step<Form>& step, int c, double s) {
   Workspace<T>& ws = form.ws;
   interpolate(form, step, s, step.point());
   inputs_at(ws, step.t + s * step.h);
+  if constexpr (Form::full) {
+    if (s > 0 && s < 1) observe(form, step.t + s * step.h, step.point(), step.slope()), settle_ties(form, step.point());
+  }
   expand(form, step.point(), ws.out.v);
   const int d = int(ws.sys.elements) + c;
   T slip = rate_row(ws.sys, d).times(ws.out.v);
@@ -195,8 +198,7 @@ double slip_beside(Form& form, Step<Form>& step, int c, double s) {
   return value(slip);
 }
 
-/// Where a transmission parts what it held together itself. Inside a step the interpolant keeps its row less exactly
-/// than at the ends, so that the slip must leave zero there.
+/// Where a transmission parts what it held together itself: where the slip leaves what counts as zero.
 template <class Form>
 void find_parting_beside(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
@@ -205,9 +207,8 @@ void find_parting_beside(Form& form, Step<Form>& step, Hit& hit) {
     const int spare = ws.held.driven[i], c = ws.held.spare[spare];
     const double end = abs(slip_beside(form, step, c, 1.0)), zero = ws.guard.zero;
     if (end <= zero) continue;
-    const double clear = larger(zero, 0.01 * end);
-    auto f = [&](double s) { return clear - abs(slip_beside(form, step, c, s)); };
-    const double s = first_crossing(f, clear, clear - end, hit.s);
+    auto f = [&](double s) { return zero - abs(slip_beside(form, step, c, s)); };
+    const double s = first_crossing(f, zero, zero - end, hit.s);
     if (is_first(hit, s)) hit = {Hit::parting, spare, s, -1};
   }
 }

@@ -57,6 +57,27 @@ bool load_stays(const Workspace<T>& ws, int c, double h) {
   return visit_corners(ws, c, range, [&](const T& load) { clear = clear && side * value(load) > 0; }) && clear;
 }
 
+/// Load that counts as zero at a contact which follows speeds or states: what a slip that counts as zero, or a
+/// thousandth of the tolerance of a state, makes of it at the present inputs. docs/theory/events.md, rule 10
+template <class T>
+double load_at_rest(const Workspace<T>& ws, int c) {
+  const auto& sys = ws.sys;
+  const double slip = slip_tolerance(ws), state = 1e-3 * ws.options.atol;
+  return visit_contact(sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    T at[E::inputs > 0 ? E::inputs : 1];
+    bool follows = false;
+    for (int i = 0; i < E::inputs; ++i) {
+      const std::int64_t ref = sys.contact_input[c] + i, code = sys.input_refs[ref];
+      at[i] = ws.in.u[ref];
+      if (code >= sys.inputs) at[i] += T(code < sys.inputs + sys.shared ? state : slip), follows = true;
+    }
+    if (!follows) return 0.0;
+    const T load = contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &at[0], points_of(ws));
+    return abs(value(load) - value(load_of(ws, c)));
+  });
+}
+
 /// A contact fails: for good, and told as an event without a change of mode.
 template <class T>
 void fail(Workspace<T>& ws, int c) {

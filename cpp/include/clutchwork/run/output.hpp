@@ -261,8 +261,8 @@ Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
   return emit(form, step, 0.0, step.t, sink);
 }
 
-/// Whether accelerations or torques in the last row are others than in the row before it, by more than round-off; of a
-/// shaft without inertia, before it that of the interpolant, by more than that may miss.
+/// Whether speeds, accelerations or torques in the last row are others than in the row before it, by more than
+/// round-off; of a shaft without inertia, before it that of the interpolant, by more than that may miss.
 template <class T>
 bool row_jumps(const Workspace<T>& ws, const Sink& sink) {
   if (sink.at < 2) return true;
@@ -276,7 +276,8 @@ bool row_jumps(const Workspace<T>& ws, const Sink& sink) {
   };
   const auto round_off = [](std::int64_t) { return 1e-9; };
   const auto of_node = [&](std::int64_t n) { return value(ws.sys.inertia[n]) > 0 ? 1e-9 : 1e-4; };
-  return jumps(ws.row.acceleration, ws.sys.nodes, of_node) ||
+  // speeds jump where an impulse came before, at the same instant
+  return jumps(ws.row.speed, ws.sys.nodes, of_node) || jumps(ws.row.acceleration, ws.sys.nodes, of_node) ||
          jumps(ws.row.element_torque, ws.sys.elements, round_off) ||
          jumps(ws.row.contact_torque, ws.sys.contacts, round_off);
 }

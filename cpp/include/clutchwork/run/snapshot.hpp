@@ -55,6 +55,10 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
   inputs_at(ws, t);
   input_slopes_at(ws, t);
   observe(form, t, shot.y, shot.d);
+  if constexpr (Form::full) {
+    // an interpolant keeps the ties of transmissions less exactly than the ends of a step do
+    if (ws.ratios.n > 0 && s > 0 && s < 1 && step.h > 0) settle_ties(form, shot.y), observe(form, t, shot.y, shot.d);
+  }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) shot.rate[k] = form.rate(k, shot.y) + offset_rate(ws, k);
   for (int d = 0; d < ne + nc; ++d) {
     const int k = ws.branch_of[d];

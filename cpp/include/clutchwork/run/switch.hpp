@@ -67,10 +67,57 @@ bool takes_back_stops(Workspace<T>& ws) {
   return any;
 }
 
+/// Whether the torque of an element jumps between two of its pieces at the present rate.
+template <class T>
+bool jumps_between(Workspace<T>& ws, int d, int piece, int other) {
+  constexpr double least = 1e-9;
+  Branch<T> b = make_branch(ws, d, 0);
+  auto torque = [&](int at) {
+    b.piece = at;
+    return value(branch_torque_once(ws, b, rate_of(ws, d), ws.state, ws.seen.state_rates));
+  };
+  const double here = torque(piece), there = torque(other);
+  return abs(there - here) > least * larger(abs(here), abs(there));
+}
+
+/// The piece that element d enters in the motion that was decided, of which decision.motion is the acceleration: the
+/// one behind a kink at which its rate is, where its torque jumps there; else its own.
+template <class T>
+int entered_piece(Workspace<T>& ws, int d) {
+  const int piece = ws.piece[d], edges = edge_count(ws, d), interval = piece % (edges + 1);
+  const double rate = value(rate_of(ws, d)), zero = slip_tolerance(ws);
+  const double noise = 1e-12 * ws.decision.effort * value(sqrt(ws.geometry.own[d]));
+  for (int side = -1; side <= 1; side += 2) {
+    const int i = side < 0 ? interval - 1 : interval;
+    if (i < 0 || i >= edges || abs(rate - value(edge_at(ws, d, i))) > zero) continue;
+    const bool leaves = side * value(acceleration_along(ws, d, ws.decision.motion)) > noise;
+    if (leaves && jumps_between(ws, d, piece, piece + side)) return piece + side;
+  }
+  return piece;
+}
+
+/// Elements go to the pieces that the decided motion enters: whether a torque jumps with that, so that the modes must
+/// be decided anew. docs/theory/events.md, rule 17
+template <class T>
+bool enter_pieces(Workspace<T>& ws) {
+  auto may_jump = [&](int d) {
+    return ws.sys.element_way[d] == 0 && ways_of(ws.sys.element_kind[d]) == 1 && edge_count(ws, d) > 0;
+  };
+  bool looked = false, any = false;
+  for (int d = 0; d < ws.sys.elements; ++d) {
+    if (!may_jump(d)) continue;
+    if (!looked) accelerations_after(ws), looked = true;
+    const int piece = entered_piece(ws, d);
+    any = any || piece != ws.piece[d];
+    ws.piece[d] = piece;
+  }
+  return any;
+}
+
 /// Decide the modes; freewheels that would have to hold more than they can give way for good on the way. `running`:
 /// they are decided.
 template <class T>
-Status settle(Workspace<T>& ws, int located) {
+Status settle_once(Workspace<T>& ws, int located) {
   const bool stops = has_stops(ws);
   if (stops) close_stops(ws);
   for (int round = 0; round <= ws.sys.contacts; ++round) {
@@ -93,6 +140,17 @@ Status settle(Workspace<T>& ws, int located) {
     }
   }
   return Status::no_mode;
+}
+
+/// The same with the torques behind the kinks at which elements are.
+template <class T>
+Status settle(Workspace<T>& ws, int located) {
+  constexpr int most = 4;
+  find_pieces(ws);
+  for (int round = 0;; ++round) {
+    const Status status = settle_once(ws, located);
+    if (status != Status::running || round == most || !enter_pieces(ws)) return status;
+  }
 }
 
 /// A freewheel that runs backward although everything is decided, or that nothing keeps from starting to; -1: none.
@@ -137,7 +195,6 @@ Status decide(Workspace<T>& ws, bool at_start) {
   if (!settle_impulses(ws, at_start) || (stops && !collide(ws))) return Status::no_mode;
   if (located >= 0 && is_struck_off(ws, located, slip)) located = -1;
   see_speeds(ws);
-  find_pieces(ws);
   for (int c = 0; at_start && c < ws.sys.contacts; ++c) {
     ws.contact.impulse[c] = ws.contact.mode[c] == locked && ws.happened.mode[c] != locked;
   }
@@ -224,7 +281,6 @@ Status switch_modes(Workspace<T>& ws) {
   const Status decided = decide(ws, at_start);
   if (decided != Status::running) return decided;
   if (ws.happened.cause == Cause::impact) ws.contact.met_at[located] = ws.time;
-  find_pieces(ws);
   ws.fresh_phase = true;
   if (ws.contact.failed >= 0) {
     ws.detail.component = ne + ws.contact.failed;
