@@ -352,7 +352,8 @@ int cw_law(int number, const double* params, const double* inputs, const double*
       const int edges = n_points > 0 || !has_curves ? L::edges(p) : 0;
       while (piece < edges && L::edge(p, points, piece) <= slip) ++piece;
     }
-    const At<double> at{slip, nullptr, inputs, piece, points};
+    At<double> at{slip, nullptr, inputs, piece, points};
+    if constexpr (Settling<L>) at.piece = L::settle(p, at);
     if constexpr (StickingLaw<L>) *kinetic = L::slide(p, at);
     if constexpr (CompliantLaw<L>) {
       // with states the coefficient depends on what went before

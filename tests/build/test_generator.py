@@ -181,7 +181,7 @@ EDITS = {
     ),
     "a law that takes nothing from its declaration": (
         TABLE,
-        " : declared::TemperatureTable",
+        ", declared::TemperatureTable",
         "",
         (COMPILER, "temperature_table.hpp", "Input"),
     ),

@@ -49,7 +49,7 @@ def test_a_hook_that_the_declaration_forgets(copy: Path, name: str, role: str) -
 
 
 def test_a_hook_that_the_declaration_misspells(copy: Path) -> None:
-    edit(copy / f"{LAWS}/temperature_table.py", 'hooks=("outside",)', 'hooks=("outsied",)')
+    edit(copy / f"{LAWS}/temperature_table.py", 'hooks=("outside", ', 'hooks=("outsied", ')
     refused_by_generator(copy, "laws/temperature_table.py", "no 'outsied', did you mean 'outside'", "a law may have")
 
 

@@ -332,7 +332,7 @@ void switching_laws() {
       b.law = kind, b.ways = 1;
       CHECK(is_switching(b) == SwitchingLaw<L>);
       CHECK(is_compliant_law(kind) == CompliantLaw<L>);
-      if constexpr (SwitchingLaw<L>)
+      if constexpr (SwitchingLaw<L> && CompliantLaw<L>)
         crosses<L>(switching<L>(Fields::of(tag, [kind](auto&&... f) { visit_law_fixed(kind, f...); })));
     });
   }

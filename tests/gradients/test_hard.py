@@ -12,10 +12,12 @@ from support.amount import amount
 @pytest.mark.parametrize("kind", hard_gradients.KINDS)
 def test_derivatives_are_right_and_agree(kind: str) -> None:
     first, count = list(hard_gradients.KINDS).index(kind), len(hard_gradients.KINDS)
-    compared = 0
+    compared, refused = 0, list[str]()
     for number in range(amount(3)):
         seed = first + count * number
         found = hard_gradients.checked(seed, 2)
-        compared += found.compared
+        compared, refused = compared + found.compared, refused + found.refused
         assert not found.wrong + found.apart, f"seed {seed}: {found.wrong + found.apart}"
     assert compared > 0
+    # differences on both sides agree there, so that the derivative exists; of a few drivelines one may be refused
+    assert len(refused) <= max(1.0, 0.01 * compared), "\n".join(refused)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import ClassVar
+
 import numpy as np
 import pytest
 
 import clutchwork as cw
+from clutchwork.assembly.masses import masses
 from clutchwork.base.errors import ModelError
+from clutchwork.declare.schema import Role
 from clutchwork.gradients.packed import made, with_masses, words_of
 from clutchwork.gradients.parameters import parameters
 from clutchwork.gradients.words import Words
@@ -50,11 +55,43 @@ def test_words_are_those_of_assembling(seed):
 def test_words_with_other_inertias_are_those_of_assembling(seed):
     system, rng = model(seed), np.random.default_rng(seed)
     chosen = [one for one in free_numbers.free(system) if one.field.endswith((".inertia", ".mass"))]
+    groups = [chosen, *([one] for one in chosen)]
+    found = 0
     # far enough that other speeds become independent
     for share in (1e-3, 0.3, 3.0):
-        x = free_numbers.start(chosen) * (1.0 + share * rng.random(len(chosen)))
-        found = with_masses(system, chosen, x)
-        assert found is None or found.tobytes() == made(system, chosen, x).to_bytes()
+        for group in groups:
+            x = free_numbers.start(group) * (1.0 + share * rng.random(len(group)))
+            words = with_masses(system, group, x)
+            assert words is None or words.tobytes() == made(system, group, x).to_bytes()
+            found += words is not None
+    # most changes leave the independent speeds as they are
+    assert found > len(groups) if masses(system) else found == 0
+
+
+def test_inertias_of_most_drivelines_change_the_mass_matrix_alone():
+    known = [seed for seed in SEEDS if masses(model(seed))]
+    # the weights of vehicles follow from their masses
+    assert len(known) >= len(SEEDS) - 2
+
+
+class Tuned(cw.Damper):
+    """A damper that follows from the ratio of two inertias."""
+
+    role: ClassVar[Role] = Role.COMPOSITE
+    kind: ClassVar[str] = "tuned"
+
+    def parts(self) -> Iterator[cw.Damper]:
+        ratio = self.base.inertia / self.follower.inertia
+        yield cw.Damper(self.name, base=self.base, follower=self.follower, damping=self.damping * ratio)
+
+
+def test_what_follows_from_a_ratio_of_inertias_is_assembled():
+    d = cw.Driveline("tuned")
+    a, b = d.shaft("a", inertia=0.3, speed=1.0), d.shaft("b", inertia=0.8)
+    d.add(Tuned("t", base=a, follower=b, damping=0.5))
+    system = d.assemble()
+    chosen = parameters(system, ["a.inertia"])
+    assert with_masses(system, chosen, np.array([0.4])) is None
 
 
 def test_a_gearbox_with_other_inertias_is_not_assembled():

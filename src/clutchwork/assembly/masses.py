@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 Arrays = Mapping[str, NDArray[Any]]
 
-# by so much of their size all inertias are moved to see that no more follows from them
+# by one to two such shares of their size all inertias are moved, each by another one, to see that no more follows from
+# them; the heavier of two by more, so that their order stays
 PROBE = 1e-3
 
 
@@ -60,7 +61,9 @@ class Masses:
 
     def _is_all(self, system: System, source: Model) -> bool:
         """Whether nothing else changes, seen by moving all."""
-        moved = {name: float(self.inertia[place]) * (1.0 + PROBE) for name, place in self.places.items()}
+        rank = {place: number / len(self._order) for number, place in enumerate(self._order)}
+        share = {name: 1.0 + PROBE * (1.0 + rank[place]) for name, place in self.places.items()}
+        moved = {name: float(self.inertia[place]) * share[name] for name, place in self.places.items()}
         given = assembled(changed_model(source, moved), system.wanted)["arrays"]
         own = {**system.arrays, **(self.arrays(moved) or {})}
         return all(given[name].tobytes() == array.tobytes() for name, array in own.items())

@@ -21,9 +21,9 @@ class Hook:
 
 HOOKS = (
     Hook(("edges", "edge"), "Kinked", ("torque", "law", "contact"), "kinks over the rate or the slip"),
-    Hook(("margin", "cross", "turns"), "SwitchingLaw", ("torque", "law"), "smooth pieces that its own states switch"),
-    Hook(("margin", "cross"), "SwitchingProcess", ("process",), "smooth pieces that its states and inputs switch"),
-    Hook(("settle",), "Settling", ("torque",), "pieces that follow from where it is, after a jump too"),
+    Hook(("margin", "cross", "turns"), "SwitchingLaw", ("torque", "law"), "pieces that its states or inputs switch"),
+    Hook(("margin", "cross"), "SwitchingProcess", ("process", "flow"), "pieces that its states and inputs switch"),
+    Hook(("settle",), "Settling", ("torque", "law"), "pieces that follow from where it is, after a jump too"),
     Hook(("pace",), "Paced", ("torque",), "an oscillation of its own that steps resolve, and pieces"),
     Hook(("runs_on",), "RunningOn", ("law",), "pieces that may be left on the way back"),
     Hook(("ratio",), "TransmissionElement", ("torque",), "a varying ratio that ties its two ways, in place of torques"),

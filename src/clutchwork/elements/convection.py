@@ -5,7 +5,7 @@ from __future__ import annotations
 from clutchwork.declare import Component, Points, Role, SignalLike, ThermalNode, component, curve, port, signal
 
 
-@component(Role.FLOW)
+@component(Role.FLOW, hooks=("margin", "cross"))
 class Convection(Component):
     """Heat flow `conductance * (temperature of hot - temperature of cold)`, its conductance a table over abs(speed).
 

@@ -22,7 +22,7 @@ from clutchwork.laws.bases.tables import Found, few_points
 from clutchwork.signals.bases.waveform import value
 
 
-@component(Role.PROCESS, states=(State("clamp_force", "N", "force on the linings"),))
+@component(Role.PROCESS, states=(State("clamp_force", "N", "force on the linings"),), hooks=("margin", "cross"))
 class DiaphragmSpring(Component):
     """Clamp force over the travel of the release bearing, as a table.
 

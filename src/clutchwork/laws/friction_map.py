@@ -8,7 +8,7 @@ from clutchwork.declare import Role, SignalLike, component, numbers, signal
 from clutchwork.laws.bases.tables import Found, Tabulated, continued, crossing, few_points, slip_axis
 
 
-@component(Role.LAW, hooks=("edges", "edge", "outside", "fits"))
+@component(Role.LAW, hooks=("edges", "edge", "outside", "fits", "margin", "cross", "turns", "settle"))
 class FrictionMap(Tabulated):
     """Static coefficient over the temperature, kinetic coefficient over temperature and abs(slip).
 

@@ -6,7 +6,7 @@ from clutchwork.declare import Points, Role, SignalLike, component, curve, signa
 from clutchwork.laws.bases.tables import Found, Tabulated, continued, crossing, few_points, not_positive
 
 
-@component(Role.LAW, hooks=("outside",))
+@component(Role.LAW, hooks=("outside", "margin", "cross", "turns", "settle"))
 class TemperatureTable(Tabulated):
     """Static and kinetic coefficient over the temperature, both at the same temperatures.
 

@@ -206,8 +206,9 @@ concept ProcessElement = requires(const typename E::template Params<double>& p, 
   { E::inputs } -> std::convertible_to<int>;
 };
 
-/// Process that changes between smooth pieces by its states and inputs: `margin` is positive inside `at.piece` and
-/// tells who is closest to leaving; `cross` gives the next piece and may move states. A margin does not look at heats.
+/// Process, or flow, that changes between smooth pieces by its states and inputs: `margin` is positive inside
+/// `at.piece` and tells who is closest to leaving; `cross` gives the next piece and may move states. A margin does not
+/// look at heats.
 template <class E>
 concept SwitchingProcess =
     requires(const typename E::template Params<double>& p, const At<double>& at, double* state, int& who) {
@@ -241,9 +242,9 @@ concept ChatteringLaw = requires {
   { L::chatters } -> std::convertible_to<bool>;
 };
 
-/// Compliant law, or torque element, that changes between smooth pieces by its own states. `margin` is positive inside
-/// `at.piece` and tells who is closest to leaving; `cross` gives the next piece and may move states (who = turned: the
-/// slip changed sign, watched where `turns`).
+/// Law, or torque element, that changes between smooth pieces by its own states or inputs; a law that sticks settles on
+/// one wherever it starts to slip. `margin` is positive inside `at.piece` and tells who is closest to leaving; `cross`
+/// gives the next piece and may move states (who = turned: the slip changed sign, watched where `turns`).
 template <class L>
 concept SwitchingLaw =
     requires(const typename L::template Params<double>& p, const At<double>& at, double* state, int& who) {
@@ -253,7 +254,7 @@ concept SwitchingLaw =
     };
 inline constexpr int turned = -1;
 
-/// Switching torque element whose piece follows from where it is, and from the present one: after a jump too.
+/// Switching law or torque element whose piece follows from where it is, and from the present one: after a jump too.
 template <class E>
 concept Settling = requires(const typename E::template Params<double>& p, const At<double>& at) {
   { E::settle(p, at) } -> std::same_as<int>;

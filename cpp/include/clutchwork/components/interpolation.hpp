@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/component.hpp>
+#include <clutchwork/components/regions.hpp>
 
 /// Tables of friction coefficients: linear or smooth, beyond their ends continued, kept or refused.
 /// docs/theory/clutches.md
@@ -114,6 +115,84 @@ CLUTCHWORK_INLINE S value_over(const auto& axis, const Manner& manner, At_&& at,
   const S inside = within(axis, manner, x);
   return table_value<S>(axis, manner, at, inside, interval_of(axis, value(inside)));
 }
+
+/// Cells of a table over an input, which no step may run over: between its points, and beyond its ends where it bends
+/// there. docs/theory/events.md, rule 12
+template <class G>
+struct Cells {
+  enum Who : int { below, above };
+  Axis<G> axis;
+  Manner manner;
+
+  int ends() const { return int(axis.count > 1 && (manner.kept() || manner.smooth())); }
+  int borders() const { return axis.count < 2 ? 0 : axis.count - 2 + 2 * ends(); }
+  G border(int i) const { return axis[i + 1 - ends()]; }
+  /// Interval of the axis whose line or cubic holds in a cell.
+  int interval(int cell) const {
+    const int last = axis.count < 2 ? 0 : axis.count - 2, i = cell - ends();
+    return i < 0 ? 0 : i > last ? last : i;
+  }
+  /// x, or the end whose value is kept in its cell.
+  template <class S>
+  S within(const S& x, int cell) const {
+    if (!manner.kept()) return x;
+    return cell <= 0 ? S(axis[0]) : cell >= borders() ? S(axis.last()) : x;
+  }
+  /// Watch both borders of a cell, over a scale.
+  template <class S>
+  void watch(const S& x, int cell, double scale, Least<S>& least) const {
+    if (cell > 0 && cell <= borders()) least.watch((x - S(border(cell - 1))) / S(scale), below);
+    if (cell >= 0 && cell < borders()) least.watch((S(border(cell)) - x) / S(scale), above);
+  }
+  /// The cell that holds x; of two the upper one.
+  int cell_of(double x) const {
+    int cell = 0;
+    while (cell < borders() && x >= value(border(cell))) ++cell;
+    return cell;
+  }
+  int next(int cell, int who) const {
+    const int to = cell + (who == above ? 1 : -1);
+    return to < 0 ? 0 : to > borders() ? borders() : to;
+  }
+};
+
+/// Law that sticks and whose coefficients are tables over the temperature, `cells` of its parameters over `warm`; its
+/// pieces are numbered by the interval between kinks over the slip first.
+template <class Law>
+struct OverTemperature {
+  // temperatures that are one [K]
+  static constexpr double scale = 1e2;
+
+  template <class P>
+  static int cell(const P& p, int piece) {
+    return piece / (Law::slips(p) + 1);
+  }
+  template <class P, class S>
+  static S margin(const P& p, const At<S>& at, int& who) {
+    Least<S> least(who);
+    Law::cells(p, at.points).watch(Law::warm(at), cell(p, at.piece), scale, least);
+    return least.margin();
+  }
+  template <class P, class T>
+  static int cross(const P& p, const At<T>& at, int who, T*) {
+    return number(p, at.piece, Law::cells(p, at.points).next(cell(p, at.piece), who));
+  }
+  template <class P, class T>
+  static int settled(const P& p, const At<T>& at) {
+    return number(p, at.piece, Law::cells(p, at.points).cell_of(value(Law::warm(at))));
+  }
+  template <class P>
+  static bool turns(const P&, int) {
+    return false;
+  }
+
+ private:
+  template <class P>
+  static int number(const P& p, int piece, int cell) {
+    const int intervals = Law::slips(p) + 1;
+    return piece % intervals + intervals * cell;
+  }
+};
 
 /// How far x is inside the ends of an axis, round-off conceded; below zero outside.
 CLUTCHWORK_INLINE double room_inside(const auto& axis, double x) {

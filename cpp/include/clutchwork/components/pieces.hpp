@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -48,18 +49,19 @@ int law_cross(const Workspace<T>& ws, const Branch<T>& b, const T* rate, int who
   });
 }
 
-/// The piece in which a switching element is where it is now.
+/// The piece in which a switching element or law is where it is now.
 template <class T>
 int settled_piece(const Workspace<T>& ws, const Branch<T>& b, const T* rate) {
-  return visit_torque(b.kind, [&](auto tag) {
+  return visit_branch(b, [&](auto tag, const T* params, const T* inputs, const T*, int) {
     using E = typename decltype(tag)::type;
     if constexpr (Settling<E>) {
-      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
-      return E::settle(p, At<T>{rate[0], ws.state + b.state, b.input, b.piece, points_of(ws), rate});
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(params);
+      return E::settle(p, At<T>{rate[0], ws.state + b.state, inputs, b.piece, points_of(ws), rate});
     }
     return b.piece;
   });
 }
+
 /// Rate at which a switching element oscillates by itself [1/s].
 template <class T>
 double own_pace(const Workspace<T>& ws, const Branch<T>& b, T rate) {
@@ -187,6 +189,10 @@ T edge_at(const Workspace<T>& ws, int direction, int i) {
   return visit_law(sys.contact_law[c], [&](auto tag) { return at(tag, ws.params + sys.contact_law_param[c]); });
 }
 
+inline bool is_settling_law(int law) {
+  return visit_law(law, [](auto tag) { return Settling<typename decltype(tag)::type>; });
+}
+
 /// The piece that holds x; at a kink the one above.
 template <class T>
 int piece_of(const Workspace<T>& ws, int direction, double x) {
@@ -200,6 +206,17 @@ int piece_of(const Workspace<T>& ws, int direction, double x) {
     }
   }
   return low;
+}
+
+/// The piece of a contact whose law sticks, at a slip.
+template <class T>
+int sliding_piece(const Workspace<T>& ws, int direction, double slip) {
+  const int interval = piece_of(ws, direction, slip);
+  if (!is_settling_law(ws.sys.contact_law[direction - ws.sys.elements])) return interval;
+  Branch<T> b = make_branch(ws, direction, forward);
+  const T rate[] = {T(slip)};
+  b.piece = interval;
+  return settled_piece(ws, b, rate);
 }
 
 }  // namespace clutchwork

@@ -21,7 +21,7 @@ void release(Workspace<T>& ws, int c, int sign) {
   const bool moving = abs(slip) > slip_tolerance(ws) && !is_tied(ws, c);
   ws.contact.mode[c] = !moving ? sign : slip > 0 ? forward : backward;
   if (moving) ws.contact.forced[c] = ws.contact.mode[c];
-  if (!ws.contact.compliant[c]) ws.piece[d] = piece_of(ws, d, moving ? abs(slip) : 0.0);
+  if (!ws.contact.compliant[c]) ws.piece[d] = sliding_piece(ws, d, moving ? abs(slip) : 0.0);
 }
 
 /// How a decision ended: all contacts have their mode, none was found, a freewheel gives way first, or prescribed
@@ -89,7 +89,7 @@ int choose_candidates(Workspace<T>& ws, int located, double tolerance) {
     if (choice == Choice::jams) return c;
     ws.decision.candidate[c] = choice == Choice::sticks;
     const bool slides = choice == Choice::slips && !ws.contact.compliant[c];
-    if (slides) ws.piece[d] = piece_of(ws, d, abs(slip) > tolerance ? abs(slip) : 0.0);
+    if (slides) ws.piece[d] = sliding_piece(ws, d, abs(slip) > tolerance ? abs(slip) : 0.0);
   }
   return -1;
 }

@@ -18,16 +18,59 @@ struct DiaphragmSpring : declared::DiaphragmSpring {
   /// Force at the present travel [N]; wear takes the fingers towards the bearing.
   template <class T, class S>
   static S wanted(const Params<T>& p, const At<S>& at) {
-    const auto axis = axis_of(p.force, at.points);
-    const Manner manner{p.interpolation, choice::Extrapolation::nearest};
-    const S pressed =
-        larger(p.ratio * at.input[Input::travel] - p.free_travel, S(0)) + p.wear_ratio * at.input[Input::wear];
-    auto force = [&](int i) { return S(axis.x[3 * i + 1]); };
-    return value_over<S>(axis, manner, force, pressed);
+    const auto table = cells(p, at.points);
+    auto force = [&](int i) { return S(table.axis.x[3 * i + 1]); };
+    const S x = table.within(pressed(p, at), at.piece / 2);
+    return table_value<S>(table.axis, table.manner, force, x, table.interval(at.piece / 2));
   }
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     rates[0] = (wanted(p, at) - at.state[0]) / p.lag;
+  }
+
+  /// Way to the nearer border of the table, and to where the bearing touches the fingers, over the table.
+  template <class T, class S>
+  static S margin(const Params<T>& p, const At<S>& at, int& who) {
+    const auto table = cells(p, at.points);
+    const double width = width_of(table.axis);
+    Least<S> least(who);
+    table.watch(pressed(p, at), at.piece / 2, width, least);
+    least.watch(S(is_free(at.piece) ? -1 : 1) * travel(p, at) / S(width), touches);
+    return least.margin();
+  }
+  /// A pedal that jumps may pass many borders.
+  template <class T>
+  static int cross(const Params<T>& p, const At<T>& at, int who, T*) {
+    if (who == touches) return at.piece ^ 1;
+    const auto table = cells(p, at.points);
+    const double x = value(pressed(p, at)), slack = border_slack * width_of(table.axis);
+    auto border = [&](int i) { return value(table.border(i)); };
+    const int next = table.next(at.piece / 2, who);
+    return 2 * settled_interval(x, table.borders(), next, slack, border) + at.piece % 2;
+  }
+
+ private:
+  // who leaves a piece: borders of the table, or the free travel
+  static constexpr int touches = 2;
+
+  static bool is_free(int piece) { return piece % 2 != 0; }
+  static double width_of(const auto& axis) {
+    const double width = value(axis.last()) - value(axis[0]);
+    return width > 0 ? width : 1;
+  }
+  template <class T, class G>
+  static Cells<G> cells(const Params<T>& p, const G* points) {
+    return {axis_of(p.force, points), Manner{p.interpolation, choice::Extrapolation::nearest}};
+  }
+  /// Way of the bearing beyond its free travel [m].
+  template <class T, class S>
+  static S travel(const Params<T>& p, const At<S>& at) {
+    return p.ratio * at.input[Input::travel] - p.free_travel;
+  }
+  template <class T, class S>
+  static S pressed(const Params<T>& p, const At<S>& at) {
+    const S worn = p.wear_ratio * at.input[Input::wear];
+    return is_free(at.piece) ? worn : travel(p, at) + worn;
   }
 };
 

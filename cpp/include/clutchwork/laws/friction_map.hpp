@@ -4,7 +4,7 @@
 namespace clutchwork::laws {
 
 /// Static coefficient over the temperature, kinetic coefficient over temperature and slip. docs/theory/clutches.md
-struct FrictionMap : declared::FrictionMap {
+struct FrictionMap : OverTemperature<FrictionMap>, declared::FrictionMap {
   template <class T>
   struct Params : Tabulated<T> {
     Curve<T> temperatures;  ///< K
@@ -30,12 +30,26 @@ struct FrictionMap : declared::FrictionMap {
     const S square = before * after;
     return S(2) * square * square / (before * before * before + after * after * after);
   }
-  /// Value over the temperature of what has the value row(i) at temperature i.
+  template <class S>
+  static const S& warm(const At<S>& at) {
+    return at.input[Input::temperature];
+  }
+  /// Kinks over the slip.
+  template <class T>
+  static int slips(const Params<T>& p) {
+    return edges(p);
+  }
+  template <class T, class G>
+  static Cells<G> cells(const Params<T>& p, const G* points) {
+    return {axis_of(p.temperatures, points), manner(p)};
+  }
+  /// Value over the temperature of what has the value row(i) at temperature i, as in a cell.
   template <class T, class S, class Row>
-  static S over_temperature(const Params<T>& p, const At<S>& at, Row&& row) {
-    const auto axis = axis_of(p.temperatures, at.points);
-    const S x = within(axis, manner(p), at.input[Input::temperature]);
-    const int k = interval_of(axis, value(x));
+  static S over_temperature(const Params<T>& p, const At<S>& at, int cell, Row&& row) {
+    const auto table = cells(p, at.points);
+    const auto axis = table.axis;
+    const S x = table.within(warm(at), cell);
+    const int k = table.interval(cell);
     const S low = row(k), high = row(k + 1), s = (x - S(axis[k])) / S(axis.width(k));
     if (!manner(p).smooth()) return not_negative(low + (high - low) * s);
     // slopes per interval; those at the ends are the secants
@@ -47,9 +61,10 @@ struct FrictionMap : declared::FrictionMap {
   template <class T, class S>
   static S slide(const Params<T>& p, const At<S>& at) {
     const auto speeds = axis_of(p.speeds, at.points), all = axis_of(p.kinetic, at.points);
-    return over_temperature(p, at, [&](int i) {
+    const int slip = at.piece % (slips(p) + 1);
+    return over_temperature(p, at, cell(p, at.piece), [&](int i) {
       auto kinetic = [&](int j) { return S(all[i * speeds.count + j]); };
-      return slip_value<S>(Kinks{speeds, manner(p)}, kinetic, at.rate, at.piece);
+      return slip_value<S>(Kinks{speeds, manner(p)}, kinetic, at.rate, slip);
     });
   }
   /// The kinetic coefficient is a floor: continued far enough, the lines of a table may cross.
@@ -57,12 +72,18 @@ struct FrictionMap : declared::FrictionMap {
   static T hold(const Params<T>& p, const At<T>& at) {
     const auto speeds = axis_of(p.speeds, at.points), all = axis_of(p.kinetic, at.points);
     const auto own = axis_of(p.static_, at.points);
-    const T still = over_temperature(p, at, [&](int i) { return T(own[i]); });
-    const T sliding = over_temperature(p, at, [&](int i) {
+    const int here = cells(p, at.points).cell_of(value(warm(at)));
+    const T still = over_temperature(p, at, here, [&](int i) { return T(own[i]); });
+    const T sliding = over_temperature(p, at, here, [&](int i) {
       auto kinetic = [&](int j) { return T(all[i * speeds.count + j]); };
       return value_over<T>(speeds, manner(p), kinetic, T(0));
     });
     return larger(still, sliding);
+  }
+  /// Wherever it starts to slip.
+  template <class T>
+  static int settle(const Params<T>& p, const At<T>& at) {
+    return settled(p, at);
   }
   /// Below zero where the map is left, which `seen` did: the slip [rad/s] or the temperature [K].
   template <class T>
@@ -70,8 +91,8 @@ struct FrictionMap : declared::FrictionMap {
     seen = at.rate;
     if (manner(p).extrapolation != choice::Extrapolation::error) return T(1);
     const double slip = room_for_slip(axis_of(p.speeds, at.points), value(at.rate));
-    const double temperature = room_inside(axis_of(p.temperatures, at.points), value(at.input[Input::temperature]));
-    if (temperature < slip) seen = at.input[Input::temperature];
+    const double temperature = room_inside(axis_of(p.temperatures, at.points), value(warm(at)));
+    if (temperature < slip) seen = warm(at);
     return T(smaller(slip, temperature));
   }
 

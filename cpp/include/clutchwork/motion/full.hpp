@@ -220,7 +220,7 @@ S whole_flow(const FullForm<T>& form, const Whole<S>& e, int f) {
   return visit_flow(sys.flow_kind[f], [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(form.ws.params + sys.flow_param[f]);
-    return E::flow(p, At<S>{S(T(0)), nullptr, e.input + sys.flow_input[f], 0, points_of(form.ws)});
+    return E::flow(p, flow_at<T, S>(form.ws, f, e.input + sys.flow_input[f]));
   });
 }
 template <class T, class S>

@@ -213,7 +213,7 @@ class LocalDerivatives {
       D input[most_inputs];
       for (int i = 0; i < E::inputs; ++i) input[i] = D::variable(ws_.in.u[sys_.flow_input[f] + i], i);
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws_.params + sys_.flow_param[f]);
-      const D q = E::flow(p, At<D>{D(0), nullptr, input, 0, sys_.points});
+      const D q = E::flow(p, flow_at<T, D>(ws_, f, input));
       auto to = [&](double* row, double sign) {
         for (int i = 0; i < E::inputs; ++i) add_reference(row, T(sign) * q.d[i], sys_.flow_input[f] + i);
         value_in(row) += sign * value(q.v);

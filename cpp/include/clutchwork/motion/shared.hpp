@@ -83,13 +83,19 @@ CLUTCHWORK_HOT At<S> process_at(const Workspace<T>& ws, int i, const S* own, con
   return At<S>{S(0), own, input, ws.shared.piece[i], points_of(ws)};
 }
 
+/// The same of flow f.
+template <class T, class S>
+CLUTCHWORK_HOT At<S> flow_at(const Workspace<T>& ws, int f, const S* input) {
+  return At<S>{S(T(0)), nullptr, input, ws.shared.piece[ws.sys.processes + f], points_of(ws)};
+}
+
 template <class T>
 T flow_value(const Workspace<T>& ws, int f) {
   const auto& sys = ws.sys;
   return visit_flow(sys.flow_kind[f], [&](auto tag) {
     using E = typename decltype(tag)::type;
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.flow_param[f]);
-    return E::flow(p, At<T>{T(0), nullptr, ws.in.u + sys.flow_input[f], 0, points_of(ws)});
+    return E::flow(p, flow_at<T, T>(ws, f, ws.in.u + sys.flow_input[f]));
   });
 }
 
@@ -229,7 +235,7 @@ void linearize_flow(Workspace<T>& ws, SharedRow<T>& row, int f) {
     S input[most_inputs];
     for (int i = 0; i < E::inputs; ++i) input[i] = S::variable(ws.in.u[sys.flow_input[f] + i], i);
     const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.flow_param[f]);
-    const S q = E::flow(p, At<S>{S(0), nullptr, input, 0, points_of(ws)});
+    const S q = E::flow(p, flow_at<T, S>(ws, f, input));
     for (int i = 0; i < E::inputs; ++i) {
       if (sys.flow_from[f] >= 0) row.add_input(sys.flow_from[f], -q.d[i], sys.flow_input[f] + i);
       if (sys.flow_to[f] >= 0) row.add_input(sys.flow_to[f], q.d[i], sys.flow_input[f] + i);

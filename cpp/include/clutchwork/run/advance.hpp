@@ -55,7 +55,7 @@ void take_initial(Workspace<T>& ws) {
   for (int i = 0; i < sys.states; ++i) ws.state[i] = T(sys.initial_state[i]);
   for (int i = 0; i < sys.nodes; ++i) ws.angle[i] = T(sys.initial_angle[i]);
   for (int d = 0; d < ws.n_directions; ++d) ws.work[d] = T(0), ws.piece[d] = 0;
-  for (int i = 0; i < sys.processes; ++i) ws.shared.piece[i] = 0;
+  for (int i = 0; i < sys.processes + sys.flows; ++i) ws.shared.piece[i] = 0;
   for (int d = 0; d < ws.n_directions; ++d) ws.heading[d] = forward, ws.branch_of[d] = -1;
   for (int p = 0; p < sys.prescribed; ++p) ws.prescribed_work[p] = T(0);
   for (int i = 0; i < sys.supplies; ++i) ws.supplied[i] = T(0);

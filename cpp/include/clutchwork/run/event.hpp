@@ -30,7 +30,8 @@ bool crowds(Workspace<T>& ws, std::int64_t count) {
   constexpr int most = 50;
   if (ws.time - ws.events.crowd_time > 1e-6) {
     ws.events.crowd_time = ws.time;
-    for (std::int64_t i = 0; i < ws.n_directions + ws.sys.inputs + ws.sys.processes; ++i) ws.events.crowd[i] = 0;
+    const std::int64_t parts = ws.sys.processes + ws.sys.flows;
+    for (std::int64_t i = 0; i < ws.n_directions + ws.sys.inputs + parts; ++i) ws.events.crowd[i] = 0;
   }
   return ++ws.events.crowd[count] > most;
 }

@@ -258,14 +258,19 @@ bool leave_event(Form& form, Step<Form>& step) {
 template <class T>
 void floor_sizes(Workspace<T>& ws) {
   constexpr double round_off = 1e-14;
-  double sum[T::seen] = {};
-  int n[T::seen] = {};
+  double sum[T::seen] = {}, sum_at_zero[T::seen] = {};
+  int n[T::seen] = {}, n_at_zero[T::seen] = {};
   auto look_at = [&](const T* number, std::int64_t count) {
     for (std::int64_t i = 0; i < count; ++i) {
       const double size = abs(value(number[i]));
-      for (int j = 0; j < T::seen && size > 0; ++j) {
+      for (int j = 0; j < T::seen; ++j) {
         const double slope = abs(number[i].seen_slope(j));
-        if (slope > 0) sum[j] += log(slope / size), ++n[j];
+        if (!(slope > 0)) continue;
+        // a word that is zero has no size: one unit, where a direction changes no others
+        if (size > 0)
+          sum[j] += log(slope / size), ++n[j];
+        else
+          sum_at_zero[j] += log(slope), ++n_at_zero[j];
       }
     }
   };
@@ -274,7 +279,9 @@ void floor_sizes(Workspace<T>& ws) {
   });
   look_at(ws.moved.points, 3 * ws.moved.plain->sys.n_points);
   for (int j = 0; j < T::seen; ++j) {
-    if (n[j] > 0) ws.moved.size[j] = round_off / ws.options.rtol * exp(sum[j] / n[j]);
+    if (n[j] + n_at_zero[j] == 0) continue;
+    const double mean = n[j] > 0 ? sum[j] / n[j] : sum_at_zero[j] / n_at_zero[j];
+    ws.moved.size[j] = round_off / ws.options.rtol * exp(mean);
   }
 }
 

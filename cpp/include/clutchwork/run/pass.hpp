@@ -88,7 +88,7 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
     heading = -heading;
   } else if (b.law < 0) {
     heading = value(rate_of(ws, b.direction)) < 0 ? backward : forward;
-  } else if (law_runs_on(b, who)) {
+  } else if (b.compliant && law_runs_on(b, who)) {
     heading = value(state[b.state + who]) < 0 ? backward : forward;
   }
   ws.piece[b.direction] = b.piece;

@@ -4,16 +4,31 @@
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/workspace.hpp>
 
-/// Processes that switch between smooth pieces: docs/theory/events.md, rule 12.
+/// Processes and flows that switch between smooth pieces: docs/theory/events.md, rule 12.
 namespace clutchwork {
 
-/// Inputs of process c at time t with their time derivatives, for given states; rate(d, slope) is that of direction d.
+/// Call f(tag, parameters, first reference, first state) for process c; those behind the last one are flows.
+template <class T, class F>
+decltype(auto) visit_process_or_flow(const Workspace<T>& ws, int c, F&& f) {
+  const auto& sys = ws.sys;
+  if (c < sys.processes) {
+    return visit_process(sys.process_kind[c], [&](auto tag) {
+      return f(tag, ws.params + sys.process_param[c], int(sys.process_input[c]), int(sys.process_state[c]));
+    });
+  }
+  const int i = c - int(sys.processes);
+  return visit_flow(sys.flow_kind[i],
+                    [&](auto tag) { return f(tag, ws.params + sys.flow_param[i], int(sys.flow_input[i]), 0); });
+}
+
+/// The n inputs from a reference on at time t with their time derivatives, for given states; rate(d, slope) is that of
+/// direction d.
 template <class T, class Rate>
-void place_process_inputs(const Workspace<T>& ws, int c, double t, const T* state, const T* rates, Rate&& rate, int n,
-                          Dual<T, 1>* out) {
+void place_process_inputs(const Workspace<T>& ws, int first, double t, const T* state, const T* rates, Rate&& rate,
+                          int n, Dual<T, 1>* out) {
   const auto& sys = ws.sys;
   for (int i = 0; i < n; ++i) {
-    const int ref = int(sys.process_input[c]) + i, code = sys.input_refs[ref], j = code - int(sys.inputs);
+    const int ref = first + i, code = sys.input_refs[ref], j = code - int(sys.inputs);
     T x = T(0), slope = T(0);
     if (j < 0) {
       x = T(signal_value(ws, code, t)), slope = T(signal_slope(ws, code, t));
@@ -34,16 +49,14 @@ void place_process_inputs(const Workspace<T>& ws, int c, double t, const T* stat
 template <class T, class Rate>
 Dual<T, 1> process_margin(const Workspace<T>& ws, int c, double t, const T* state, const T* rates, Rate&& rate,
                           int& who) {
-  const auto& sys = ws.sys;
-  return visit_process(sys.process_kind[c], [&](auto tag) {
+  return visit_process_or_flow(ws, c, [&](auto tag, const T* params, int ref, int first) {
     using E = typename decltype(tag)::type;
     using S = Dual<T, 1>;
     if constexpr (SwitchingProcess<E>) {
-      S own[E::states], input[E::inputs > 0 ? E::inputs : 1];
-      const std::int64_t first = sys.process_state[c];
+      S own[E::states > 0 ? E::states : 1], input[E::inputs > 0 ? E::inputs : 1];
       for (int i = 0; i < E::states; ++i) own[i] = S(state[first + i]), own[i].d[0] = rates[first + i];
-      place_process_inputs(ws, c, t, state, rates, rate, E::inputs, input);
-      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.process_param[c]);
+      place_process_inputs(ws, ref, t, state, rates, rate, E::inputs, input);
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(params);
       return E::margin(p, process_at<T, S>(ws, c, own, input), who);
     }
     return S(1);
@@ -53,38 +66,37 @@ Dual<T, 1> process_margin(const Workspace<T>& ws, int c, double t, const T* stat
 /// Take process c to its next piece at the present inputs; true when it moves its states.
 template <class T>
 bool process_cross(Workspace<T>& ws, int c, int who, T* state) {
-  const auto& sys = ws.sys;
-  return visit_process(sys.process_kind[c], [&](auto tag) {
+  return visit_process_or_flow(ws, c, [&](auto tag, const T* params, int ref, int first) {
     using E = typename decltype(tag)::type;
     bool moved = false;
     if constexpr (SwitchingProcess<E>) {
-      T own[E::states];
-      T* at = state + sys.process_state[c];
+      T own[E::states > 0 ? E::states : 1];
+      T* at = state + first;
       for (int i = 0; i < E::states; ++i) own[i] = at[i];
-      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.process_param[c]);
-      const T* input = ws.in.u + sys.process_input[c];
-      ws.shared.piece[c] = E::cross(p, process_at<T, T>(ws, c, own, input), who, at);
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(params);
+      ws.shared.piece[c] = E::cross(p, process_at<T, T>(ws, c, own, ws.in.u + ref), who, at);
       for (int i = 0; i < E::states; ++i) moved = moved || value(own[i] - at[i]) != 0;
     }
     return moved;
   });
 }
 
-/// The processes that switch.
+/// The processes and flows that switch.
 template <class T>
 void list_processes(Workspace<T>& ws) {
   ws.guard.n_processes = 0;
-  for (int c = 0; c < ws.sys.processes; ++c) {
-    const bool switches =
-        visit_process(ws.sys.process_kind[c], [](auto tag) { return SwitchingProcess<typename decltype(tag)::type>; });
+  for (int c = 0; c < ws.sys.processes + ws.sys.flows; ++c) {
+    const bool switches = visit_process_or_flow(
+        ws, c, [](auto tag, const T*, int, int) { return SwitchingProcess<typename decltype(tag)::type>; });
     if (switches) ws.guard.process[ws.guard.n_processes++] = c;
   }
 }
 
-/// Processes on the pieces that hold what they see now; each may pass a few on the way.
+/// Processes and flows on the pieces that hold what they see now; each may pass some on the way.
 template <class T>
 void find_process_pieces(Workspace<T>& ws) {
-  constexpr int most = 64;
+  // one piece at a time through tables of any measured size
+  constexpr int most = 4096;
   bool moved = false;
   for (int i = 0; i < ws.guard.n_processes; ++i) {
     const int c = ws.guard.process[i];

@@ -32,7 +32,7 @@ template <class T>
 void settle_pieces(Workspace<T>& ws) {
   for (int i = 0; i < ws.guard.n_switching; ++i) {
     Branch<T>& b = ws.branch[ws.guard.switching[i]];
-    if (b.law < 0) ws.piece[b.direction] = b.piece = settled_piece(ws, b, PresentRates<T>(ws, b).at);
+    ws.piece[b.direction] = b.piece = settled_piece(ws, b, PresentRates<T>(ws, b).at);
   }
 }
 

@@ -14,7 +14,7 @@ inline bool is_few(const SystemCounts& s) { return s.speeds <= few_speeds || s.t
 /// Numbers of things in a system, by which arrays are sized; for few speeds the matrices are whole.
 struct Sizes {
   std::int64_t speeds, prescribed, supplies, meters, states, shared, nodes, elements, contacts, directions, references,
-      signals, segments, processes, transmissions, loads;
+      signals, segments, flows, processes, transmissions, loads;
   bool few;
   bool full;                ///< it runs in the full form
   std::int64_t spares;      ///< most locked contacts that can depend on others
@@ -43,6 +43,7 @@ struct Sizes {
         references(s.n_input_refs + s.prescribed),
         signals(s.inputs),
         segments(s.segments),
+        flows(s.flows),
         processes(s.processes),
         transmissions(s.transmissions),
         loads(s.loads),

@@ -145,11 +145,11 @@ struct Shared {
   T *stage_rate = nullptr, *stage_torque = nullptr;               ///< of each branch at the present stage
   T *reach = nullptr, *inverse = nullptr, *rhs = nullptr;  ///< answer of the motion to a shared state; Schur complement
   int* pivot = nullptr;                                    ///< of its inversion
-  int* piece = nullptr;                                    ///< smooth piece of each process
+  int* piece = nullptr;                                    ///< smooth piece of each process, then of each flow
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    a.keep(p.piece, n.processes, 0, (1ll << 31) - 1);
+    a.keep(p.piece, n.processes + n.flows, 0, (1ll << 31) - 1);
     const auto nx = n.shared, nd = nx > 0 ? n.directions : 0;
     a.take(p.heat, nd), a.take(p.heat_rate, nd), a.take(p.heat_time, nd), a.take(p.heat_share, nd);
     a.take(p.stage_rate, nd), a.take(p.stage_torque, nd), a.take(p.reach, (n.speeds + n.states) * nx);

@@ -45,7 +45,7 @@ struct Guards {
   int *load = nullptr, *near = nullptr;  ///< contacts whose loads may pass zero; those that may in the present step
   int* gap = nullptr;                    ///< stops that are open
   int* limit = nullptr;                  ///< carriers that may break away: scratch
-  int* process = nullptr;                ///< processes that switch between pieces
+  int* process = nullptr;                ///< processes that switch between pieces, and flows behind them
   double* load_size = nullptr;           ///< largest size that the load of a contact may have, 0: not known
   double* turned_at = nullptr;           ///< [s] when the load of a contact passed zero last
   int n_lines = 0, n_switching = 0, n_chattering = 0, n_bounded = 0, n_faulty = 0, n_loads = 0, n_near = 0;
@@ -62,7 +62,7 @@ struct Guards {
     a.take(p.line, 3 * n.directions + n.contacts), a.take(p.switching, n.directions), a.take(p.chattering, n.contacts);
     a.take(p.bounded, n.contacts), a.keep(p.faulty, n.contacts, 0, n.contacts - 1);
     a.keep(p.load, n.contacts, 0, n.contacts - 1), a.take(p.near, n.contacts), a.take(p.limit, n.contacts);
-    a.take(p.load_size, n.contacts), a.take(p.turned_at, n.contacts), a.take(p.process, n.processes);
+    a.take(p.load_size, n.contacts), a.take(p.turned_at, n.contacts), a.take(p.process, n.processes + n.flows);
     a.take(p.gap, n.contacts);
   }
 };
@@ -109,12 +109,13 @@ struct EventBuffer {
   static constexpr int room = 256;
   double* at = nullptr;
   int n = 0;
-  int* crowd = nullptr;  ///< within the last microsecond: events of each direction, knots of each signal, of processes
+  int* crowd =
+      nullptr;  ///< within the last microsecond: events of each direction, knots of each signal, of processes and flows
   double crowd_time = -infinity;
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    a.keep(p.crowd, n.directions + n.signals + n.processes, 0, 1 << 30),
+    a.keep(p.crowd, n.directions + n.signals + n.processes + n.flows, 0, 1 << 30),
         a.take(p.at, event_size * (room + 2 * n.contacts));
   }
 };
