@@ -7,9 +7,9 @@ from functools import cached_property
 
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base.c_literal import literal
 from clutchwork.base.classes import dataclass
-from clutchwork.codegen.expression import expression
-from clutchwork.codegen.text import comment, enumeration, identifiers, literal, string
+from clutchwork.codegen.text import comment, enumeration, identifiers, string
 from clutchwork.declare.layout import CAUSES, EVENT, MODES, STATUS
 from clutchwork.declare.options import OPTIONS, Options
 from clutchwork.results.channels import Channel, Channels, channels
@@ -111,7 +111,7 @@ def header(model: Exported) -> Iterator[str]:
     for name, channel in model.signals.items():
         yield f"/* {comment(name)} [{comment(channel.unit)}] */"
         yield f"static inline double {model.functions[name]}(const double *row) {{"
-        value = expression(channel.evaluate, model.columns)
+        value = channel.evaluate.c(model.columns)
         yield from (*(["  (void)row;"] if "row" not in value else []), f"  return {value};", "}")
     yield from ("", "#endif")
 

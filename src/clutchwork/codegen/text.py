@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable, Iterator
 
@@ -19,13 +18,6 @@ def identifiers(prefix: str, names: Iterable[str]) -> list[str]:
             identifier = f"{plain}_{number}"
         found.append(identifier)
     return found
-
-
-def literal(value: float) -> str:
-    """A double, exactly."""
-    if math.isnan(value):
-        return "NAN"
-    return repr(float(value)) if math.isfinite(value) else ("INFINITY" if value > 0 else "-INFINITY")
 
 
 def comment(text: str) -> str:

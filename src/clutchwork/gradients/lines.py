@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.gradients.forms import weights
 from clutchwork.gradients.measures import Asked, Measure, measures
 from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.runs import Run
@@ -49,7 +48,7 @@ def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked:
     made, names = list[Line](), iter(labels)
     for one in outputs.values():
         if isinstance(one, AtTimes) and run.is_forward:
-            columns = weights(run.primal.forms[one.signal], run.primal.rows[:1]).columns
+            columns = run.primal.forms[one.signal].weights(run.primal.rows[:1]).columns
             for time, value, own in zip(one.times, *trace(run, one), strict=True):
                 size = _size(run.primal, columns, time)
                 made.append(Line(next(names), float(value), size, own, own, time, time, columns))

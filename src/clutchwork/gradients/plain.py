@@ -16,8 +16,8 @@ from clutchwork.gradients import extremes
 from clutchwork.gradients.measures import number_of
 from clutchwork.gradients.refined import Sharing, refined
 from clutchwork.gradients.steps import NO_STEPS, Steps
+from clutchwork.results.forms import all_reads
 from clutchwork.sweeps.batch import Wanted
-from clutchwork.sweeps.columns import all_needed, moved
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When
 from clutchwork.sweeps.parts import PARTS, squared_jerk
 
@@ -183,9 +183,9 @@ def over_columns(
     forms: Sequence[Mapping[str, Form]], more: Sequence[int] = ()
 ) -> tuple[list[int], list[dict[str, Form]]]:
     """Numbers of a row that signals need, and more, and their forms over these alone."""
-    columns = sorted({*all_needed(form for some in forms for form in some.values()), *more})
+    columns = sorted({*all_reads(form for some in forms for form in some.values()), *more})
     places = {column: place for place, column in enumerate(columns)}
-    return columns, [{name: moved(form, places) for name, form in some.items()} for some in forms]
+    return columns, [{name: form.over(places) for name, form in some.items()} for some in forms]
 
 
 def _jerk(run: Run, steps: Steps, form: Form) -> float:

@@ -23,10 +23,10 @@ from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.gradients.task import Task
 from clutchwork.gradients.words import Words
+from clutchwork.results.forms import all_reads
 from clutchwork.results.gradient import NoGradient
 from clutchwork.run.simulation import told
 from clutchwork.sweeps.batch import Wanted
-from clutchwork.sweeps.columns import all_needed
 
 Array = NDArray[np.float64]
 
@@ -154,7 +154,7 @@ class Runs:
         """Whether any output is made of angles or work; their derivatives are left out elsewhere."""
         columns = wiring(self.task.system).columns
         integrals = {place for part in INTEGRALS for place in range(columns[part].start, columns[part].stop)}
-        return not integrals.isdisjoint(all_needed(self.signals.plain.values()))
+        return not integrals.isdisjoint(all_reads(self.signals.plain.values()))
 
     def _with_grid(self, point: Point) -> Point:
         return point._replace(grid=np.unique(np.concatenate([self.wanted.grid, point.steps.times.ravel()])))

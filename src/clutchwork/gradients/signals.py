@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.gradients.forms import weights
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.primal import Primal
 
@@ -21,7 +20,7 @@ def signal_at(primal: Primal, name: str, rows: Places) -> Array:
 
 def add_signal(primal: Primal, name: str, rows: Places, shares: Array, into: Functional) -> None:
     """Add a weighted sum of a signal in some rows: a share of each."""
-    found = weights(primal.forms[name], primal.rows[rows])
+    found = primal.forms[name].weights(primal.rows[rows])
     into.add(rows, found.columns, found.values * shares[:, None])
     if name in primal.bent:
         into.direct += shares @ primal.bent[name][rows]

@@ -17,8 +17,8 @@ from clutchwork.gradients.discovery import PROBES
 from clutchwork.gradients.stencils import Bent, slope
 from clutchwork.gradients.words import Words
 from clutchwork.results.channels import channels
+from clutchwork.results.forms import is_of_structure
 from clutchwork.results.gradient import NoGradient
-from clutchwork.sweeps.columns import fixed
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -43,7 +43,7 @@ class SignalsAt:
     @cached_property
     def _open(self) -> tuple[str, ...]:
         """Signals whose forms may be others for other numbers."""
-        return tuple(name for name, form in self.plain.items() if not fixed(name, form))
+        return tuple(name for name, form in self.plain.items() if not is_of_structure(name, form))
 
     @cached_property
     def within(self) -> tuple[int, ...]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.gradients.forms import weights
 from clutchwork.gradients.runs import Run
 from clutchwork.gradients.signals import signal_at
 from clutchwork.sweeps.outputs import AtTimes
@@ -17,7 +16,7 @@ def trace(run: Run, one: AtTimes) -> tuple[Array, Array]:
     """Values and derivatives of a signal at its instants, of a forward run."""
     primal, tangents = run.primal, run.tangents
     rows = np.searchsorted(primal.times, one.times)
-    known, matrix = weights(primal.forms[one.signal], primal.rows[rows]), np.zeros((len(rows), primal.numbers))
+    known, matrix = primal.forms[one.signal].weights(primal.rows[rows]), np.zeros((len(rows), primal.numbers))
     for column, line in zip(known.columns.tolist(), known.values.T, strict=True):
         matrix += line[:, None] * tangents[rows, column]
     if one.signal in primal.bent:

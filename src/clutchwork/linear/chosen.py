@@ -10,7 +10,6 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.shown import shown
-from clutchwork.linear.forms import columns_of
 from clutchwork.results.channels import ACCELERATION, channels
 from clutchwork.results.forms import Mode
 
@@ -98,9 +97,9 @@ def _unusable(name: str, form: Any, integrals: Collection[int], drawn: Collectio
     """Why a signal cannot be an output, empty where it can."""
     if isinstance(form, Mode):
         return "does not change with a state; ask for the torque or the slip of the contact"
-    if any(column in drawn for column in columns_of(form)):
+    if any(column in drawn for column in form.reads()):
         return f"holds losses, which a linear system does not have; ask for '{name.rpartition('.')[0]}.power'"
-    if any(column in integrals for column in columns_of(form)):
+    if any(column in integrals for column in form.reads()):
         return f"is an integral over the run; ask for '{name.rpartition('.')[0]}.power'"
     return ""
 

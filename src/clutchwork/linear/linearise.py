@@ -12,7 +12,6 @@ from clutchwork.base.errors import UseError
 from clutchwork.declare.calls import explained
 from clutchwork.linear.chosen import Given, chosen_inputs, chosen_outputs
 from clutchwork.linear.equations import equations
-from clutchwork.linear.forms import columns_of, derivative
 from clutchwork.linear.instant import CALL, Instant, instant_of
 from clutchwork.linear.motion import Motion
 from clutchwork.linear.notes import notes
@@ -23,6 +22,7 @@ from clutchwork.results.channels import channels
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.results.forms import Form
     from clutchwork.results.trajectory import Trajectory
     from clutchwork.run.simulation import Assembles
     from clutchwork.stepping.simulator import Simulator
@@ -72,7 +72,7 @@ def _made(motion: Motion, given: list[Given], names: list[str], left_out: list[s
     instant, known = motion.instant, channels(motion.system, True, True)
     found = equations(motion, given, *_wanted(instant, names))
     n, m = len(found.states), len(given)
-    lines = np.array([derivative(known[name].evaluate, instant.row, found.row) for name in names])
+    lines = np.array([_along(known[name].evaluate, instant.row, found.row) for name in names])
     lines = lines.reshape(len(names), n + 2 * m)
     problems = list(_improper(names, given, lines, n))
     if problems:
@@ -120,6 +120,13 @@ def _free_inputs(
     return kept
 
 
+def _along(form: Form, row: Array, change: Array) -> Array:
+    """How a signal changes at a row with the numbers of that. docs/theory/linearisation.md (11)."""
+    found = form.weights(row[None, :])
+    line: Array = found.values[0] @ change[found.columns]
+    return line
+
+
 def _default_outputs(instant: Instant) -> list[str]:
     speeds = [f"{node.name}.speed" for node in instant.system.nodes]
     return [*speeds, *(state.name for state in own_states(instant.wiring) if state.counts)]
@@ -128,7 +135,7 @@ def _default_outputs(instant: Instant) -> list[str]:
 def _wanted(instant: Instant, names: Sequence[str]) -> tuple[list[int], list[int]]:
     """Nodes whose angles, and states of ambients, that the outputs follow from."""
     known, columns = channels(instant.system, True, True), instant.wiring.columns
-    used = {column for name in names for column in columns_of(known[name].evaluate)}
+    used = {column for name in names for column in known[name].evaluate.reads()}
     angles = [k for k, column in enumerate(range(columns["angle"].start, columns["angle"].stop)) if column in used]
     states = own_states(instant.wiring)
     heats = [k for k, state in enumerate(states) if not state.counts and columns["state"].start + k in used]

@@ -12,7 +12,6 @@ from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
 from clutchwork.page.copied import paths
-from clutchwork.page.forms import plain
 from clutchwork.page.knots import Dragged, chosen, refuse_controllers, roomy, with_tables
 from clutchwork.page.levers import levers
 from clutchwork.page.live import live
@@ -142,9 +141,9 @@ def _contacts(wires: Wiring, known: Channels) -> Any:
             "name": branch.name,
             "number": number,
             "mode": start + number,
-            "torque": plain(known[f"{branch.name}.torque"].evaluate),
-            "slip": plain(slip) if isinstance(slip, Slip) else None,
-            "heat": plain(heat.evaluate) if heat else None,
+            "torque": known[f"{branch.name}.torque"].evaluate.data(),
+            "slip": slip.data() if isinstance(slip, Slip) else None,
+            "heat": heat.evaluate.data() if heat else None,
         }
 
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Domain
-from clutchwork.page.forms import plain
 from clutchwork.results.channels import Channel, Channels
 from clutchwork.results.forms import Mode
 from clutchwork.results.selection import chosen
@@ -176,10 +175,10 @@ def listed(known: Channels, names: Sequence[str]) -> dict[str, dict[str, Any]]:
     slopes = [_slope(name) for name in names if _is_jerk(name, known)]
     for name in dict.fromkeys([*names, *slopes]):
         if name in known:
-            found[name] = {"unit": known[name].unit, "form": plain(known[name].evaluate)}
+            found[name] = {"unit": known[name].unit, "form": known[name].evaluate.data()}
         elif name.endswith(".jerk"):
             channel = known[_slope(name)]
-            found[name] = {"unit": JERK[channel.unit], "form": ["d", plain(channel.evaluate)]}
+            found[name] = {"unit": JERK[channel.unit], "form": ["d", channel.evaluate.data()]}
     return found
 
 

@@ -17,9 +17,8 @@ from clutchwork.base.shown import listed
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.results.channels import Channels, channels
-from clutchwork.results.forms import LOCKED
+from clutchwork.results.forms import LOCKED, all_reads, is_of_structure
 from clutchwork.sweeps.axes import Plan, systems_of
-from clutchwork.sweeps.columns import all_needed, fixed, moved
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
 from clutchwork.sweeps.parts import PARTS, squared_jerk, steps_of
 
@@ -152,7 +151,7 @@ class Batch:
     @property
     def length(self) -> int:
         """Variants of one block."""
-        columns = all_needed(self.wanted.channels[name].evaluate for name in self.wanted.all_signals)
+        columns = sorted(all_reads(self.wanted.channels[name].evaluate for name in self.wanted.all_signals))
         rows = len(self.wanted.grid) + (ROWS_EXPECTED if self.wanted.in_steps else 0)
         return max(1, min(MOST_VARIANTS, MOST_KEPT // (rows * (len(columns) + 1))))
 
@@ -278,7 +277,7 @@ class Forms:
         whole = dict[str, tuple[list[Any], NDArray[np.int64]]]()
         for name in wanted.all_signals:
             form = wanted.channels[name].evaluate
-            if fixed(name, form):
+            if is_of_structure(name, form):
                 whole[name] = [form], np.zeros(last - first, dtype=np.int64)
                 continue
             relevant = plan.relevant(name)
@@ -288,9 +287,9 @@ class Forms:
                 made[names] = [channels(system, True, True) for system in own], which
             found, which = made[names]
             whole[name] = [signals[name].evaluate for signals in found], which
-        self.columns = all_needed(form for forms, _ in whole.values() for form in forms)
+        self.columns = sorted(all_reads(form for forms, _ in whole.values() for form in forms))
         places = {column: place for place, column in enumerate(self.columns)}
-        self.forms = {name: ([moved(form, places) for form in forms], which) for name, (forms, which) in whole.items()}
+        self.forms = {name: ([form.over(places) for form in forms], which) for name, (forms, which) in whole.items()}
 
     def values(self, name: str, rows: Array, variant: Array) -> Array:
         """A signal over rows, each of which is of a variant of the block."""
