@@ -7,8 +7,8 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.base.errors import ModelError
-from clutchwork.gradients.packed import made, with_masses, words_of
 from clutchwork.gradients.parameters import parameters
+from clutchwork.gradients.system_words import made, with_masses, words_of
 from clutchwork.gradients.words import Words
 from support import free_numbers, random_drivelines, random_parts, random_stops, six_speed
 

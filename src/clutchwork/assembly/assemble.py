@@ -21,7 +21,7 @@ from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.node import is_reference
 from clutchwork.declare.rational import ONE, Row, plus, product
 from clutchwork.declare.schema import Role, inputs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.model.findings import Findings, Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
 from clutchwork.model.loads import load_arrays
@@ -30,7 +30,7 @@ from clutchwork.model.parts import Place, is_stop, place_of
 from clutchwork.model.pools import Pools
 from clutchwork.model.start import initial_angles, speed_at_start, start
 from clutchwork.model.structure import Kinematics, Mechanism, follows_load
-from clutchwork.model.transmissions import ordered
+from clutchwork.model.variable_ratios import ordered
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence

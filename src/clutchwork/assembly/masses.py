@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.assemble import Columns, assembled, chosen, mass_arrays
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
-from clutchwork.base.kept import kept
+from clutchwork.base.memoize import memoize
 from clutchwork.declare.rational import exact
 from clutchwork.model.changes import all_names, changed_model, named, target
 from clutchwork.model.findings import findings
@@ -95,7 +95,7 @@ def is_mass(name: str) -> bool:
     return name.endswith((".inertia", ".mass"))
 
 
-@kept
+@memoize
 def masses(system: System) -> Masses | None:
     """Those of a System, found once."""
     try:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.kept import kept
+from clutchwork.base.memoize import memoize
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.node import Component, Domain, Node
 from clutchwork.declare.ports import Direction, directions, port_domains, ports
@@ -109,7 +109,7 @@ class Wiring:
         return matrix
 
 
-@kept
+@memoize
 def wiring(system: System) -> Wiring:
     """The connections of a System, found once."""
     places = Places(system.nodes)

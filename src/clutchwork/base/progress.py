@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 
 N = TypeVar("N", int, float)
 
@@ -36,7 +36,7 @@ def followed(
     elif progress is False or progress is None:
         yield None
     else:
-        raise UseError(call, [f"progress is {shown(progress)}: give True, or a function of {asks}"])
+        raise UseError(call, [f"progress is {quote(progress)}: give True, or a function of {asks}"])
 
 
 def _set(bar: Any, done: float) -> None:

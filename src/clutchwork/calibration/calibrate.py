@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 from clutchwork.base.errors import UseError, near
 from clutchwork.base.paths import path_fault, path_of
 from clutchwork.base.progress import followed
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.calibration.limits import Limit
 from clutchwork.calibration.memory import Memory
 from clutchwork.calibration.method import SOLVERS
@@ -143,18 +143,18 @@ def _faults(
 ) -> list[str]:  # fmt: skip
     """What is wrong with settings."""
     found = [
-        f"{name} is {shown(value)}: give a whole number from 1 on"
+        f"{name} is {quote(value)}: give a whole number from 1 on"
         for name, value in counts.items()
         if not isinstance(value, int) or isinstance(value, bool) or value < 1
     ]
     if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
-        found.append(f"seed is {shown(seed)}: give a whole number from 0 on")
+        found.append(f"seed is {quote(seed)}: give a whole number from 0 on")
     if not isinstance(tolerance, float) or not 0.0 < tolerance < 1.0:
-        found.append(f"tolerance is {shown(tolerance)}: give a number between 0 and 1, such as 1e-10")
+        found.append(f"tolerance is {quote(tolerance)}: give a number between 0 and 1, such as 1e-10")
     for name, value, known in (("solver", solver, (*SOLVERS,)), ("robust", robust, ROBUST)):
         if value not in known:
             choices = " or ".join(map(repr, known))
-            found.append(f"{name} is {shown(value)}{near(value, known, f'give {choices}')}")
+            found.append(f"{name} is {quote(value)}{near(value, known, f'give {choices}')}")
     if file is not None and (
         fault := path_fault(os.fspath(file) if isinstance(file, os.PathLike) else file, "shift.json")
     ):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.calibration.numbers import bounds, number
 from clutchwork.calibration.terms import (
     Given,
@@ -108,9 +108,9 @@ def summed(given: Any) -> tuple[Sum | None, str]:
         found, factor = term(one), number(weight, "1")
         if found is None:
             why = "a function of the run has no derivative; " if is_computed(one) else ""
-            return None, f"{shown(one)} is not an output: {why}{SUCH}"
+            return None, f"{quote(one)} is not an output: {why}{SUCH}"
         if factor is None:
-            return None, f"the weight of {found.name} is {shown(weight)}: give a number"
+            return None, f"the weight of {found.name} is {quote(weight)}: give a number"
         made.append((found, factor))
     return (Sum(tuple(made)), "") if made else (None, f"is empty: {SUCH}")
 
@@ -135,7 +135,7 @@ class Limit:
         unit = found.unit(units)
         ends = bounds(self.lower, self.upper, unit)
         if ends is None:
-            given = " and ".join(shown(one) for one in (self.lower, self.upper) if one is not None)
+            given = " and ".join(quote(one) for one in (self.lower, self.upper) if one is not None)
             wanted = f"finite numbers{f' in {unit}' if unit else ''}, or with a unit that fits, the lower one first"
             return None, [f"limit of {name} is {given}: give {wanted}"]
         return Settled(found, *ends, name, unit), []
@@ -170,5 +170,5 @@ def limit(what: Any, lower: Any = None, upper: Any = None, *, name: str = "") ->
     name, what the report calls it. One of several values, as cw.jerk or cw.slope, is within its bounds with all.
     """
     if not isinstance(name, str):
-        raise UseError("limit", [f"name is {shown(name)}: give a string"])
+        raise UseError("limit", [f"name is {quote(name)}: give a string"])
     return Limit(what, lower, upper, name)

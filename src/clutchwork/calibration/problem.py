@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.errors import Problem as Wrong
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.calibration.limits import Limit, Settled, Sum, summed
 from clutchwork.calibration.moves import Moves, Unknown
 from clutchwork.calibration.names import Curve, curve, numbers
@@ -152,7 +152,7 @@ def problem(
 def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tuple[list[Unknown], dict[str, Parameter]]:
     """Unknowns or scatters that a mapping means, and the numbers that they move by name."""
     if not isinstance(given, Mapping) or not given:
-        mistakes.found.append(f"{what} is {shown(given)}: give names with their bounds, {SUCH}")
+        mistakes.found.append(f"{what} is {quote(given)}: give names with their bounds, {SUCH}")
         return [], {}
     made, moved = list[Unknown](), dict[str, "Parameter"]()
     for name, ends in given.items():
@@ -169,7 +169,7 @@ def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tupl
             both = pair(ends, one.unit)
             if both is None:
                 wanted = f"(low, high){f' in {one.unit}' if one.unit else ''}, or with a unit that fits"
-                mistakes.found.append(f"{what} of {name!r} is {shown(ends)}: give {wanted}, the lower one first")
+                mistakes.found.append(f"{what} of {name!r} is {quote(ends)}: give {wanted}, the lower one first")
                 break
             made.append(Unknown(one.name, VALUE, (one.name,), *both, one.unit))
     return made, moved
@@ -216,11 +216,11 @@ def _restless(goal: Sum) -> Iterable[str]:
 def _limits(given: Any, units: Units, mistakes: Mistakes) -> Iterable[Settled]:
     listed = [given] if isinstance(given, Limit) else given
     if not isinstance(listed, Iterable) or isinstance(listed, str | Mapping):
-        mistakes.found.append(f"subject_to is {shown(given)}: give a list of cw.limit('c1.heat', upper=4e4)")
+        mistakes.found.append(f"subject_to is {quote(given)}: give a list of cw.limit('c1.heat', upper=4e4)")
         return
     for one in listed:
         if not isinstance(one, Limit):
-            mistakes.found.append(f"{shown(one)} in subject_to is not a limit: give cw.limit('c1.heat', upper=4e4)")
+            mistakes.found.append(f"{quote(one)} in subject_to is not a limit: give cw.limit('c1.heat', upper=4e4)")
             continue
         found, faults = one.settled(units)
         mistakes.found += [f"subject_to: {fault}" for fault in faults]

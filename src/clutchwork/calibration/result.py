@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from clutchwork.base.above import above
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, UseError, near
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.calibration import words
 from clutchwork.calibration.corners import left
 from clutchwork.calibration.evaluate import Evaluator
@@ -188,7 +188,7 @@ class Calibration:
     def __getitem__(self, name: str) -> float:
         """A value by name; KeyError with a near name where there is none."""
         if name not in self.values:
-            raise KeyError(f"no unknown {shown(name)}{near(name, self.names)}")
+            raise KeyError(f"no unknown {quote(name)}{near(name, self.names)}")
         return self.values[name]
 
     def __str__(self) -> str:
@@ -227,9 +227,9 @@ class Calibration:
         """A limit by name; UseError where there is none, or more than one."""
         known = [one.name for one in self.problem.limits]
         if name not in known:
-            raise UseError("calibration", [f"no limit {shown(name)}{near(name, known, f'there are {known}')}"])
+            raise UseError("calibration", [f"no limit {quote(name)}{near(name, known, f'there are {known}')}"])
         if known.count(name) > 1:
-            raise UseError("calibration", [f"{known.count(name)} limits are called {shown(name)}: give each a name="])
+            raise UseError("calibration", [f"{known.count(name)} limits are called {quote(name)}: give each a name="])
         return self.problem.limits[known.index(name)]
 
 

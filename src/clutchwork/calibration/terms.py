@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.calibration.numbers import number, pair
 from clutchwork.declare.calls import explained
 from clutchwork.results.felt import WINDOW, felt_jerk
@@ -282,10 +282,10 @@ def jerk(shaft: str, window: Any = WINDOW, between: Any = None) -> Jerk:
     """
     length = number(window, "s")
     if length is None or length <= 0.0:
-        raise UseError("jerk", [f"window is {shown(window)}: give a time > 0 s, such as 0.05"])
+        raise UseError("jerk", [f"window is {quote(window)}: give a time > 0 s, such as 0.05"])
     ends = None if between is None else pair(between, "s")
     if between is not None and (ends is None or ends[1] - ends[0] < 2.0 * length):
-        raise UseError("jerk", [f"between is {shown(between)}: give two times [s], two windows apart or more"])
+        raise UseError("jerk", [f"between is {quote(between)}: give two times [s], two windows apart or more"])
     return Jerk(_named("jerk", shaft), length, ends)
 
 
@@ -318,7 +318,7 @@ def squared_slope(signal: str) -> SquaredSlope:
 
 def _named(call: str, name: object) -> str:
     if not isinstance(name, str):
-        raise UseError(call, [f"{shown(name)} is not a name; give one such as 'c1.pressure'"])
+        raise UseError(call, [f"{quote(name)} is not a name; give one such as 'c1.pressure'"])
     return name
 
 

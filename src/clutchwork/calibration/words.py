@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import floor, isfinite, log10
 from typing import TYPE_CHECKING, Protocol
 
-from clutchwork.base.text import columns, counted
+from clutchwork.base.plural import columns, counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

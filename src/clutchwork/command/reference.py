@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from clutchwork.base.errors import nearest
+from clutchwork.base.plural import columns, counted
+from clutchwork.base.quote import listed
 from clutchwork.base.shell import DONE, Example, add_command, add_json, paragraphs, tell, tell_json, width
-from clutchwork.base.shown import listed
-from clutchwork.base.text import columns, counted
 from clutchwork.declare.docs import Described, described, summary, words
 from clutchwork.declare.purposes import ELEMENT_ROLES, groups
 from clutchwork.declare.schema import Role, specs

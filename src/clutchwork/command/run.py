@@ -28,7 +28,7 @@ from clutchwork.base.shell import (
 )
 from clutchwork.command.models import add_set, system_of
 from clutchwork.command.progress import bar
-from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.wording import words_of_files
 from clutchwork.run.flags import add_options, given_options
 
 if TYPE_CHECKING:

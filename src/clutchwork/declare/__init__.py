@@ -45,7 +45,7 @@ from clutchwork.declare.schema import param as param
 from clutchwork.declare.schema import port as port
 from clutchwork.declare.schema import signal as signal
 from clutchwork.declare.schema import text as text
-from clutchwork.declare.speech import say as say
+from clutchwork.declare.wording import say as say
 
 if TYPE_CHECKING:
     from clutchwork.declare.rational import exact as exact

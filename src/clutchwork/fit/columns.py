@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import FileError, near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.fit.failure import FitError, refuse
 from clutchwork.signals.bases.column_file import names_of
 from clutchwork.signals.bases.column_heads import Head, split
@@ -53,7 +53,7 @@ def _faults(path: str | Path, name: str, head: str, time: str, error: FileError)
     for quantity, message, remedy in error.problems:
         wanted = time if quantity == "time" else head
         hint = near(wanted, known) or near(split(wanted)[0], [split(one)[0] for one in known])
-        missing = known and message.endswith(f"has no column {shown(wanted)}")
+        missing = known and message.endswith(f"has no column {quote(wanted)}")
         told = f"the columns are {listed(known)}{hint}" if missing else remedy
         if quantity == "time":
             yield FitError("time", f"cannot be read: {message}", f"give time=...; {told}" if missing else told)
@@ -80,7 +80,7 @@ def _read(path: str | Path, wanted: str, time: str, group: str | None) -> Read:
     points, own = np.array(column.points), column.unit()
     scale = Head(wanted, own).scale()
     if unit and own and Head(wanted, unit).scale() != scale:
-        raise FitError("column", f"{shown(name)} is in {own} in the file, not in {unit}", "leave out the unit")
+        raise FitError("column", f"{quote(name)} is in {own} in the file, not in {unit}", "leave out the unit")
     # what the unit is worth its signal decides: a temperature, or a difference of two
     return Read(points[:, 0], (points[:, 1] - scale.zero) / scale.factor, own or unit)
 
@@ -93,7 +93,7 @@ def _span(window: Sequence[float] | None) -> tuple[float, float] | None:
     except (TypeError, ValueError):
         begin = end = 0.0
     if not begin < end:
-        raise FitError("window", f"is {shown(window)}", "give begin and end in [s], such as window=(12.5, 15.0)")
+        raise FitError("window", f"is {quote(window)}", "give begin and end in [s], such as window=(12.5, 15.0)")
     return begin, end
 
 

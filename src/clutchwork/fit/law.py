@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
 from clutchwork.declare.node import Law as LawBase
 from clutchwork.fit import table
 from clutchwork.fit.adjustable import faults
-from clutchwork.fit.elsewhere import widened
 from clutchwork.fit.experiment import advice
 from clutchwork.fit.failure import FitError, described_by_nothing
 from clutchwork.fit.intervals import Estimate, estimate
@@ -22,6 +21,7 @@ from clutchwork.fit.measurement import Measurement, measurement
 from clutchwork.fit.misfit import DESCRIBED, is_worse, patterns
 from clutchwork.fit.model import model_of
 from clutchwork.fit.ordinates import check_inside
+from clutchwork.fit.profile_intervals import widened
 from clutchwork.fit.readings import likely, of_units
 from clutchwork.fit.result import FitResult, Parameter
 from clutchwork.fit.search import Search, Solution

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
 from clutchwork.base.errors import ModelError
-from clutchwork.base.shown import shown
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.fit.descent import Descent, Ended
 from clutchwork.fit.determined import known
 from clutchwork.fit.driven import Driven, driven
 from clutchwork.fit.failure import FitError, described_by_nothing, refuse
-from clutchwork.fit.followed import Followed
+from clutchwork.fit.fitted_record import Followed
 from clutchwork.fit.losses import WIDTH, Loss
 from clutchwork.fit.misfit import is_worse
 from clutchwork.fit.numbers import Numbers, numbers
@@ -96,7 +96,7 @@ def _faults(records: list[Any], free: list[Any], own: list[Any], confidence: flo
         if isinstance(record, Record):
             yield from _taken(record, label(record, number), free, own)
         else:
-            yield FitError("records", f"hold {shown(record)}", "give each as a Record(time, measured)")
+            yield FitError("records", f"hold {quote(record)}", "give each as a Record(time, measured)")
 
 
 def _taken(record: Record, of: str, free: Sequence[str], own: Sequence[str]) -> Iterator[FitError]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.shown import listed
+from clutchwork.base.quote import listed
 from clutchwork.declare.quantity import QuantityError
 from clutchwork.declare.units import parse
 from clutchwork.fit.failure import FitError

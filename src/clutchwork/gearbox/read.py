@@ -7,7 +7,7 @@ from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 from clutchwork.base.errors import ModelError, Problem, advised
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.gearbox import checks, store
 from clutchwork.gearbox.definition import Definition
 
@@ -26,7 +26,7 @@ def read(source: Any) -> Read:
         return Read(None if found else source, found)
     if not isinstance(source, str | Mapping):
         remedy = "give a cw.Gearbox, a name of the catalogue, the path of a TOML file, or its content"
-        return Read(None, ((f"is not a gearbox: {shown(source)}", remedy),))
+        return Read(None, ((f"is not a gearbox: {quote(source)}", remedy),))
     try:
         return Read(_named(source) if isinstance(source, str) else store.from_data(source))
     except ModelError as error:

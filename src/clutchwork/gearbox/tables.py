@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from math import isnan
 from typing import TYPE_CHECKING
 
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
 from clutchwork.gearbox.analysis import capacities, states, swaps
 from clutchwork.gearbox.motion import all_combinations
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
-from clutchwork.gradients.packed import Structure, finite, made, with_masses, words_made, words_of
-from clutchwork.gradients.stencils import Bent, Rebuilt, slope
+from clutchwork.gradients.finite_differences import Bent, Rebuilt, slope
+from clutchwork.gradients.system_words import Structure, finite, made, with_masses, words_made, words_of
 from clutchwork.results.gradient import NoGradient
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import ModelError
-from clutchwork.gradients.packed import Structure, words_made
 from clutchwork.gradients.parameters import Parameter
+from clutchwork.gradients.system_words import Structure, words_made
 from clutchwork.gradients.tables import TableWords
 from clutchwork.model.changes import field_of, named, target
 

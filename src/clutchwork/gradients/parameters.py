@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.changes import UNKNOWN_SOURCE
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError, advised
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.node import Law, Signal
 from clutchwork.model.changes import Owners, Target, changeable, field_of, named, target, targets_of, unit_of
 
@@ -60,7 +60,7 @@ def parameters(system: System, by: Any) -> tuple[Parameter, ...]:
         raise ModelError([UNKNOWN_SOURCE])
     listed = [by] if isinstance(by, str) else list(by) if isinstance(by, Iterable) else []
     if not listed:
-        raise UseError("gradient", [f"by is {shown(by)}: name numbers, such as by=['c1.gain', 'engine.inertia']"])
+        raise UseError("gradient", [f"by is {quote(by)}: name numbers, such as by=['c1.gain', 'engine.inertia']"])
     owners, found, problems = named(system.source), dict[str, Parameter](), list[str]()
     for name in listed:
         try:
@@ -137,7 +137,7 @@ def _inside(value: Any, name: str) -> str:
         return advised(f"is a {kind}", f"take {inside}")
     if hasattr(value, "__len__") and not isinstance(value, str):
         return advised("is a table", f"take {name}.values or {name}.values[1]")
-    return advised(f"is {shown(value)}, which is not a number", "give it a number in the driveline")
+    return advised(f"is {quote(value)}, which is not a number", "give it a number in the driveline")
 
 
 def _entries(table: Target, name: str, which: str) -> Iterator[Parameter]:
@@ -149,7 +149,7 @@ def _entries(table: Target, name: str, which: str) -> Iterator[Parameter]:
         value, spec = field_of(table)
         declared.append(spec)
     if spec.what not in ("curve", "numbers") or not hasattr(value, "__len__"):
-        raise Unfit(f"{name} is {shown(value)}, which is not a table; take {name} itself")
+        raise Unfit(f"{name} is {quote(value)}, which is not a table; take {name} itself")
     abscissae = "" if spec.what == "numbers" else "times" if spec.unit_x == "s" else "arguments"
     if which not in ("values", abscissae):
         raise Unfit(f"{name} has no {which}; take {name}.values{abscissae and f' or {name}.{abscissae}'}")

@@ -13,7 +13,6 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import derivatives
 from clutchwork.declare.layout import DONE, INTERRUPTED
-from clutchwork.gradients.chart import Chart, Slopes
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
 from clutchwork.gradients.plain import Detail, Plain
@@ -22,6 +21,7 @@ from clutchwork.gradients.refined import Sharing
 from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.gradients.task import Task
+from clutchwork.gradients.word_map import Chart, Slopes
 from clutchwork.gradients.words import Words
 from clutchwork.results.gradient import NoGradient
 from clutchwork.run.simulation import told

@@ -17,7 +17,7 @@ from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.sweeps.words import Layout
+    from clutchwork.sweeps.system_words import Layout
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]

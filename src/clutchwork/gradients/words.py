@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from clutchwork.assembly.changes import is_right, is_right_law, ruled
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Component, Law
-from clutchwork.gradients.chart import Chart, Slopes
-from clutchwork.gradients.packed import made, words_of
+from clutchwork.gradients.system_words import made, words_of
+from clutchwork.gradients.word_map import Chart, Slopes
 from clutchwork.model.changes import named, renewed, target
 from clutchwork.model.model import Model
 

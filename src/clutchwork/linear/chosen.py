@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.linear.forms import columns_of
 from clutchwork.results.channels import ACCELERATION, channels
 from clutchwork.results.forms import Mode
@@ -137,24 +137,24 @@ def _matching(
     """
     asked = [wanted] if isinstance(wanted, str) else wanted
     if not isinstance(asked, Iterable) or isinstance(asked, bytes):
-        problems.append(f"{what} = {shown(wanted)}: must be a name, such as '*.speed', or a list of names")
+        problems.append(f"{what} = {quote(wanted)}: must be a name, such as '*.speed', or a list of names")
         return []
     names: dict[str, None] = {}
     for name in asked:
         if not isinstance(name, str):
-            problems.append(f"{what}: {shown(name)} is not a name; give names as strings, such as '*.speed'")
+            problems.append(f"{what}: {quote(name)} is not a name; give names as strings, such as '*.speed'")
         elif name in known or name in hidden:
             names[name] = None
         elif WILD & set(name):
             # brackets stand for themselves: they are part of names
             found = [other for other in known if fnmatchcase(other, name.replace("[", "[[]"))]
             if not found:
-                problems.append(f"{what}: no signal fits {shown(name)}; `{what}` may be {_some(known)}")
+                problems.append(f"{what}: no signal fits {quote(name)}; `{what}` may be {_some(known)}")
             names.update(dict.fromkeys(found))
         elif reason := unlike(name):
             problems.append(reason)
         else:
-            problems.append(f"{what}: no signal {shown(name)}{near(name, known, f'it may be {_some(known)}')}")
+            problems.append(f"{what}: no signal {quote(name)}{near(name, known, f'it may be {_some(known)}')}")
     return list(names)
 
 

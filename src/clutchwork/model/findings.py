@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.speech import of_files
+from clutchwork.declare.wording import of_files
 from clutchwork.model.kinematics import kinematics
 from clutchwork.model.loads import load_problems
 from clutchwork.model.parts import Parts, Sensor

@@ -10,9 +10,9 @@ from clutchwork.base.errors import Problem
 from clutchwork.declare.node import Domain
 from clutchwork.declare.rational import ONE, ZERO, Echelon, Row, exact, plus, smallest
 from clutchwork.declare.schema import Role, specs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.elements.bases.motion import Motion, MotionError
-from clutchwork.model.transmissions import start_grips, start_rows
+from clutchwork.model.variable_ratios import start_grips, start_rows
 from clutchwork.signals.bases.waveform import value
 from clutchwork.signals.constant import Constant
 

@@ -13,7 +13,7 @@ from clutchwork.declare.node import Component, Domain, Node
 from clutchwork.declare.ports import coefficients, ports
 from clutchwork.declare.rational import MINUS, ONE, Row, exact, plus
 from clutchwork.declare.schema import Role
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.model.numbers import as_float
 
 if TYPE_CHECKING:

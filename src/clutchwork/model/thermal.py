@@ -7,13 +7,13 @@ from typing import Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import Problem, near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare import units
 from clutchwork.declare.node import Component, Domain, HeatFlow, Node, Part, Rate, ThermalNode, is_reference
 from clutchwork.declare.ports import thermal_ports
 from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Role, Spec, specs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.model.fields import CHECKS
 from clutchwork.model.numbers import At, number_problems
 from clutchwork.model.parts import Parts, role, state_name
@@ -43,7 +43,7 @@ def thermal_problems(node: ThermalNode) -> Iterator[Problem]:
             yield from number_problems(node.limit, LIMIT, At(path, "limit", "K"))
     elif is_reference(node.temperature):
         message, remedy = "must be a number in [K] or a signal", "join the nodes by a Conduction instead"
-        yield At(path, "temperature").problem(message, shown(node.temperature), remedy)
+        yield At(path, "temperature").problem(message, quote(node.temperature), remedy)
     else:
         yield from CHECKS["signal"](node.temperature, AROUND, At(path, "temperature", "K"))
 
@@ -71,9 +71,9 @@ def port_problems(component: Component, thermal: Sequence[ThermalNode], within: 
         foreign = node.name in {other.name for other in thermal} and id(node) not in own
         if foreign or (id(node) not in own and not within.holds(node)):
             found = near(node.name, [other.name for other in thermal])
-            yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
+            yield at.inner(name).problem("belongs to another driveline", quote(node.name), f"create it here{found}")
     if role(component) is Role.FLOW and len({node.name for node in joined.values()}) < len(joined):
-        message = f"{' and '.join(joined)} are both attached to {shown(next(iter(joined.values())).name)}"
+        message = f"{' and '.join(joined)} are both attached to {quote(next(iter(joined.values())).name)}"
         yield at.problem(message, remedy="attach them to two different thermal nodes")
 
 
@@ -178,7 +178,7 @@ def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:
     own = [name for name in known.states if name.startswith(f"{target.name}.")]
     return (
         f"is an unknown state{near(state_name(value), own)}",
-        shown(state_name(value)),
+        quote(state_name(value)),
         f"known states: {listed(own)}",
     )
 
@@ -208,5 +208,5 @@ def _unit(value: Any, known: Known) -> str:
 def _words(value: Any) -> str:
     """A reference in words."""
     if isinstance(value, Rate | HeatFlow):
-        return f"{type(value).__name__} of {shown(value.of.name)}"
-    return shown(value[0].name if isinstance(value, tuple) else value.name)
+        return f"{type(value).__name__} of {quote(value.of.name)}"
+    return quote(value[0].name if isinstance(value, tuple) else value.name)

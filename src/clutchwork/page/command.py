@@ -10,7 +10,7 @@ from typing import Any
 from clutchwork.base import shell
 from clutchwork.base.errors import ModelWarning
 from clutchwork.base.writing import put
-from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.wording import words_of_files
 
 EXAMPLES = (
     ("clutchwork page model.toml", "its page, model.html, with what is usual"),

@@ -23,7 +23,7 @@ from clutchwork.page.slider import Bytes
 from clutchwork.page.sliders import names_of, sliders
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Slip
-from clutchwork.sweeps.words import Layout
+from clutchwork.sweeps.system_words import Layout
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import ModelWarning, UseError
 from clutchwork.base.paths import path_fault
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
 from clutchwork.page.data import Wanted, data_of
 from clutchwork.page.html import html
@@ -61,11 +61,11 @@ def _path_problems(path: Any) -> Iterator[str]:
     if fault:
         yield fault
     elif Path(path).suffix.lower() not in ENDINGS:
-        yield f"{shown(str(path))} does not end in .html: a page is one file of HTML"
+        yield f"{quote(str(path))} does not end in .html: a page is one file of HTML"
 
 
 def _list_problems(lists: Mapping[str, Any]) -> Iterator[str]:
     for name, given in lists.items():
         words = [given] if isinstance(given, str) else given
         if words is not None and not (isinstance(words, list | tuple) and all(isinstance(word, str) for word in words)):
-            yield f"{name} is {shown(given)}: give names, such as {name}=['F1.*']"
+            yield f"{name} is {quote(given)}: give names, such as {name}=['F1.*']"

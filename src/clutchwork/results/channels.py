@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 from clutchwork.assembly.wiring import HOUSING, Branch, GearRow, Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
-from clutchwork.base.kept import kept
-from clutchwork.base.shown import shown
+from clutchwork.base.memoize import memoize
+from clutchwork.base.quote import quote
 from clutchwork.declare.node import Domain
 from clutchwork.declare.ports import directions
-from clutchwork.declare.speech import where_signals
-from clutchwork.model.transmissions import is_transmission
+from clutchwork.declare.wording import where_signals
+from clutchwork.model.variable_ratios import is_transmission
 from clutchwork.results import heat_channels, reactions
 from clutchwork.results.forms import LOCKED as LOCKED
 from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Powers, Slip, Total
@@ -50,7 +50,7 @@ class Channel:
 
 
 def _unknown(name: object, known: Iterable[str]) -> str:
-    return f"no signal {shown(name)}{near(name, known, where_signals())}"
+    return f"no signal {quote(name)}{near(name, known, where_signals())}"
 
 
 class Units(dict[str, str]):
@@ -225,7 +225,7 @@ class Channels(Mapping[str, Channel]):
         return Linear.of(vector)
 
 
-@kept
+@memoize
 def channels(system: System, angles: bool = True, work: bool = True) -> Channels:
     """All signals of a System by name, found once; those that are not integrated are left out."""
     return Channels(wiring(system), angles=angles, work=work)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, OptionError
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import DONE, STATUSES
 from clutchwork.declare.options import Options

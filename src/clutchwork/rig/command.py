@@ -106,7 +106,7 @@ def outcomes(
 
 def listing() -> str:
     """The experiments with their settings, the laws and the presets."""
-    from clutchwork.base.text import columns
+    from clutchwork.base.plural import columns
     from clutchwork.rig import EXPERIMENTS, PRESETS
 
     lines = ["experiments"]

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.paths import fitting
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
 from clutchwork.base.writing import put_csv
 
 Cell: TypeAlias = "float | str"

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from clutchwork.declare.layout import DONE, EVENT, EVENTS_FULL, INTERRUPTED, ROWS_FULL
 
 if TYPE_CHECKING:
-    from clutchwork.run.course import Course
+    from clutchwork.run.input_schedule import Course
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, float], None]

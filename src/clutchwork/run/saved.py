@@ -19,12 +19,12 @@ from clutchwork.base import archive
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelWarning
 from clutchwork.base.paths import path_of
+from clutchwork.base.quote import listed, shortened
 from clutchwork.base.regular import reason
-from clutchwork.base.shown import listed, shortened
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES, STATUSES
 from clutchwork.declare.options import Options
-from clutchwork.declare.speech import say
+from clutchwork.declare.wording import say
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Event, Events
 from clutchwork.results.exchange.content import program
@@ -32,7 +32,7 @@ from clutchwork.results.exchange.saved import FORMAT, MOST_BYTES, RUN_PARTS, Run
 from clutchwork.results.state import State
 from clutchwork.results.trajectory import Trajectory
 from clutchwork.run.control import Control
-from clutchwork.run.course import Course, Tape
+from clutchwork.run.input_schedule import Course, Tape
 from clutchwork.run.simulation import Job
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ from dataclasses import field
 from typing import Any, NamedTuple
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.shown import printable, shortened
+from clutchwork.base.quote import printable, shortened
 from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode
 from clutchwork.declare.schema import Role, inputs, specs
 from clutchwork.model.components import component_problems

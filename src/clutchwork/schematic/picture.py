@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
 from clutchwork.declare.calls import explained_methods
 from clutchwork.results.plot.style import RC
@@ -61,7 +61,7 @@ class Schematic:
         path = fitting("save", path, "driveline.svg")
         kind = kind_of(path)
         if not kind:
-            raise UseError("save", [f"{shown(str(path))} does not say the format: end it with .svg, .png or .pdf"])
+            raise UseError("save", [f"{quote(str(path))} does not say the format: end it with .svg, .png or .pdf"])
         put(path, self._bytes(kind, dpi))
 
     def _bytes(self, kind: str, dpi: float = 200.0) -> bytes:

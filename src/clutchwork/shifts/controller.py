@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.shifts.actuation import Actuation
 from clutchwork.shifts.choice import Choice
 from clutchwork.shifts.course import Course
@@ -137,7 +137,7 @@ class ShiftController:
     def _known(self, gear: str) -> None:
         if gear != NEUTRAL and gear not in self.box.gears:
             remedy = f"choose from {listed([*self.box.gears, NEUTRAL])}"
-            raise UseError("ShiftController", [f"{shown(gear)} is not a gear of {shown(self.box.name)}; {remedy}"])
+            raise UseError("ShiftController", [f"{quote(gear)} is not a gear of {quote(self.box.name)}; {remedy}"])
 
     # --------------------------------------------------------------------------------------------------- the shift
 

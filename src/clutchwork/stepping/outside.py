@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from clutchwork.base.errors import Problem
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import has_unit
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.model.changes import Target, in_si, named, target
-from clutchwork.run.course import Act, put
+from clutchwork.run.input_schedule import Act, put
 from clutchwork.signals.table import Table
 from clutchwork.stepping.parameters import NEW_RUN, NOTHING, Change, changed
 from clutchwork.stepping.signals import Settable, given_by_others, signals, unknown
@@ -131,7 +131,7 @@ class Outside:
             and found.spec.what in ("signal", "alternative", "law")
             and not isinstance(value, int | float | None)
         ):
-            yield Problem(name, "", NOT_A_NUMBER[0], shown(value), NOT_A_NUMBER[1])
+            yield Problem(name, "", NOT_A_NUMBER[0], quote(value), NOT_A_NUMBER[1])
 
     def _acts(self, values: Mapping[str, Any], change: Change) -> Plan:
         """Acts of a change that can be done; the first has the numbers of all."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import Problem
-from clutchwork.declare.given import Wanted, field_in_si
 from clutchwork.declare.node import Segment
 from clutchwork.declare.schema import specs
+from clutchwork.declare.to_si import Wanted, field_in_si
 from clutchwork.model.fields import signal_problems
 from clutchwork.model.numbers import At
-from clutchwork.run.course import Act
+from clutchwork.run.input_schedule import Act
 from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, near
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
-from clutchwork.base.text import columns, counted
+from clutchwork.base.plural import columns, counted
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.model.changes import targets_of
 from clutchwork.studies.distributions import Choice, Distribution, distribution
@@ -95,7 +95,7 @@ class Design:
     def __getitem__(self, name: str) -> NDArray[Any]:
         """The values of a name, or their labels; KeyError with near names when there is none."""
         if name not in self.given:
-            raise UnknownName(f"the design does not vary {shown(name)}{near(name, self.given)}")
+            raise UnknownName(f"the design does not vary {quote(name)}{near(name, self.given)}")
         parts = [self.part(first, min(first + ROWS, len(self))) for first in range(0, len(self), ROWS)]
         place = self.names.index(name)
         return np.concatenate([part.varied[place].column for part in parts])
@@ -136,12 +136,12 @@ def design(
     """
     problems = list[str]()
     if not isinstance(vary, Mapping) or not vary or not all(isinstance(name, str) for name in vary):
-        problems.append(f"vary is {shown(vary)}: give distributions by name, {{'c1.gain': cw.normal(5e-4, 2e-5)}}")
+        problems.append(f"vary is {quote(vary)}: give distributions by name, {{'c1.gain': cw.normal(5e-4, 2e-5)}}")
     for name, number in (("count", count), ("seed", seed)):
         if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < (name == "count"):
-            problems.append(f"{name} is {shown(number)}: give a whole number from {int(name == 'count')} on")
+            problems.append(f"{name} is {quote(number)}: give a whole number from {int(name == 'count')} on")
     if method not in WAYS:
-        problems.append(f"method is {shown(method)}{near(method, WAYS)}; known: {', '.join(WAYS)}")
+        problems.append(f"method is {quote(method)}{near(method, WAYS)}; known: {', '.join(WAYS)}")
     if second_order and method != "saltelli":
         problems.append("second_order goes with method='saltelli' alone; remove it")
     if problems:

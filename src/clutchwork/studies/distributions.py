@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.units import split
 
@@ -162,12 +162,12 @@ def discrete(values: Any, shares: Sequence[float] | None = None) -> Choice:
     """
     labelled = isinstance(values, Mapping)
     if isinstance(values, str) or not hasattr(values, "__len__") or not len(values):
-        raise UseError("discrete", [f"values are {shown(values)}: give a list of values, or values by label"])
+        raise UseError("discrete", [f"values are {quote(values)}: give a list of values, or values by label"])
     made = tuple(values.values()) if labelled else tuple(values.tolist() if hasattr(values, "tolist") else values)
     weights = (1.0,) * len(made) if shares is None else tuple(float(share) for share in shares)
     if len(weights) != len(made) or min(weights) < 0.0 or not 0.0 < sum(weights) < np.inf:
         raise UseError(
-            "discrete", [f"shares are {shown(shares)}: give a number from 0 on for each of {len(made)} values"]
+            "discrete", [f"shares are {quote(shares)}: give a number from 0 on for each of {len(made)} values"]
         )
     return Choice(made, tuple(map(str, values)) if labelled else made, tuple(w / sum(weights) for w in weights))
 
@@ -181,7 +181,7 @@ def distribution(call: str, name: str, given: Any) -> Any:
     if isinstance(given, list | Mapping | np.ndarray):
         return discrete(given)
     ways = "cw.uniform(low, high), cw.normal(mean, deviation) or the like, (low, high), or a list to choose from"
-    raise UseError(call, [f"{name}: {shown(given)} is not a distribution; give {ways}"])
+    raise UseError(call, [f"{name}: {quote(given)} is not a distribution; give {ways}"])
 
 
 # -------------------------------------------------------------------------------------------------------------- numbers
@@ -194,7 +194,7 @@ def _read(call: str, **numbers: Any) -> tuple[list[float], str]:
         parts = split(given) if isinstance(given, str) else (given, "")
         number = parts[0] if parts else given
         if isinstance(number, bool) or not isinstance(number, int | float | np.number) or not np.isfinite(number):
-            problems.append(f"{name} is {shown(given)}: give a finite number, in SI or with a unit")
+            problems.append(f"{name} is {quote(given)}: give a finite number, in SI or with a unit")
         made.append(number)
         units.append(parts[1] if parts else "")
     if not problems and len(set(units)) > 1:

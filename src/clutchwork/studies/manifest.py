@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError
-from clutchwork.base.shown import shortened
+from clutchwork.base.quote import shortened
 from clutchwork.base.writing import put
 from clutchwork.studies.fingerprints import of_model, of_output
 from clutchwork.studies.parts import Column
 
 if TYPE_CHECKING:
-    from clutchwork.sweeps.order import Order
+    from clutchwork.sweeps.request import Order
 
 FILE = "study.json"
 MODEL = "model.cwsystem"

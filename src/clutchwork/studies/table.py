@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.base import html
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
 
 if TYPE_CHECKING:
     from clutchwork.studies.recorded import Recorded

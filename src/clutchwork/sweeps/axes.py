@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 from clutchwork.assembly.changes import UNKNOWN_SOURCE
 from clutchwork.assembly.patches import PLAIN, Unpatched, patches
 from clutchwork.base.errors import ModelError, Problem
-from clutchwork.declare.given import settled
 from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.node import Component, Law, Signal, ThermalNode
 from clutchwork.declare.quantity import has_unit
 from clutchwork.declare.schema import specs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.to_si import settled
+from clutchwork.declare.wording import path_of
 from clutchwork.model.changes import Target, renewed, targets_of
 from clutchwork.model.components import component_problems
 from clutchwork.model.fields import law_problems
@@ -34,8 +34,8 @@ from clutchwork.model.parts import role
 from clutchwork.model.thermal import thermal_problems
 from clutchwork.sweeps.driven import Driven
 from clutchwork.sweeps.mistakes import MOST_PROBLEMS, few
+from clutchwork.sweeps.system_words import Axis, Layout, Line
 from clutchwork.sweeps.variants import Codes, Variants, Varied
-from clutchwork.sweeps.words import Axis, Layout, Line
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import row_columns
 from clutchwork.base.errors import UseError, near
-from clutchwork.base.shown import listed
+from clutchwork.base.quote import listed
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.results.channels import Channels, channels
@@ -26,7 +26,7 @@ from clutchwork.sweeps.parts import PARTS, squared_jerk, steps_of
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
-    from clutchwork.sweeps.words import Axis
+    from clutchwork.sweeps.system_words import Axis
 
 Array = NDArray[Any]
 Progress = Callable[[int], None]

@@ -1,4 +1,4 @@
-"""The runs of a sweep on the workers of an engine, chunk by chunk; the same bits as in this process."""
+"""The runs of a sweep on the workers of an executor, chunk by chunk; the same bits as in this process."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.engines.choice import engine
-from clutchwork.engines.pace import chunk_size
+from clutchwork.executors.choice import executor
+from clutchwork.executors.pace import chunk_size
 from clutchwork.sweeps.batch import Block
-from clutchwork.sweeps.order import refuse_unfit
+from clutchwork.sweeps.request import refuse_unfit
 from clutchwork.sweeps.result import Missing, Sweep
 from clutchwork.sweeps.runs import ended, run_all
 from clutchwork.sweeps.variants import Variants
 
 if TYPE_CHECKING:
-    from clutchwork.engines.engine import Alive
-    from clutchwork.sweeps.order import Order
+    from clutchwork.executors.executor import Alive
+    from clutchwork.sweeps.request import Order
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ def run_on(order: Order, on: Any, threads: int, asked: int | None, told: Callabl
     whole = order.whole
     made, done, job = Sweep.empty(whole), 0, order.without_variants
     refuse_unfit(order.system, whole.variants)
-    with engine("sweep", on, threads, asked) as workers:
+    with executor("sweep", on, threads, asked) as workers:
         try:
             size = chunk_size(workers, job, len(order), lambda count: worked(job, _piece(order, 0, count)))
             with closing(workers.run(worked, job, pieces(order, size))) as all_found:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.layout import INTERRUPTED
 from clutchwork.declare.node import Signal
 from clutchwork.run.control import controllers
@@ -71,7 +71,7 @@ def _one_by_one(made: Sweep, plan: Plan, outputs: Mapping[str, Output], told: Sh
         except KeyboardInterrupt as stop:
             ended(made, stop)
         except Exception as error:
-            error.add_note(f"in variant {number} of the sweep: {shown(plan.variants[number])}")
+            error.add_note(f"in variant {number} of the sweep: {quote(plan.variants[number])}")
             raise
         made.take_one(number, found, run.status)
         told(number + 1)

@@ -14,8 +14,8 @@ from clutchwork.base.classes import dataclass
 from clutchwork.declare.options import OPTIONS
 from clutchwork.model.settings import plain_settings
 from clutchwork.results.events import UNITS, Event, Events
-from clutchwork.results.raster import at_raster
 from clutchwork.results.selection import chosen
+from clutchwork.results.time_grid import at_raster
 from clutchwork.results.units import Converter, converter
 
 if TYPE_CHECKING:

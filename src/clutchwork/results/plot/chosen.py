@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, near
 from clutchwork.base.paths import path_fault
-from clutchwork.base.shown import listed, shown
-from clutchwork.declare.speech import where_signals
+from clutchwork.base.quote import listed, quote
+from clutchwork.declare.wording import where_signals
 from clutchwork.results.plot.panels import busy, driven
 from clutchwork.results.selection import meant
 
@@ -61,7 +61,7 @@ def asked(call: str, given: Sequence[Any], path: Any, endings: Collection[str], 
             groups.append((True, tuple(one)))
         else:
             remedy = "give the name of a signal, a wildcard such as 'c1.*', or a list of names for one panel"
-            wrong.append(f"{shown(one)} is not a signal; {remedy}")
+            wrong.append(f"{quote(one)} is not a signal; {remedy}")
     if len(paths) > 1:
         wrong.append(f"there are {len(paths)} paths: {listed(paths)}; give one")
     wrong += [fault for one in paths[:1] if (fault := _path_fault(one, endings))]
@@ -84,7 +84,7 @@ def _path_fault(path: Any, endings: Collection[str]) -> str:
     fault = f"has the ending {ending!r}" if ending else "has no ending"
     remedy = f"write it to a path that ends in {known}"
     other = "; run.explore(...) writes pages" if ending == ".html" else ""
-    return f"path {shown(str(path))} {fault}; {remedy}{other}"
+    return f"path {quote(str(path))} {fault}; {remedy}{other}"
 
 
 def panels(runs: Mapping[str, Recorded], asked: Asked, unit: Any, call: str) -> list[tuple[bool, list[str]]]:
@@ -118,9 +118,9 @@ def _matching(runs: Mapping[str, Recorded], word: str) -> tuple[list[str], list[
         known = list(dict.fromkeys(name for run in runs.values() for name in run.channels))
         matching = meant(word, known)
         plain = word.replace("*", "").replace("?", "")
-        fault = f"no signal matches {shown(word)}{near(plain, known, where_signals())}"
+        fault = f"no signal matches {quote(word)}{near(plain, known, where_signals())}"
         return (matching, []) if matching else ([], [fault])
-    return [], [f"run {shown(label)}: {fault}" if label else fault for label, fault in faults.items()]
+    return [], [f"run {quote(label)}: {fault}" if label else fault for label, fault in faults.items()]
 
 
 def _fault(run: Recorded, word: str) -> str:
@@ -130,7 +130,7 @@ def _fault(run: Recorded, word: str) -> str:
     except UnknownName as error:
         for pattern in (f"{word}.*", f"*.{word}"):
             if meant(pattern, run.channels):
-                return f"no signal {shown(word)}; did you mean {pattern!r}? {where_signals()}"
+                return f"no signal {quote(word)}; did you mean {pattern!r}? {where_signals()}"
         return str(error)
     return ""
 
@@ -154,7 +154,7 @@ def _units(runs: Mapping[str, Recorded], unit: Any, call: str) -> set[str]:
         dict.fromkeys(channel.unit for run in runs.values() for channel in run.channels.values() if channel.unit)
     )
     wrong = [
-        f"unit {shown(one)}: no signal has it{near(one, known, f'units are {listed(known)}')}"
+        f"unit {quote(one)}: no signal has it{near(one, known, f'units are {listed(known)}')}"
         for one in given
         if one not in known
     ]

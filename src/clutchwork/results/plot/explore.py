@@ -10,7 +10,7 @@ import numpy as np
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.base.writing import replaced
 from clutchwork.results.plot.chosen import PAGES, Asked, Chosen, asked, panels, usual_groups
 from clutchwork.results.plot.curves import WORDS, Array, Curve, Panel, Side, panels_of, thinned, units_of
@@ -56,7 +56,7 @@ def _check_points(points: object) -> None:
     if points is None or (isinstance(points, int) and not isinstance(points, bool) and points >= FEWEST):
         return
     remedy = f"give a whole number from {FEWEST} on, or None for all of them"
-    raise UseError("explore", [f"points is {shown(points)}: {remedy}"])
+    raise UseError("explore", [f"points is {quote(points)}: {remedy}"])
 
 
 def _figure(view: View, panels: Sequence[Panel], points: int | None) -> Any:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base import html
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import quote
 from clutchwork.results.events import Event
 from clutchwork.results.plot import named
 from clutchwork.results.plot.chosen import PICTURES, Asked, Chosen, asked, panels, usual_groups
@@ -44,7 +44,7 @@ def _check_lockup(lockup: object, is_named: bool) -> None:
     if lockup is None:
         return
     if not isinstance(lockup, Event):
-        raise UseError("plot", [f"lockup is {shown(lockup)}: it must be an event, such as run.events.of('c1')[-1]"])
+        raise UseError("plot", [f"lockup is {quote(lockup)}: it must be an event, such as run.events.of('c1')[-1]"])
     if is_named:
         remedy = "give zoom=(t0, t1), or leave out the names"
         raise UseError("plot", [f"lockup is of the picture without names of signals; {remedy}"])

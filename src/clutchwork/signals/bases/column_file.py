@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import FileError, near
+from clutchwork.base.quote import listed, quote
 from clutchwork.base.regular import open_regular, reason
-from clutchwork.base.shown import listed, shown
 from clutchwork.declare.quantity import PLAIN, QuantityError
 from clutchwork.declare.units import Scale
 from clutchwork.signals.bases import sheets
@@ -54,7 +54,7 @@ class Wanted:
 
     def error(self, quantity: str, message: str, remedy: str) -> FileError:
         """A single mistake."""
-        return FileError([(quantity, f"{shown(self.path)} {message}", remedy)])
+        return FileError([(quantity, f"{quote(self.path)} {message}", remedy)])
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def read(where: str, wanted: Wanted) -> Values:
 
 def _folder(where: str) -> str:
     """The folder in which a file is looked for, in full."""
-    return shown(str(Path(where).absolute().parent))
+    return quote(str(Path(where).absolute().parent))
 
 
 def _scaled(table: Array, scales: tuple[Scale, Scale], wanted: Wanted) -> Array:
@@ -200,16 +200,16 @@ def _heads(header: list[str], wanted: Wanted) -> tuple[Head, Head]:
 def _name_fault(
     header: list[str], quantity: str, name: str, found: list[Head], asked: bool, wanted: Wanted
 ) -> tuple[str, str, str]:
-    path, texts = shown(wanted.path), list(dict.fromkeys(head.text for head in found))
+    path, texts = quote(wanted.path), list(dict.fromkeys(head.text for head in found))
     if len(texts) > 1:
-        return quantity, f"{path} has {len(found)} columns {shown(name)}", f"name one of them: {listed(texts)}"
+        return quantity, f"{path} has {len(found)} columns {quote(name)}", f"name one of them: {listed(texts)}"
     if found:
-        return quantity, f"{path} has {len(found)} columns {shown(name)}", "give every column a different name"
+        return quantity, f"{path} has {len(found)} columns {quote(name)}", "give every column a different name"
     remedy = "the first line names the columns, with commas between them"
     if asked:
         hint = near(name, header) or near(split(name)[0], [split(head)[0] for head in header])
         remedy = f"the columns are {listed(header)}{hint}"
-    return quantity, f"{path} has no column {shown(name)}", remedy
+    return quantity, f"{path} has no column {quote(name)}", remedy
 
 
 def _scales(time: Head, column: Head, wanted: Wanted) -> tuple[Scale, Scale]:
@@ -219,13 +219,13 @@ def _scales(time: Head, column: Head, wanted: Wanted) -> tuple[Scale, Scale]:
         try:
             scales.append(head.scale(units))
         except QuantityError as bad:
-            fault = f"column {shown(head.text)} of {shown(wanted.path)} {bad.message}"
+            fault = f"column {quote(head.text)} of {quote(wanted.path)} {bad.message}"
             faults.append((quantity, fault, bad.remedy))
     if faults:
         raise FileError(faults)
     factor, zero = scales[1]
     if factor != 1.0 and isclose(factor, wanted.scale):
-        fault = f"repeats the unit of column {shown(column.text)} of {shown(wanted.path)}"
+        fault = f"repeats the unit of column {quote(column.text)} of {quote(wanted.path)}"
         raise FileError([("scale", fault, "remove scale: the values are already converted by the unit of the column")])
     return scales[0], Scale(factor * wanted.scale, zero * wanted.scale)
 
@@ -265,14 +265,14 @@ def _by_cells(lines: Iterator[list[str]], header: list[str], places: tuple[int, 
             numbers.extend(pair)
             kept.append(number)
             continue
-        faults += _line_faults(line, header, places, f"line {number} of {shown(wanted.path)}")
+        faults += _line_faults(line, header, places, f"line {number} of {quote(wanted.path)}")
         if len(faults) >= MOST_FAULTS:
             break
     table = np.array(numbers).reshape(-1, 2)
     if not faults and not len(table):
         raise wanted.error("path", "has no row of numbers", "give at least one row below the header")
     for place in np.flatnonzero(np.diff(table[:, 0]) < 0.0)[:MOST_FAULTS] if not faults else ():
-        where = f"line {kept[place + 1]} of {shown(wanted.path)}"
+        where = f"line {kept[place + 1]} of {quote(wanted.path)}"
         faults.append(("time", f"{where}: its time is before that of line {kept[place]}", "sort the file by time"))
     if faults:
         raise FileError(faults[:MOST_FAULTS])
@@ -305,5 +305,5 @@ def _line_faults(
         cell = cells[place] if place < len(cells) else ""
         if _pair([cell], 1, (0, 0)) is None:
             fault = "is not a finite number" if cell else "is empty, not a finite number"
-            message = f"{where}: the cell in column {shown(header[place])} {fault}"
+            message = f"{where}: the cell in column {quote(header[place])} {fault}"
             yield quantity, message, "write a number with a decimal point"

@@ -10,9 +10,9 @@ from typing import overload
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import FileError
 from clutchwork.base.paths import path_of
+from clutchwork.base.plural import columns
+from clutchwork.base.quote import quote
 from clutchwork.base.regular import open_regular, reason
-from clutchwork.base.shown import shown
-from clutchwork.base.text import columns
 from clutchwork.declare.calls import explained
 from clutchwork.signals.bases.column_file import MOST_BYTES, as_text
 from clutchwork.signals.bases.column_heads import split
@@ -80,10 +80,10 @@ def read_columns(path: str | Path) -> FileColumns:
                 )
         return FileColumns(_of_csv(where))
     except FileNotFoundError:
-        raise FileError([("path", f"{shown(told)} does not exist", "check the path")]) from None
+        raise FileError([("path", f"{quote(told)} does not exist", "check the path")]) from None
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         why = reason(error) if isinstance(error, OSError) else "it is not UTF-8 text"
-        raise FileError([("path", f"{shown(told)} cannot be read: {why}", "give a file of measurements")]) from None
+        raise FileError([("path", f"{quote(told)} cannot be read: {why}", "give a file of measurements")]) from None
 
 
 def _of_csv(path: Path) -> list[Listed]:

@@ -13,7 +13,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.assembled import Assembled
 from clutchwork.gradients.discovery import identity, tables, together
-from clutchwork.gradients.packed import Structure
+from clutchwork.gradients.system_words import Structure
 from clutchwork.gradients.tables import TableWords
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from clutchwork.base.errors import Problem
 from clutchwork.declare.rational import Row, exact, plus
 from clutchwork.declare.schema import Role
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.elements.bases.stop import Stop
 
 if TYPE_CHECKING:

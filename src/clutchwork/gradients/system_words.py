@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from clutchwork.assembly.masses import is_mass, masses
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelWarning
-from clutchwork.base.kept import kept
+from clutchwork.base.memoize import memoize
 from clutchwork.declare.layout import FIELDS
 from clutchwork.gradients.parameters import Parameter, changes
-from clutchwork.sweeps.words import Layout
+from clutchwork.sweeps.system_words import Layout
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -56,7 +56,7 @@ def with_masses(system: System, parameters: Sequence[Parameter], x: Array) -> Ar
     return words
 
 
-@kept
+@memoize
 def layout(system: System) -> Layout:
     """Where the arrays of a System begin, found once."""
     return Layout.of(system)
