@@ -1,4 +1,4 @@
-"""What a component may say of itself: fields, units, nodes, roles. The layout of the core and the options of a run.
+"""Declarations of components: fields, units, nodes, roles. The layout of the core and the options of a run.
 
 A declaration imports what it needs from here; the modules inside import each other.
 """

@@ -1,1 +1,1 @@
-"""Where many tasks run: threads of this process, processes of Ray or of Dask, here or on other machines."""
+"""Executors of many runs: threads of this process, or processes of Ray or Dask."""
