@@ -11,14 +11,14 @@ from clutchwork.base.paths import path_fault, path_of
 from clutchwork.base.progress import followed
 from clutchwork.base.quote import quote
 from clutchwork.calibration.limits import Limit
-from clutchwork.calibration.memory import Memory
+from clutchwork.calibration.memory import Checkpoint
 from clutchwork.calibration.method import SOLVERS
-from clutchwork.calibration.problem import Mistakes, Problem, problem, refuse_bounds
-from clutchwork.calibration.result import Asked, Calibration, CalibrationInterrupted, found_by
+from clutchwork.calibration.problem import CalibrationProblem, Mistakes, problem, refuse_bounds
+from clutchwork.calibration.result import Calibration, CalibrationInterrupted, SearchSettings, found_by
 from clutchwork.calibration.scatter import Scatter
-from clutchwork.calibration.search import Search
-from clutchwork.calibration.solving import Way
-from clutchwork.calibration.terms import Span
+from clutchwork.calibration.search import MultiStartSearch
+from clutchwork.calibration.solving import SearchMethod
+from clutchwork.calibration.terms import TimeSpan
 from clutchwork.calibration.threads import one_thread
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
@@ -91,18 +91,18 @@ def calibrate(
     counts = {"starts": starts, "samples": samples, "threads": threads, "iterations": iterations}
     mistakes.found += _faults(counts, seed, tolerance, solver, robust, file)
     wanted = mistakes.caught(
-        lambda: problem(system, Span(plain.t_start, end), free, minimise, subject_to, scatter), None
+        lambda: problem(system, TimeSpan(plain.t_start, end), free, minimise, subject_to, scatter), None
     )
     if wanted is not None and wanted.scatter and robust == "mean":
         mistakes.found += _no_mean(wanted)
     if mistakes.found or wanted is None:
         raise UseError("calibrate", mistakes.found)
     refuse_bounds(wanted)
-    asked = Asked(plain, solver, starts, samples, robust, threads, seed, tolerance, iterations)
+    asked = SearchSettings(plain, solver, starts, samples, robust, threads, seed, tolerance, iterations)
     return searched(wanted, asked, None if file is None else path_of("calibrate", file, "shift.json"), progress)
 
 
-def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) -> Calibration:
+def searched(wanted: CalibrationProblem, asked: SearchSettings, file: Path | None, progress: Any) -> Calibration:
     """What a search finds."""
     outputs = {str(number): one for number, one in enumerate(wanted.outputs)}
     function: Any = None
@@ -114,13 +114,13 @@ def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) ->
     spread = None
     if wanted.scatter:
         spread = Scatter.of(wanted, asked.samples, asked.seed, asked.robust == "worst")
-    way = Way(
+    way = SearchMethod(
         SOLVERS[asked.solver], asked.tolerance, asked.iterations, asked.starts, asked.threads, asked.seed, spread
     )  # fmt: skip
-    memory = Memory(file, wanted, asked.identity)
+    memory = Checkpoint(file, wanted, asked.identity)
     most = asked.starts * asked.iterations
     with followed(progress, most, "calibrate", "(points, most)", unit=" points") as told, one_thread():
-        search = Search(wanted, function, way, memory, told)
+        search = MultiStartSearch(wanted, function, way, memory, told)
         try:
             search.run()
         except KeyboardInterrupt:
@@ -130,7 +130,7 @@ def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) ->
         return found_by(search, asked)
 
 
-def _no_mean(wanted: Problem) -> list[str]:
+def _no_mean(wanted: CalibrationProblem) -> list[str]:
     """The largest of many values has no mean over production."""
     if not wanted.goal.is_several(wanted.span, wanted.curves):
         return []

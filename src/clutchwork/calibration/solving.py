@@ -38,7 +38,7 @@ PILOTS = 8
 
 
 @dataclass(frozen=True)
-class Way:
+class SearchMethod:
     """How to search."""
 
     solver: Solver
@@ -60,7 +60,7 @@ class Way:
 class Solving:
     """The way from a start to its end."""
 
-    way: Way
+    way: SearchMethod
 
     def solved(self, scaled: Scaled) -> Array:
         """Where the search ends: the solver where all is smooth, limits first, then boxes where there are corners."""

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from clutchwork.codegen.text import literal
-from clutchwork.results.forms import LOCKED, Affine, Column, Form, Linear, Mode, Power, Powers, Slip, Total
+from clutchwork.results.forms import LOCKED, Affine, Dot, Form, Mode, Power, Powers, RowEntry, Slip, Total
 
 
 def expression(form: Form, columns: list[str]) -> str:
     """The expression; `columns` holds the identifiers of all numbers of the row."""
     match form:
-        case Column(index) | Mode(index):
+        case RowEntry(index) | Mode(index):
             return _number(columns[index])
         case Affine(index, scale, offset):
             return f"{literal(offset)} + {literal(scale)} * {_number(columns[index])}"
         case Total(indices, negative):
             total = " + ".join(_number(columns[index]) for index in indices)
             return f"-({total})" if negative else total
-        case Linear(used, factors):
+        case Dot(used, factors):
             terms = [f"{literal(f)} * {_number(columns[k])}" for k, f in zip(used, factors, strict=True)]
             return " + ".join(terms) or "0.0"
         case Slip(rate, mode):

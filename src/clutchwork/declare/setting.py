@@ -19,7 +19,7 @@ from clutchwork.declare.wording import say
 LEAST, MOST = 1e-300, 1e300
 
 
-class Fault(NamedTuple):
+class Invalid(NamedTuple):
     """What is wrong with a value."""
 
     value: str  # "-1 s" as it was given
@@ -73,7 +73,7 @@ class Setting:
             return value
         return field_in_si(value, spec)
 
-    def fault(self, value: Any) -> Fault | None:
+    def fault(self, value: Any) -> Invalid | None:
         """What is wrong with a value; lists of numbers are looked at where they are used."""
         spec, value = self.spec, self.in_si(value)
         if spec.what == "numbers" or (value is None and spec.optional):
@@ -81,23 +81,23 @@ class Setting:
         if spec.choices:
             if isinstance(value, str) and value in spec.choices:
                 return None
-            return Fault(quote(value), f"must be one of {', '.join(spec.choices)}{near(value, spec.choices)}", "")
+            return Invalid(quote(value), f"must be one of {', '.join(spec.choices)}{near(value, spec.choices)}", "")
         if spec.flag:
             if isinstance(value, bool):
                 return None
-            return Fault(quote(value), say("must be true or false", "must be True or False"), f"it says {spec.doc}")
+            return Invalid(quote(value), say("must be true or false", "must be True or False"), f"it says {spec.doc}")
         if has_unit(value):
             return self.unit_fault(value)
         message = self._wrong(_as_number(value))
-        return Fault(self._shown(value), message, f"it is the {spec.doc}") if message else None
+        return Invalid(self._shown(value), message, f"it is the {spec.doc}") if message else None
 
-    def unit_fault(self, value: Any) -> Fault:
+    def unit_fault(self, value: Any) -> Invalid:
         """Why a string or a quantity of pint is not a number of this option."""
         try:
             in_si(value, self.spec.unit)
         except QuantityError as bad:
-            return Fault(bad.value, bad.message, bad.remedy)
-        return Fault(
+            return Invalid(bad.value, bad.message, bad.remedy)
+        return Invalid(
             quote(value), f"must be a {'whole ' if self.spec.whole else ''}number", f"it is the {self.spec.doc}"
         )
 

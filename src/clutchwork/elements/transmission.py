@@ -34,7 +34,7 @@ from clutchwork.elements.bases.shift_elements import DRAG, KINDS, Ends, entry, l
 from clutchwork.elements.gear import Gear
 from clutchwork.gearbox.definition import Definition
 from clutchwork.gearbox.motion import speeds
-from clutchwork.gearbox.read import Read, read
+from clutchwork.gearbox.read import ReadGearbox, read
 from clutchwork.gearbox.reader import plain
 
 EXAMPLE: Any = {
@@ -96,7 +96,7 @@ class Transmission(Heating):
                 vars(self)[field] = frozen({**table, name: own | {k: v for k, v in table[name].items() if k == "type"}})
 
     @cached_property
-    def _read(self) -> Read:
+    def _read(self) -> ReadGearbox:
         return read(self.gearbox)
 
     @cached_property

@@ -13,7 +13,7 @@ from clutchwork.declare.node import Node, ThermalNode
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.to_si import settled
 from clutchwork.files.references import References
-from clutchwork.files.values import Values
+from clutchwork.files.values import ValueReader
 from clutchwork.model.changes import PLACES, Target, changed_model, targets_of
 from clutchwork.model.fields import BROKEN
 from clutchwork.model.findings import findings
@@ -45,7 +45,7 @@ def given_values(model: Model, texts: Sequence[str], folder: str = "") -> dict[s
     return values
 
 
-class _Given(Values):
+class _Given(ValueReader):
     """Reads single values."""
 
     def read(self, name: str, aim: Target, value: Any) -> Any:

@@ -43,8 +43,8 @@ from clutchwork.base.toml_text import parsed
 from clutchwork.base.writing import put
 from clutchwork.declare.node import Domain
 from clutchwork.declare.wording import words_of_files
-from clutchwork.files.lines import Lines
-from clutchwork.files.reader import FORMAT, Reader
+from clutchwork.files.lines import LineNumbers
+from clutchwork.files.reader import FORMAT, ModelReader
 from clutchwork.files.writer import Writer, toml
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
@@ -93,7 +93,7 @@ def _from_text(path: Path, text: str) -> Model:
         raise ModelError([problem], str(path))
     with tolerable(str(path)):
         data = _parsed(path, text)
-    return from_dict(data, path.parent, str(path), Lines(text, path.suffix.lower()))
+    return from_dict(data, path.parent, str(path), LineNumbers(text, path.suffix.lower()))
 
 
 def _parsed(path: Path, text: str) -> Any:
@@ -129,9 +129,9 @@ def _no_constant(name: str) -> float:
     raise ValueError(f"{name} is not allowed in a model file")
 
 
-def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines | None = None) -> Model:
+def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: LineNumbers | None = None) -> Model:
     """A model from the content of a model file; CSV paths are relative to the folder."""
-    reader = Reader(str(folder))
+    reader = ModelReader(str(folder))
     with tolerable(source), words_of_files(), one_reading():
         model = reader.model(data)
         problems = reader.problems + findings(model, reader.incomplete).problems

@@ -12,7 +12,7 @@ from clutchwork.declare.node import Component, Domain, Node, ThermalNode
 from clutchwork.declare.options import SIMULATION
 from clutchwork.declare.wording import element_path
 from clutchwork.files.references import References
-from clutchwork.files.values import Values, element_kinds
+from clutchwork.files.values import ValueReader, element_kinds
 from clutchwork.model.fields import BROKEN
 from clutchwork.model.model import Model
 from clutchwork.model.numbers import At
@@ -23,7 +23,7 @@ FORMAT = 1
 TOP = ("format", "name", "description", "shaft", "mass", "thermal", "ambient", "element", "simulation")
 
 
-class Reader(Values):
+class ModelReader(ValueReader):
     """Turns plain data into a model and collects what is wrong with it."""
 
     def __init__(self, folder: str) -> None:

@@ -46,7 +46,7 @@ def is_path(value: Any) -> bool:
     return isinstance(value, str) and value.lower().endswith((".toml", ".json"))
 
 
-class Values:
+class ValueReader:
     """Turns the values of one file into those of fields; every mistake is collected."""
 
     def __init__(self, folder: str, elements: References) -> None:

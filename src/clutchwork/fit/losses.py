@@ -49,7 +49,7 @@ LOSSES: dict[str, Callable[[Array], tuple[Array, Array, Array]]] = {
 
 
 @dataclass(frozen=True)
-class Loss:
+class Penalty:
     """How residuals count."""
 
     kind: str = "linear"

@@ -21,7 +21,7 @@ MOST = 1e6
 SET = ("type", "planets", "equally_spaced", "efficiency")
 
 
-class Reader:
+class GearboxReader:
     """Turns plain data into a definition and collects what is wrong with it."""
 
     def __init__(self) -> None:

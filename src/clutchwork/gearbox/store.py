@@ -19,7 +19,7 @@ from clutchwork.base.regular import read_regular, reason
 from clutchwork.base.toml_text import parsed
 from clutchwork.gearbox.checks import problems
 from clutchwork.gearbox.definition import Definition
-from clutchwork.gearbox.reader import Reader
+from clutchwork.gearbox.reader import GearboxReader
 
 CATALOGUE = Path(__file__).parent / "catalogue"
 ENDINGS = (".toml", ".json")
@@ -98,7 +98,7 @@ def _parsed(path: Path, text: str) -> Any:
 
 def from_data(data: Any, source: str = "", lines: Mapping[tuple[str, str], int] | None = None) -> Definition:
     """A gearbox from the content of a file; ModelError with all mistakes."""
-    reader = Reader()
+    reader = GearboxReader()
     made = reader.definition(data)
     found = reader.problems or (problems(made) if made else [])
     if made is None or found:

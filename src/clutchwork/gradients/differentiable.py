@@ -19,13 +19,13 @@ from clutchwork.declare.options import Options
 from clutchwork.gradients.exact import Exact
 from clutchwork.gradients.parameters import parameters
 from clutchwork.gradients.settled import SIDES
-from clutchwork.gradients.task import Found, Task
+from clutchwork.gradients.task import GradientTask, GradientValues
 from clutchwork.results.channels import channels
 from clutchwork.results.gradient import Gradient
 from clutchwork.run.control import controllers
 from clutchwork.run.settings import merged, refuse_endless
 from clutchwork.run.simulation import Assembles, model_of
-from clutchwork.sweeps.batch import Wanted
+from clutchwork.sweeps.batch import CoreOutputs
 from clutchwork.sweeps.outputs import Asked, AtTimes, Computed, Output, asked
 from clutchwork.sweeps.request import threads_of
 from clutchwork.sweeps.result import unit_of
@@ -47,13 +47,13 @@ class Differentiable:
     values, `f.by` the numbers, `f.x0` holds those of the driveline. It never changes, and threads may share it.
     """
 
-    task: Task = field(repr=False)
+    task: GradientTask = field(repr=False)
     engine: Exact = field(repr=False)
     of: tuple[str, ...]
     by: tuple[str, ...]
     of_units: tuple[str, ...]  # SI
     by_units: tuple[str, ...]  # SI
-    _last: list[tuple[bytes, Found]] = field(repr=False, default_factory=list)  # optimisers ask for one point twice
+    _last: list[tuple[bytes, GradientValues]] = field(repr=False, default_factory=list)  # optimisers ask twice
 
     @property
     def x0(self) -> Array:
@@ -171,10 +171,10 @@ class Differentiable:
             self.engine.refuse_lines(points)
             raise
 
-    def _known(self, point: Array) -> Found | None:
+    def _known(self, point: Array) -> GradientValues | None:
         return next((found for key, found in self._last if key == point.tobytes()), None)
 
-    def _found(self, point: Array) -> Found:
+    def _found(self, point: Array) -> GradientValues:
         found = self._known(point)
         if found is None:
             found = self.engine.gradient(point)
@@ -246,14 +246,14 @@ def made(
         outputs = asked(of)
         _refuse(system, outputs)
         chosen = parameters(system, by)
-        Wanted.of(system, options, outputs, t_end)
+        CoreOutputs.of(system, options, outputs, t_end)
     except UseError as error:
         # outputs are those of a sweep, and say so
         raise UseError("gradient", error.problems) from None
     known = channels(system, options.angles, options.work)
     labels = [(label, unit_of(one, known)) for name, one in outputs.items() for label in _labels(name, one)]
     names, units = zip(*labels, strict=True)
-    task = Task(system, outputs, chosen, t_end, options, threads_of(threads, "gradient"), names, side)
+    task = GradientTask(system, outputs, chosen, t_end, options, threads_of(threads, "gradient"), names, side)
     by_units = tuple(one.unit for one in chosen)
     return Differentiable(task, Exact(task), names, tuple(one.name for one in chosen), units, by_units)
 

@@ -20,7 +20,7 @@ from clutchwork.gradients.grazing import crowded, decided_at_knots, jumping_toge
 from clutchwork.gradients.knots import times_of
 from clutchwork.gradients.lines import Line
 from clutchwork.gradients.primal import SAME
-from clutchwork.gradients.runs import Point, Run, Runs
+from clutchwork.gradients.runs import Run, RunPoint, Runs
 
 Mask = NDArray[np.bool_]
 
@@ -40,7 +40,7 @@ class Doubts:
     """All that is in doubt in a run."""
 
     runs: Runs
-    point: Point
+    point: RunPoint
     run: Run
     lines: Sequence[Line]
     sizes: NDArray[np.float64]  # of the numbers

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.results.forms import LOCKED, Affine, Column, Form, Linear, Mode, Power, Powers, Slip, Total
+from clutchwork.results.forms import LOCKED, Affine, Dot, Form, Mode, Power, Powers, RowEntry, Slip, Total
 
 Array = NDArray[np.float64]
 
@@ -22,13 +22,13 @@ class Weights(NamedTuple):
 def weights(form: Form, rows: Array) -> Weights:
     """The derivatives of a signal by the numbers of each row. docs/theory/gradients.md (8)."""
     match form:
-        case Column(index):
+        case RowEntry(index):
             return _equal([index], [1.0], rows)
         case Affine(index, scale):
             return _equal([index], [scale], rows)
         case Total(indices, negative):
             return _equal(indices, [-1.0 if negative else 1.0] * len(indices), rows)
-        case Linear(used, factors):
+        case Dot(used, factors):
             return _equal(used, factors, rows)
         case Slip(rate, mode):
             found = weights(rate, rows)

@@ -24,7 +24,7 @@ from clutchwork.model.model import Model
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.gradients.parameters import Parameter
+    from clutchwork.gradients.parameters import Tunable
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class Words:
     """The words of a System as functions of numbers."""
 
     system: System
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[Tunable, ...]
     _charts: list[Chart] = field(default_factory=list, repr=False)
 
     def at(self, x: Array) -> tuple[Chart, Array]:

@@ -12,7 +12,7 @@ from clutchwork.base.extras import need
 from clutchwork.base.quote import quote
 from clutchwork.declare import quantity
 from clutchwork.declare.calls import explained
-from clutchwork.declare.to_si import Wanted
+from clutchwork.declare.to_si import TargetUnit
 from clutchwork.learn.moment import Moment
 from clutchwork.learn.ranges import ranges
 from clutchwork.learn.variation import refuse_unfit, variation
@@ -64,7 +64,7 @@ def environment(
     what, bad_actions = ranges("actions", actions, True, partial(_given, system))
     seen, bad_observations = ranges("observations", observations, False, partial(_signal, system))
     varies, tried, bad_variation = variation(vary or {}, partial(_given, system))
-    times = {name: Wanted("s").number(value) for name, value in (("t_end", t_end), ("period", period))}
+    times = {name: TargetUnit("s").number(value) for name, value in (("t_end", t_end), ("period", period))}
     wrong = [*bad_actions, *bad_observations, *bad_variation]
     for name, value in times.items():
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < inf:

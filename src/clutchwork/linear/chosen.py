@@ -21,7 +21,7 @@ WILD = frozenset("*?")
 
 
 @dataclass(frozen=True)
-class Given:
+class Excitation:
     """One input: a signal of the System, or the acceleration of a prescribed speed."""
 
     name: str
@@ -31,17 +31,17 @@ class Given:
     accelerates: bool = False  # its acceleration is given; else its value
 
 
-def possible_inputs(system: System) -> dict[str, Given]:
+def possible_inputs(system: System) -> dict[str, Excitation]:
     """Everything that can be an input, by name: all signals, then the accelerations of prescribed speeds."""
     motions = {int(number): place for place, number in enumerate(system.prescribed_input)}
     known = {
-        item.name: Given(item.name, item.unit, number, motions.get(number, -1))
+        item.name: Excitation(item.name, item.unit, number, motions.get(number, -1))
         for number, item in enumerate(system.inputs)
     }
     for number, place in motions.items():
         domain = next(n.domain for n in _ports(system.motions[place]))
         name = f"{system.motions[place].name}.acceleration"
-        known.setdefault(name, Given(name, ACCELERATION[domain], number, place, accelerates=True))
+        known.setdefault(name, Excitation(name, ACCELERATION[domain], number, place, accelerates=True))
     return known
 
 
@@ -52,7 +52,7 @@ def _ports(component: Any) -> list[Any]:
     return [node for node in nodes if not node.fixed] or nodes
 
 
-def chosen_inputs(system: System, wanted: Any, problems: list[str]) -> list[Given]:
+def chosen_inputs(system: System, wanted: Any, problems: list[str]) -> list[Excitation]:
     """The inputs that were asked for; by default all signals."""
     known, unused = possible_inputs(system), wiring(system).unused
     if wanted is None:

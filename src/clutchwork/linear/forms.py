@@ -7,18 +7,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.results.forms import LOCKED, Affine, Column, Form, Linear, Power, Powers, Slip, Total
+from clutchwork.results.forms import LOCKED, Affine, Dot, Form, Power, Powers, RowEntry, Slip, Total
 
 Array = NDArray[np.float64]
 
 
 def columns_of(form: Any) -> tuple[int, ...]:
     """Numbers of the row that a signal follows from."""
-    if isinstance(form, Column | Affine):
+    if isinstance(form, RowEntry | Affine):
         return (form.index,)
     if isinstance(form, Total):
         return form.indices
-    if isinstance(form, Linear):
+    if isinstance(form, Dot):
         return tuple(form.used.tolist())
     if isinstance(form, Slip):
         return columns_of(form.rate)
@@ -31,7 +31,7 @@ def columns_of(form: Any) -> tuple[int, ...]:
 
 def derivative(form: Form, row: Array, change: Array) -> Array:
     """Derivative of a signal at a row, from those of the numbers of the row, one line each."""
-    if isinstance(form, Column):
+    if isinstance(form, RowEntry):
         line: Array = change[form.index]
         return line
     if isinstance(form, Affine):
@@ -40,7 +40,7 @@ def derivative(form: Form, row: Array, change: Array) -> Array:
     if isinstance(form, Total):
         total: Array = change[list(form.indices)].sum(axis=0)
         return -total if form.negative else total
-    if isinstance(form, Linear):
+    if isinstance(form, Dot):
         product: Array = form.factors @ change[form.used]
         return product
     if isinstance(form, Slip):

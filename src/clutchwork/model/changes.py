@@ -27,7 +27,7 @@ from clutchwork.declare.node import (
     is_reference,
 )
 from clutchwork.declare.schema import Spec, specs
-from clutchwork.declare.to_si import Wanted, field_in_si, settled
+from clutchwork.declare.to_si import TargetUnit, field_in_si, settled
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
 from clutchwork.model.problems import NODE_FIELDS
@@ -120,7 +120,7 @@ def in_si(aim: Target, value: Any) -> Any:
         spec = _spec(thing, name)
         if spec.what in SIGNALS:
             fits = settled(name, spec, type(thing), vars(thing))
-            driven = Wanted(fits.unit, fits.units)
+            driven = TargetUnit(fits.unit, fits.units)
         thing = getattr(thing, name)
     name = aim.path[-1]
     spec = _spec(thing, name)

@@ -15,7 +15,7 @@ from clutchwork.model.model import Model
 from clutchwork.model.numbers import At, is_right, number_problems
 from clutchwork.model.parts import Parts, held_positions, placed, take_apart
 from clutchwork.model.temperatures import temperature_advice
-from clutchwork.model.thermal import Known, Within, node_kind, port_problems, reference_problems, thermal_problems
+from clutchwork.model.thermal import Referents, Within, node_kind, port_problems, reference_problems, thermal_problems
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,7 +42,7 @@ def part_problems(model: Model, incomplete: Sequence[str] = ()) -> tuple[list[Pr
     problems += name_problems(nodes, elements, sound)
     # what refers to an element with mistakes is looked at once those are mended
     if not broken and not incomplete:
-        known = Known.of(nodes, thermal, elements, sound)
+        known = Referents.of(nodes, thermal, elements, sound)
         wholes = {element.name: element for element in elements}
         for part in sound.components:
             problems += reference_problems(part, wholes.get(part.name, part), known)

@@ -78,7 +78,7 @@ def port_problems(component: Component, thermal: Sequence[ThermalNode], within: 
 
 
 @dataclass(frozen=True)
-class Known:
+class Referents:
     """What inputs may refer to, by name."""
 
     states: Mapping[str, tuple[str, ...]]  # thermal node or "process.state" -> unit
@@ -89,7 +89,7 @@ class Known:
     @classmethod
     def of(
         cls, nodes: Sequence[Node], thermal: Sequence[ThermalNode], elements: Sequence[Component], parts: Parts
-    ) -> Known:
+    ) -> Referents:
         """Everything in a driveline."""
         states: dict[str, tuple[str, ...]] = {node.name: ("K",) for node in parts.thermal}
         for process in parts.components:
@@ -115,7 +115,7 @@ def _inside(component: Component) -> Iterator[Part]:
             yield from _inside(part)
 
 
-def reference_problems(component: Component, whole: Component, known: Known) -> Iterator[Problem]:
+def reference_problems(component: Component, whole: Component, known: Referents) -> Iterator[Problem]:
     """Inputs that other components give: whether those are there, and give what is wanted.
 
     `whole` is what was written: the component, or the composite that has a part of its own name.
@@ -138,7 +138,7 @@ def _temperature(component: Component, at: At) -> Iterator[Problem]:
         yield at.problem("is missing", remedy="give a temperature [K], or connect the contact by `heat` to a node")
 
 
-def _reference(value: Any, spec: Spec, at: At, component: Component, known: Known) -> Iterator[Problem]:
+def _reference(value: Any, spec: Spec, at: At, component: Component, known: Referents) -> Iterator[Problem]:
     if not _may_refer(value, role(component)):
         yield at.problem(f"must be a number{within(at.unit)} or a signal", _words(value), "give one of them")
         return
@@ -159,7 +159,7 @@ def _may_refer(value: Any, to: Role) -> bool:
     return to is not Role.MOTION
 
 
-def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:
+def _missing(value: Any, known: Referents) -> tuple[str, str, str] | None:
     """Message, value and remedy where a reference leads nowhere."""
     direct = isinstance(value, Rate | HeatFlow)
     target = value.of if direct else value[0] if isinstance(value, tuple) else value
@@ -183,7 +183,7 @@ def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:
     )
 
 
-def _foreign(target: Any, value: Any, known: Known) -> tuple[str, str, str]:
+def _foreign(target: Any, value: Any, known: Referents) -> tuple[str, str, str]:
     """A shaft, node or element that is referred to and was not added."""
     if target.name in known.parts or any(thing.name == target.name for thing in known.added.values()):
         remedy = "use the one that was added, or add this one under another name"
@@ -196,7 +196,7 @@ def _foreign(target: Any, value: Any, known: Known) -> tuple[str, str, str]:
     return "was not added to this driveline", _words(value), remedy
 
 
-def _unit(value: Any, known: Known) -> str:
+def _unit(value: Any, known: Referents) -> str:
     if isinstance(value, HeatFlow):
         return "W"
     target = value.of if isinstance(value, Rate) else value

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
-from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Powers, Slip, Total
+from clutchwork.results.forms import Affine, Dot, Form, Mode, Power, Powers, RowEntry, Slip, Total
 
 
 def plain(form: Form) -> list[Any]:
     """A form as a list: a letter, then its numbers and inner forms."""
     match form:
-        case Column(index):
+        case RowEntry(index):
             return ["c", int(index)]
         case Affine(index, scale, offset):
             return ["a", int(index), float(scale), float(offset)]
         case Total(indices, negative):
             return ["t", [int(index) for index in indices], negative]
-        case Linear(used, factors):
+        case Dot(used, factors):
             return ["l", [int(index) for index in used], [float(factor) for factor in factors]]
         case Slip(rate, mode):
             return ["s", plain(rate), int(mode)]

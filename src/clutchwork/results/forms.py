@@ -19,7 +19,7 @@ FIRST_MODE = min(MODES)
 
 
 @dataclass(frozen=True)
-class Column:
+class RowEntry:
     """A number of the row as it stands."""
 
     index: int
@@ -56,7 +56,7 @@ class Total:
 
 
 @dataclass(frozen=True, eq=False)
-class Linear:
+class Dot:
     """Product with a constant vector; columns with factor 0 are left out, for they may be infinite.
 
     Terms are added in their order, so that a row has the same value whatever rows stand beside it.
@@ -66,7 +66,7 @@ class Linear:
     factors: Array
 
     @classmethod
-    def of(cls, vector: Array) -> Linear:
+    def of(cls, vector: Array) -> Dot:
         """From a vector over the whole row."""
         used = np.flatnonzero(vector)
         return cls(used, vector[used])
@@ -81,7 +81,7 @@ class Linear:
 class Slip:
     """Slip of a contact; exactly zero while it is locked."""
 
-    rate: Linear
+    rate: Dot
     mode: int
 
     def __call__(self, rows: Rows) -> Array:
@@ -93,8 +93,8 @@ class Slip:
 class Power:
     """Product of a torque and a rate."""
 
-    torque: Total | Linear
-    rate: Linear | Slip
+    torque: Total | Dot
+    rate: Dot | Slip
 
     def __call__(self, rows: Rows) -> Array:
         """Values on a matrix of rows."""
@@ -126,4 +126,4 @@ class Mode:
         return STATE_NAMES[numbers - FIRST_MODE] if self.named else numbers
 
 
-Form = Column | Affine | Total | Linear | Slip | Power | Powers | Mode
+Form = RowEntry | Affine | Total | Dot | Slip | Power | Powers | Mode

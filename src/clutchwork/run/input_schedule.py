@@ -18,7 +18,7 @@ Numbers = tuple[tuple[int, Any], ...]
 KINDS = ("input", "release", "param", "control", "segments")
 
 
-class Course(Protocol):
+class Schedule(Protocol):
     """Stretches of a run from one instant to the next."""
 
     def stops(self, begin: float, t_end: float) -> Iterator[float]:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.results.channels import Channels
     from clutchwork.results.state import State
-    from clutchwork.run.input_schedule import Course
+    from clutchwork.run.input_schedule import Schedule
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ class Job:
     system: System
     t_end: float
     options: Options
-    course: Course
+    course: Schedule
     start: State | None = None
 
     @property

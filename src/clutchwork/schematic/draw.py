@@ -13,7 +13,7 @@ from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, in_si
 from clutchwork.model.model import Model
 from clutchwork.schematic.diagram import diagram
-from clutchwork.schematic.moment import Moment, instant
+from clutchwork.schematic.moment import Snapshot, instant
 from clutchwork.schematic.picture import Schematic, kind_of
 from clutchwork.schematic.sheet import sheet
 
@@ -41,7 +41,7 @@ def drawn(
     if problems:
         raise UseError("draw", problems)
     found = diagram(model)
-    moment = Moment()
+    moment = Snapshot()
     if run is not None:
         moment = instant(run, float(run.time[-1]) if time is None else float(time), power=power)
     made = Schematic(found.name, sheet(found, moment, values=values, width=width * POINTS), moment.time)

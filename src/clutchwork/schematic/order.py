@@ -26,10 +26,10 @@ class _Line:
 
 def ordered(layers: Layers) -> list[list[int]]:
     """The spots of each layer from top to bottom."""
-    return _Search(layers).best()
+    return _OrderSearch(layers).best()
 
 
-class _Search:
+class _OrderSearch:
     """Sweeps over the layers, each sorted by where its neighbours are, then by exchanging neighbours."""
 
     def __init__(self, layers: Layers) -> None:

@@ -17,7 +17,7 @@ from clutchwork.base.plural import columns, counted
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.model.changes import targets_of
-from clutchwork.studies.distributions import Choice, Distribution, distribution
+from clutchwork.studies.distributions import Discrete, Distribution, distribution
 from clutchwork.studies.points import METHODS, Points
 from clutchwork.sweeps.variants import Variants, Varied
 
@@ -63,7 +63,7 @@ class Design:
 
     def _varied(self, name: str, how: Any, share: NDArray[np.float64]) -> Varied:
         unit = self.units.get(name, "")
-        if isinstance(how, Choice):
+        if isinstance(how, Discrete):
             return Varied(name, how.values, how.labels, how.codes(share), unit)
         values = tuple(np.asarray(how.quantile(share) if isinstance(how, Distribution) else how.ppf(share)).tolist())
         return Varied(name, values, values, np.arange(len(values), dtype=np.int64), unit)
@@ -77,9 +77,9 @@ class Design:
             def of(value: Any, name: str = name) -> Any:
                 return _si(model, name, (value,)).values[0]
 
-            found = _si(model, name, how.values if isinstance(how, Choice) else (1.0,))
+            found = _si(model, name, how.values if isinstance(how, Discrete) else (1.0,))
             units[name], made[name] = found.unit, how
-            if isinstance(how, Choice):
+            if isinstance(how, Discrete):
                 labels = found.labels if how.labels == how.values else how.labels
                 made[name] = replace(how, values=found.values, labels=labels)
             elif isinstance(how, Distribution) and how.unit:
@@ -159,7 +159,7 @@ def _si(model: Model, name: str, values: tuple[Any, ...]) -> Varied:
 
 def _said(how: Any) -> str:
     """A distribution in words; of scipy.stats its name and numbers."""
-    if isinstance(how, Distribution | Choice):
+    if isinstance(how, Distribution | Discrete):
         return str(how)
     numbers = [f"{number:g}" for number in getattr(how, "args", ())]
     numbers += [f"{name}={number:g}" for name, number in getattr(how, "kwds", {}).items()]

@@ -63,7 +63,7 @@ class Distribution:
 
 
 @dataclass(frozen=True)
-class Choice:
+class Discrete:
     """Values of any kind, each with its share."""
 
     values: tuple[Any, ...]
@@ -154,7 +154,7 @@ def triangular(low: Any, mode: Any, high: Any) -> Distribution:
 
 
 @explained("cw.discrete", values="[0.1, 0.2]")
-def discrete(values: Any, shares: Sequence[float] | None = None) -> Choice:
+def discrete(values: Any, shares: Sequence[float] | None = None) -> Discrete:
     """One of several values of any kind, numbers, friction laws or signals, for `design`.
 
     Parameters: values, a list, or a mapping from labels to values; shares, how often each is drawn, all alike by
@@ -169,12 +169,12 @@ def discrete(values: Any, shares: Sequence[float] | None = None) -> Choice:
         raise UseError(
             "discrete", [f"shares are {quote(shares)}: give a number from 0 on for each of {len(made)} values"]
         )
-    return Choice(made, tuple(map(str, values)) if labelled else made, tuple(w / sum(weights) for w in weights))
+    return Discrete(made, tuple(map(str, values)) if labelled else made, tuple(w / sum(weights) for w in weights))
 
 
 def distribution(call: str, name: str, given: Any) -> Any:
     """What a value of a design means: a distribution, (low, high), a list to choose from, or one of scipy.stats."""
-    if isinstance(given, Distribution | Choice) or callable(getattr(given, "ppf", None)):
+    if isinstance(given, Distribution | Discrete) or callable(getattr(given, "ppf", None)):
         return given
     if isinstance(given, tuple) and len(given) == 2:
         return uniform(*given)

@@ -24,7 +24,7 @@ from clutchwork.studies.lock import locked
 from clutchwork.studies.manifest import FILE, MODEL, Manifest, asked_of, now, refuse_other, versions
 from clutchwork.studies.parts import Written, columns_of, there, without_leftovers
 from clutchwork.studies.result import Study
-from clutchwork.studies.work import Chunk, Job, refuse_elsewhere, work
+from clutchwork.studies.work import Chunk, StudyJob, refuse_elsewhere, work
 from clutchwork.sweeps.outputs import Asked, Computed
 from clutchwork.sweeps.request import Order, ordered, refuse_unfit, threads_of
 from clutchwork.sweeps.result import OutputWarning
@@ -155,8 +155,8 @@ class _Going:
         manifest.write(self.folder)
         return manifest
 
-    def _job(self, columns: Any) -> Job:
-        return Job(self.order.without_variants, self.folder, columns)
+    def _job(self, columns: Any) -> StudyJob:
+        return StudyJob(self.order.without_variants, self.folder, columns)
 
     def _run(
         self, workers: Executor, manifest: Manifest, parts: dict[int, Written], told: Callable[[int], None]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clutchwork.executors.executor import ExecutorError
-from clutchwork.studies.parts import Column, Written, file_of, write
+from clutchwork.studies.parts import DataField, Written, file_of, write
 from clutchwork.sweeps.runs import run_all
 
 if TYPE_CHECKING:
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class StudyJob:
     """What all chunks share."""
 
     order: Order  # without its variants
     folder: Path
-    columns: tuple[Column, ...]
+    columns: tuple[DataField, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class Chunk:
     variants: Variants
 
 
-def work(job: Job, chunk: Chunk, alive: Alive) -> tuple[int, Written]:
+def work(job: StudyJob, chunk: Chunk, alive: Alive) -> tuple[int, Written]:
     """Run and write a chunk; its number, and what is known of its part."""
     begun = time.time()
     made = run_all(job.order.of(chunk.variants), 1, lambda _: alive())

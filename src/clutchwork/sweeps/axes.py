@@ -32,9 +32,9 @@ from clutchwork.model.fields import law_problems
 from clutchwork.model.numbers import At, is_right, number_problems
 from clutchwork.model.parts import role
 from clutchwork.model.thermal import thermal_problems
-from clutchwork.sweeps.driven import Driven
+from clutchwork.sweeps.driven import IndependentInput
 from clutchwork.sweeps.mistakes import MOST_PROBLEMS, few
-from clutchwork.sweeps.system_words import Axis, Layout, Line
+from clutchwork.sweeps.system_words import Axis, Line, SystemLayout
 from clutchwork.sweeps.variants import Codes, Variants, Varied
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ class Plan:
 
     def _of_lines(self, group: Sequence[Varied], owner: Any, changes: Sequence[Line], codes: Codes) -> Axis:
         """The axis that gives an element other values."""
-        driven, where = Driven.of(owner, changes[0][0][0][0]), self.base.numbered
+        driven, where = IndependentInput.of(owner, changes[0][0][0][0]), self.base.numbered
         if driven is not None and driven.fits(changes):
             found = driven.patches(where, changes, MOST_PROBLEMS)
         else:
@@ -173,8 +173,8 @@ class Plan:
         return made
 
     @cached_property
-    def _layout(self) -> Layout:
-        return Layout.of(self.base)
+    def _layout(self) -> SystemLayout:
+        return SystemLayout.of(self.base)
 
     def _together(self) -> Iterable[Problem]:
         """Mistakes of values that are right one by one, where an element or its friction law has rules between them."""

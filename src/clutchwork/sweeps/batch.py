@@ -42,7 +42,7 @@ IN_STEPS = (Extreme, SquaredJerk)
 
 
 @dataclass(frozen=True)
-class Way:
+class RunSetup:
     """How the core is to run: up to when, with which options, on how many threads."""
 
     t_end: float
@@ -51,7 +51,7 @@ class Way:
 
 
 @dataclass(frozen=True, eq=False)
-class Wanted:
+class CoreOutputs:
     """The outputs that the core gives, and the rows they need."""
 
     outputs: Mapping[str, Output]
@@ -61,7 +61,7 @@ class Wanted:
     t_end: float
 
     @classmethod
-    def of(cls, system: System, options: Options, outputs: Mapping[str, Output], t_end: float) -> Wanted:
+    def of(cls, system: System, options: Options, outputs: Mapping[str, Output], t_end: float) -> CoreOutputs:
         """Of a System, without those that need a Trajectory."""
         known = channels(system, options.angles, options.work)
         native = {name: one for name, one in outputs.items() if not isinstance(one, Computed)}
@@ -146,7 +146,7 @@ class Block:
 class Batch:
     """All variants of a plan, block by block."""
 
-    def __init__(self, plan: Plan, wanted: Wanted, way: Way) -> None:
+    def __init__(self, plan: Plan, wanted: CoreOutputs, way: RunSetup) -> None:
         self.plan, self.wanted, self.way = plan, wanted, way
 
     @property
@@ -270,7 +270,7 @@ class Forms:
     """How signals follow from the columns that are kept, for each variant of a block."""
 
     def __init__(
-        self, plan: Plan, wanted: Wanted, first: int, last: int, systems: Sequence[System], base: NDArray[np.int64]
+        self, plan: Plan, wanted: CoreOutputs, first: int, last: int, systems: Sequence[System], base: NDArray[np.int64]
     ) -> None:
         self.wanted, self.first = wanted, first
         made = dict[tuple[str, ...], tuple[list[Channels], NDArray[np.int64]]]()
@@ -340,7 +340,7 @@ def _finite(rows: Array) -> Array:
 
 
 def _set_grid(
-    block: Block, call: Call, name: str, one: Output, wanted: Wanted, values: Array, reached: Array | None
+    block: Block, call: Call, name: str, one: Output, wanted: CoreOutputs, values: Array, reached: Array | None
 ) -> None:
     there = np.ones(values.shape, dtype=bool) if reached is None else reached
     if isinstance(one, AtTimes):
@@ -383,7 +383,7 @@ def _squared(times: Array, values: Array, starts: Array) -> Array:
     return np.array(found, dtype=float)
 
 
-def _from_events(block: Block, call: Call, wanted: Wanted, found: Native) -> None:
+def _from_events(block: Block, call: Call, wanted: CoreOutputs, found: Native) -> None:
     """Times of events."""
     events = np.concatenate([part[4] for part in found.parts]) if found.parts else np.zeros((0, 5))
     for name, one in wanted.outputs.items():

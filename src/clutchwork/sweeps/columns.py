@@ -8,17 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Powers, Slip, Total
+from clutchwork.results.forms import Affine, Dot, Form, Mode, Power, Powers, RowEntry, Slip, Total
 
 
 def needed(form: Form) -> set[int]:
     """Places of the row that a form reads."""
     match form:
-        case Column(index) | Mode(index) | Affine(index):
+        case RowEntry(index) | Mode(index) | Affine(index):
             return {index}
         case Total(indices):
             return set(indices)
-        case Linear(used):
+        case Dot(used):
             return {int(place) for place in used}
         case Slip(rate, mode):
             return needed(rate) | {mode}
@@ -31,11 +31,11 @@ def needed(form: Form) -> set[int]:
 def moved(form: Form, places: Mapping[int, int]) -> Any:
     """The form over rows that hold what stood at a place at another one."""
     match form:
-        case Column(index) | Mode(index) | Affine(index):
+        case RowEntry(index) | Mode(index) | Affine(index):
             return replace(form, index=places[index])
         case Total(indices):
             return replace(form, indices=tuple(places[index] for index in indices))
-        case Linear(used):
+        case Dot(used):
             return replace(form, used=np.array([places[int(place)] for place in used], dtype=np.intp))
         case Slip(rate, mode):
             return Slip(moved(rate, places), places[mode])
@@ -58,7 +58,7 @@ def fixed(signal: str, form: Form) -> bool:
     match form:
         case Affine():
             return False
-        case Linear(_, factors):
+        case Dot(_, factors):
             # that of a way may have a radius in it
             return signal.endswith(".rate") and bool(np.all(np.abs(factors) == 1.0))
         case Power(torque, rate):

@@ -26,7 +26,7 @@ HOOKS = ("problems", "initial_states", "state_scales")
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
+class IndependentInput:
     """An input of an element that nothing else of the element depends on."""
 
     owner: Component
@@ -35,7 +35,7 @@ class Driven:
     given: Any
 
     @classmethod
-    def of(cls, owner: Any, name: str) -> Driven | None:
+    def of(cls, owner: Any, name: str) -> IndependentInput | None:
         """The input of a name; None where it is something else, or more follows from it."""
         kind = type(owner)
         if not isinstance(owner, Component) or kind.hooks or kind.ways:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class VariantChunk:
     """Consecutive variants."""
 
     first: int
@@ -29,7 +29,7 @@ class Piece:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class ChunkResult:
     """What a worker found of a piece."""
 
     block: Block
@@ -56,18 +56,18 @@ def run_on(order: Order, on: Any, threads: int, asked: int | None, told: Callabl
     return made
 
 
-def pieces(order: Order, size: int) -> Iterator[Piece]:
+def pieces(order: Order, size: int) -> Iterator[VariantChunk]:
     """All variants, so many at a time."""
     return (_piece(order, first, min(first + size, len(order))) for first in range(0, len(order), size))
 
 
-def _piece(order: Order, first: int, last: int) -> Piece:
-    return Piece(first, order.source.part(first, last))
+def _piece(order: Order, first: int, last: int) -> VariantChunk:
+    return VariantChunk(first, order.source.part(first, last))
 
 
-def worked(job: Order, piece: Piece, alive: Alive | None = None) -> Found:
+def worked(job: Order, piece: VariantChunk, alive: Alive | None = None) -> ChunkResult:
     """What a worker does with a piece."""
     told = (lambda _: None) if alive is None else (lambda _: alive())
     made = run_all(job.of(piece.variants), 1, told)
     problems = [one._replace(variant=piece.first + one.variant) for one in made.problems]
-    return Found(Block(piece.first, made.codes, made.detail, made.values, None), problems)
+    return ChunkResult(Block(piece.first, made.codes, made.detail, made.values, None), problems)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from clutchwork.run.simulation import Assembles
     from clutchwork.sweeps.outputs import Output
-    from clutchwork.sweeps.variants import Source
+    from clutchwork.sweeps.variants import VariantSource
 
 # so many values of a name are all looked at before the first run
 MOST_LOOKED_AT = 64
@@ -34,7 +34,7 @@ class Order:
     """What is run and kept, and where the variants come from."""
 
     system: System
-    source: Source
+    source: VariantSource
     outputs: Mapping[str, Output]
     t_end: float  # s
     options: Options

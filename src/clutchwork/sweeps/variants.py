@@ -75,7 +75,7 @@ class Variants:
         return replace(self, varied=tuple(_in_si(one, target(owners, one.name)) for one in self.varied))
 
 
-class Source(Protocol):
+class VariantSource(Protocol):
     """Where variants come from, as many at a time as are asked for."""
 
     def __len__(self) -> int: ...
@@ -83,7 +83,7 @@ class Source(Protocol):
     def part(self, first: int, last: int) -> Variants:
         """Variants from first to last."""
 
-    def in_si(self, model: Model) -> Source:
+    def in_si(self, model: Model) -> VariantSource:
         """The same with values of SI where they have units that fit."""
 
 
@@ -118,10 +118,10 @@ def variants(columns: Mapping[str, Any]) -> Variants:
     return Variants(tuple(_column(name, values) for name, values in listed.items()), next(iter(lengths.values())))
 
 
-def given(vary: Any) -> Source:
+def given(vary: Any) -> VariantSource:
     """The variants that a call means: a design, a grid, a table, or a list with the values of each."""
     if isinstance(vary, Variants) or hasattr(vary, "part"):
-        return cast("Source", vary)
+        return cast("VariantSource", vary)
     if hasattr(vary, "columns") and hasattr(vary, "iloc"):
         # a DataFrame of pandas, or what looks like one
         return variants({str(name): vary[name].tolist() for name in vary.columns})

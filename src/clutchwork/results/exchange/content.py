@@ -25,7 +25,7 @@ Array = NDArray[Any]
 
 
 @dataclass(frozen=True)
-class Signal:
+class ExportedSignal:
     """One signal over all instants."""
 
     name: str
@@ -52,9 +52,9 @@ class Content:
     made: Converter
 
     @property
-    def instants(self) -> Signal:
+    def instants(self) -> ExportedSignal:
         """The time in the unit that is asked for."""
-        return Signal("time", self.made.unit("time"), self.made.put(self.time, "time"))
+        return ExportedSignal("time", self.made.unit("time"), self.made.put(self.time, "time"))
 
     @property
     def time(self) -> NDArray[np.float64]:
@@ -66,17 +66,17 @@ class Content:
         """All events of the run."""
         return self.run.events
 
-    def signals(self) -> Iterator[Signal]:
+    def signals(self) -> Iterator[ExportedSignal]:
         """One after another; each is evaluated when it is asked for."""
         for name in self.names:
-            yield Signal(name, self.made.unit(name), np.ascontiguousarray(self.made.values(self.run, name)))
+            yield ExportedSignal(name, self.made.unit(name), np.ascontiguousarray(self.made.values(self.run, name)))
 
-    def event_columns(self) -> Iterator[Signal]:
+    def event_columns(self) -> Iterator[ExportedSignal]:
         """Every field of every event."""
         for item in fields(Event):
             kind = str if item.name in ("element", "before", "after", "cause") else float
             values = np.array([getattr(event, item.name) for event in self.events], dtype=kind)
-            yield Signal(item.name, UNITS.get(item.name, ""), values)
+            yield ExportedSignal(item.name, UNITS.get(item.name, ""), values)
 
     def about(self) -> dict[str, Any]:
         """Where the signals come from, as plain data."""

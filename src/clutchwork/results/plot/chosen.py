@@ -24,7 +24,7 @@ OTHERS = (".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".bmp", ".eps", ".ps", ".web
 
 
 @dataclass(frozen=True, eq=False)
-class Chosen:
+class PlotArguments:
     """What a call says of its picture, as the user gave it."""
 
     signals: tuple[Any, ...] = ()
@@ -37,14 +37,14 @@ class Chosen:
 
 
 @dataclass(frozen=True)
-class Asked:
+class PanelRequest:
     """What a call asks for: names and wildcards by panel, each with whether it is a panel of its own; a path."""
 
     groups: tuple[tuple[bool, tuple[str, ...]], ...]
     path: Path | None
 
 
-def asked(call: str, given: Sequence[Any], path: Any, endings: Collection[str], known: Collection[str]) -> Asked:
+def asked(call: str, given: Sequence[Any], path: Any, endings: Collection[str], known: Collection[str]) -> PanelRequest:
     """Keep names of signals apart from the path of the picture.
 
     A string is the path where it ends as a picture does and no signal has that name; a `Path` always is. A list or
@@ -67,7 +67,7 @@ def asked(call: str, given: Sequence[Any], path: Any, endings: Collection[str], 
     wrong += [fault for one in paths[:1] if (fault := _path_fault(one, endings))]
     if wrong:
         raise UseError(call, wrong)
-    return Asked(tuple(groups), Path(paths[0]) if paths else None)
+    return PanelRequest(tuple(groups), Path(paths[0]) if paths else None)
 
 
 def _is_path(word: str, known: Collection[str]) -> bool:
@@ -87,7 +87,7 @@ def _path_fault(path: Any, endings: Collection[str]) -> str:
     return f"path {quote(str(path))} {fault}; {remedy}{other}"
 
 
-def panels(runs: Mapping[str, Recorded], asked: Asked, unit: Any, call: str) -> list[tuple[bool, list[str]]]:
+def panels(runs: Mapping[str, Recorded], asked: PanelRequest, unit: Any, call: str) -> list[tuple[bool, list[str]]]:
     """Names of the signals of each panel, wildcards resolved; those that are loose are still together.
 
     A name that one of the runs lacks is an error, a wildcard takes what is there in any of them.

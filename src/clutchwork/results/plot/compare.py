@@ -10,7 +10,7 @@ from clutchwork.base.errors import UseError, near
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.results.plot import named
-from clutchwork.results.plot.chosen import PICTURES, Asked, asked, panels, usual
+from clutchwork.results.plot.chosen import PICTURES, PanelRequest, asked, panels, usual
 from clutchwork.results.plot.curves import panels_of, units_of
 from clutchwork.results.plot.measured import samples, with_samples
 from clutchwork.results.plot.view import viewed
@@ -54,7 +54,7 @@ def compare(
     wanted = asked("compare", rest, path, PICTURES, known)
     extra, shown_in = samples(runs, measured, "compare"), units_of(runs, units, "compare")
     if not wanted.groups and unit is None:
-        wanted = Asked(_common(runs), wanted.path)
+        wanted = PanelRequest(_common(runs), wanted.path)
     view = viewed(runs, zoom, events, "compare")
     groups = with_samples(panels(runs, wanted, unit, "compare"), extra)
     return named.draw(view, panels_of(view.runs, groups, extra, "compare", shown_in), wanted.path, colour)

@@ -21,7 +21,7 @@ from clutchwork.signals.bases.semicolons import with_commas
 
 
 @dataclass(frozen=True)
-class Listed:
+class FileColumn:
     """One column, channel or variable of a file."""
 
     name: str
@@ -32,23 +32,23 @@ class Listed:
     aliases: tuple[str, ...] = ()  # shorter names that find it too
 
 
-class FileColumns(Sequence[Listed]):
+class FileColumns(Sequence[FileColumn]):
     """What a file holds, in its order; print it to read it."""
 
-    def __init__(self, found: Sequence[Listed]) -> None:
+    def __init__(self, found: Sequence[FileColumn]) -> None:
         self._found = tuple(found)
 
     @overload
-    def __getitem__(self, index: int) -> Listed: ...
+    def __getitem__(self, index: int) -> FileColumn: ...
     @overload
     def __getitem__(self, index: slice) -> FileColumns: ...
-    def __getitem__(self, index: int | slice) -> Listed | FileColumns:
+    def __getitem__(self, index: int | slice) -> FileColumn | FileColumns:
         return FileColumns(self._found[index]) if isinstance(index, slice) else self._found[index]
 
     def __len__(self) -> int:
         return len(self._found)
 
-    def __iter__(self) -> Iterator[Listed]:
+    def __iter__(self) -> Iterator[FileColumn]:
         return iter(self._found)
 
     @property
@@ -76,7 +76,7 @@ def read_columns(path: str | Path) -> FileColumns:
         if form:
             with opened(where, form, told) as found:
                 return FileColumns(
-                    [Listed(one.name, one.unit, one.samples, one.group, one.is_text, one.aliases) for one in found]
+                    [FileColumn(one.name, one.unit, one.samples, one.group, one.is_text, one.aliases) for one in found]
                 )
         return FileColumns(_of_csv(where))
     except FileNotFoundError:
@@ -86,9 +86,9 @@ def read_columns(path: str | Path) -> FileColumns:
         raise FileError([("path", f"{quote(told)} cannot be read: {why}", "give a file of measurements")]) from None
 
 
-def _of_csv(path: Path) -> list[Listed]:
+def _of_csv(path: Path) -> list[FileColumn]:
     with open_regular(path, MOST_BYTES) as file, with_commas(file) as plain, as_text(plain) as text:
         lines = csv.reader(text)
         heads = [split(head.strip()) for head in next(lines, [])]
         samples = sum(1 for line in lines if any(line))
-    return [Listed(name, unit, samples, "", is_text=False) for name, unit in heads]
+    return [FileColumn(name, unit, samples, "", is_text=False) for name, unit in heads]

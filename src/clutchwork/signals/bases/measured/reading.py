@@ -10,15 +10,15 @@ import numpy as np
 from clutchwork.base.errors import FileError, near
 from clutchwork.base.quote import listed, quote
 from clutchwork.signals.bases import column_file, sheets
-from clutchwork.signals.bases.column_file import MOST_FAULTS, MOST_LINES, Values, Wanted
-from clutchwork.signals.bases.column_heads import Head
+from clutchwork.signals.bases.column_file import MOST_FAULTS, MOST_LINES, ColumnRequest, ColumnValues
+from clutchwork.signals.bases.column_heads import ColumnHead
 from clutchwork.signals.bases.measured.formats import format_of, opened
 from clutchwork.signals.bases.measured.series import Array, Clock, Series
 
 Faults = list[tuple[str, str, str]]
 
 
-def read(where: str, wanted: Wanted) -> Values:
+def read(where: str, wanted: ColumnRequest) -> ColumnValues:
     """The column of the file at a path; FileError names what is wrong with the file, up to a few mistakes."""
     try:
         # what was read as a sheet is a CSV file
@@ -37,14 +37,14 @@ def read(where: str, wanted: Wanted) -> Values:
     except ImportError as missing:
         raise FileError([("path", str(missing), "")]) from None
     _refuse_lengths(clock, values, wanted)
-    heads = Head(clock.name, clock.unit), Head(one.name, one.unit)
+    heads = ColumnHead(clock.name, clock.unit), ColumnHead(one.name, one.unit)
     faults = list(_faults(one.name, clock, values, invalid, wanted))
     if faults:
         raise FileError(faults[:MOST_FAULTS])
     return column_file.in_si(np.column_stack([clock.values, values]), heads, wanted)
 
 
-def pick(found: list[Series], wanted: Wanted) -> Series:
+def pick(found: list[Series], wanted: ColumnRequest) -> Series:
     """The series that is meant."""
     groups = list(dict.fromkeys(one.group for one in found if one.group))
     if wanted.group and wanted.group not in groups:
@@ -76,7 +76,7 @@ def _choice(meant: list[Series]) -> str:
     return "give every column of the file a different name"
 
 
-def _clock(one: Series, found: list[Series], wanted: Wanted) -> Clock:
+def _clock(one: Series, found: list[Series], wanted: ColumnRequest) -> Clock:
     clock = one.clock(wanted.time)
     named = [
         other for other in found if other.is_called(wanted.time) and other.group == one.group and not other.is_text
@@ -92,7 +92,7 @@ def _clock(one: Series, found: list[Series], wanted: Wanted) -> Clock:
     return clock
 
 
-def _refuse_lengths(clock: Clock, values: Array, wanted: Wanted) -> None:
+def _refuse_lengths(clock: Clock, values: Array, wanted: ColumnRequest) -> None:
     if values.ndim != 1 or values.dtype.kind != "f":
         raise wanted.error("column", f"has no numbers in column {quote(wanted.column)}", "choose another column")
     if len(values) != len(clock.values):
@@ -105,7 +105,7 @@ def _refuse_lengths(clock: Clock, values: Array, wanted: Wanted) -> None:
 
 
 def _faults(
-    name: str, clock: Clock, values: Array, invalid: Array | None, wanted: Wanted
+    name: str, clock: Clock, values: Array, invalid: Array | None, wanted: ColumnRequest
 ) -> Iterator[tuple[str, str, str]]:
     """Samples that cannot be used, by their times in the unit of the file."""
     path, times, unit = quote(wanted.path), clock.values, clock.unit or "s"
