@@ -146,7 +146,10 @@ def test_a_constant_pressure_has_two_knots() -> None:
         ({"drag": ["b.pressur"]}, "drag: 'b.pressur' cannot be dragged"),
         ({"sliders": ["b.gainn"]}, "slider: .*gainn"),
         ({"sliders": ["b.gain=3:1"]}, "b.gain: '3:1' are not two ends"),
-        ({"sliders": ["disc.inertia", "disc.inertia=1:2"]}, "disc.inertia is turned by 'disc.inertia' and 'disc.iner"),
+        (
+            {"sliders": ["disc.inertia", "disc.inertia=1:2"]},
+            "disc.inertia has two sliders, 'disc.inertia' and 'disc.iner",
+        ),
         ({"sliders": ["b.*tic, disc.inertia"]}, "different units, .*disc.inertia in kg m2; give a slider for each"),
         ({"sliders": ["*.gainn"]}, "'\\*.gainn' fits no number of this driveline"),
         ({"show": ["nothing.*"]}, "nothing"),

@@ -36,7 +36,7 @@ def path_fault(path: object, example: str) -> str:
     if not str(path):
         return f"the path is empty; give the name of a file, such as {example!r}"
     if "\0" in str(path):
-        return f"{quote(str(path))}: no file can have this name; give one such as {example!r}"
+        return f"{quote(str(path))}: not a valid file name; give one such as {example!r}"
     return ""
 
 

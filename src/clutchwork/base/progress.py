@@ -22,7 +22,7 @@ MEASURED = "{l_bar}{bar}| {n:.4g} of {total:.4g} {unit} [{elapsed}<{remaining}]"
 def followed(
     progress: Any, total: N, call: str, asks: str, begin: float = 0, **looks: Any
 ) -> Iterator[Callable[[N], None] | None]:
-    """What takes how much is done; None where nobody asked.
+    """Progress callback, or None.
 
     Parameters: progress, as the user gave it: True for a bar, or a function of (done, total); total, all that is to do;
     call and asks, for the message where it is neither; begin, where a bar counts from; looks, of the bar, as tqdm takes

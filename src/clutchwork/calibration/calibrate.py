@@ -143,7 +143,7 @@ def _faults(
 ) -> list[str]:  # fmt: skip
     """What is wrong with settings."""
     found = [
-        f"{name} is {quote(value)}: give a whole number from 1 on"
+        f"{name} is {quote(value)}: give a whole number of at least 1"
         for name, value in counts.items()
         if not isinstance(value, int) or isinstance(value, bool) or value < 1
     ]

@@ -55,7 +55,7 @@ class CalibrationProblem:
 
     @cached_property
     def base(self) -> Array:
-        """The numbers as the model has them."""
+        """Values of the numbers in the model."""
         return np.array([one.start for one in self.moved])
 
     @property

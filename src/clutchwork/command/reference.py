@@ -182,7 +182,7 @@ def _about(told: FieldDescription) -> str:
 
 
 def _data(cls: Any, *, whole: bool = False) -> dict[str, Any]:
-    """The same as plain data."""
+    """A declaration as plain data."""
     data = {"type": cls.kind, "class": cls.__name__, "summary": summary(cls)}
     if not whole:
         return data

@@ -31,7 +31,7 @@ OPEN = "_has_units"
 
 
 class TargetUnit(NamedTuple):
-    """What a number is wanted in: the unit of SI, further ones, whether it is a difference; no unit: as it is."""
+    """Unit that a number is converted to: the SI unit, others that are accepted, whether it is a difference."""
 
     unit: str
     others: tuple[str, ...] = ()
@@ -39,7 +39,7 @@ class TargetUnit(NamedTuple):
     scale: Scale = PLAIN  # of plain numbers, in a model file
 
     def number(self, value: Any) -> Any:
-        """The number in SI; a value that is none, or does not fit, as it is."""
+        """Converts to SI; returns anything unconvertible unchanged."""
         if not has_unit(value):
             return value if self.scale is PLAIN else times(value, self.scale)
         if self.unit == "*" or is_array(value):

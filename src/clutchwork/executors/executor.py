@@ -29,7 +29,7 @@ class Executor(Protocol):
         """How many pieces are worked on at once."""
 
     def run(self, task: Task, job: Any, pieces: Iterable[Any]) -> Generator[Any, None, None]:
-        """What the task gives for each piece, as they come; a piece whose worker dies is given to another.
+        """Results of the task in the order of completion; a piece whose worker dies is run by another worker.
 
         Pieces are drawn when a worker is about to be free, so they may be many.
         """

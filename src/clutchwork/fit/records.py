@@ -91,7 +91,7 @@ def _faults(records: list[Any], free: list[Any], own: list[Any], confidence: flo
     if not 0.0 < confidence < 1.0:
         yield FitError("confidence", f"is {confidence!r}", "give a number between 0 and 1, such as 0.95")
     if not (isinstance(starts, int) and starts > 0):
-        yield FitError("starts", f"is {starts!r}", "give a whole number from 1 on")
+        yield FitError("starts", f"is {starts!r}", "give a whole number of at least 1")
     for number, record in enumerate(records):
         if isinstance(record, Record):
             yield from _taken(record, label(record, number), free, own)

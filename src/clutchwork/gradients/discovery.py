@@ -64,7 +64,7 @@ def tables(system: System, structure: WordStructure, parameters: Sequence[Tunabl
 
 
 def _beside(system: System, name: str) -> System | None:
-    """A System with other values in a table; None where there is none, or it is a list."""
+    """A System whose table of that name has perturbed values; None where the name is not that of a table of pairs."""
     aim = target(named(system.source), name) if system.source else None
     points: Any = field_of(aim)[0] if aim else ()
     if not points or not all(hasattr(point, "__len__") and len(point) == 2 for point in points):

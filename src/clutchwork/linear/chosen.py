@@ -77,7 +77,7 @@ def chosen_inputs(system: System, wanted: Any, problems: list[str]) -> list[Exci
 
 
 def chosen_outputs(system: System, wanted: Any, default: Iterable[str], problems: list[str]) -> list[str]:
-    """The outputs that were asked for; by default those given."""
+    """The selected outputs, or the default ones."""
     if wanted is None:
         return list(dict.fromkeys(default))
     known, columns = channels(system, True, True), wiring(system).columns["supply_power"]

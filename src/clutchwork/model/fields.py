@@ -205,7 +205,7 @@ def _never_presses(loads: Iterable[float], at: At) -> Iterator[Problem]:
             return
         least = min(least, load)
     if least < 0.0:
-        message, remedy = "never presses: a load below zero counts as zero", "give zero or a positive value"
+        message, remedy = "never presses the contact: a negative load counts as zero", "give zero or a positive value"
         yield at.problem(message, f"{least:g} {at.unit}".removesuffix(" 1"), remedy)
 
 

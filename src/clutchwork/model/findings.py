@@ -51,7 +51,7 @@ class Findings(NamedTuple):
 
 
 class Kept(NamedTuple):
-    """Findings, and the content that they are of."""
+    """Cached findings and the model content they belong to."""
 
     findings: Findings
     things: tuple[Any, ...]
@@ -59,7 +59,7 @@ class Kept(NamedTuple):
     changeable: list[tuple[Any, Any]]
 
     def lasts(self) -> bool:
-        """Whether nobody changed a list inside of a thing."""
+        """True while the cached inputs are unchanged."""
         try:
             return all(_values(thing) == values for thing, values in self.changeable)
         except (RecursionError, TypeError):

@@ -108,7 +108,7 @@ class Referents:
 
 
 def _inside(component: Component) -> Iterator[Part]:
-    """Everything that an element is made of, parts of its parts included."""
+    """All parts of an element, at every level."""
     for part in component.parts():
         yield part
         if isinstance(part, Component) and part.name != component.name:

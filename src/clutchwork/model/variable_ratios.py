@@ -40,7 +40,7 @@ def transmissions(model: Mechanism) -> list[RatioConstraint]:
 
 
 def followers(model: Mechanism, made: Kinematics) -> dict[int, int]:
-    """Speeds without inertia that follow from transmissions: number of the transmission -> independent node.
+    """Massless nodes whose speed a variable ratio fixes: number of the ratio -> independent node.
 
     In an order in which each one needs those before it alone.
     """

@@ -151,7 +151,7 @@ def _usual(known: Channels, wiring: Wiring) -> list[PagePanel]:
 
 
 def _evenly(names: list[str]) -> list[str]:
-    """The first and the last, and some between where there are many."""
+    """At most `MOST_USUAL` names, evenly spaced, the first and the last among them."""
     if len(names) <= MOST_USUAL:
         return names
     step = (len(names) - 1) / (MOST_USUAL - 1)

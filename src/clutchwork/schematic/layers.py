@@ -19,7 +19,7 @@ PASS = 5.0  # pt that a passing line needs above and below
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """What stands in a layer: a cell, or a line that passes."""
+    """A position in a layer: a cell, or a line that passes through."""
 
     number: int
     layer: int

@@ -68,7 +68,7 @@ class _OrderSearch:
         return best
 
     def _sorted(self, order: list[list[int]], layer: int, down: bool) -> list[int]:
-        """A layer by the middle of the neighbours of each spot; those without stay where they are."""
+        """A layer sorted by the mean height of each spot's neighbours; spots without neighbours keep their place."""
         lines = self.between[layer - 1] if down else self.between[layer]
         place = self._places(order[layer - 1 if down else layer + 1])
         wanted: dict[int, list[float]] = {}

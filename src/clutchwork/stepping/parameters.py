@@ -86,7 +86,7 @@ def changed(
     """
     made, wrong, refused = _changed(base, present, settled, given)
     if made is None and len(given) > 1:
-        # which of them it is; what is wrong with one alone may be right with the others
+        # find the offending value; single values may fail although the combination is valid
         alone = [_changed(base, present, settled, {name: value})[2] for name, value in given.items()]
         refused = [problem for problems in alone for problem in problems] or refused
     return made, wrong + refused

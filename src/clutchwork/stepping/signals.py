@@ -143,7 +143,7 @@ def _owner(system: System, shared: int) -> str:
 
 
 def unknown(system: System, name: object) -> Problem:
-    """A name that is that of nothing that could be set."""
+    """Explains why a name cannot be set."""
     path = name if isinstance(name, str) else quote(name)
     given = [signal for signal in signals(system) if signal not in wiring(system).unused]
     plain = path.removesuffix("_signal")

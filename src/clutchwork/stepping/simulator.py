@@ -96,7 +96,7 @@ class Simulator:
         """
         step = _seconds("sim.advance", "duration", duration)
         if step < 0.0:
-            raise UseError("sim.advance", [f"duration is {step:g} s: time does not go back; sim.restore(state) does"])
+            raise UseError("sim.advance", [f"duration is {step:g} s: it must not be negative; use sim.restore(state)"])
         end = self._time + step
         if step > 0.0:
             # as a decimal, which knots of tables are
@@ -383,7 +383,7 @@ class Simulator:
 
     def __reduce__(self) -> NoReturn:
         """Refuse to be copied or pickled, with what to do instead."""
-        remedy = "keep the model and sim.save(), and begin with cw.Simulator(model, start=state)"
+        remedy = "keep the model and the state of sim.save(), and start with cw.Simulator(model, start=state)"
         raise UseError("cw.Simulator", [f"it cannot be copied or pickled; {remedy}"])
 
     def __repr__(self) -> str:

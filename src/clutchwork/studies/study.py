@@ -80,7 +80,7 @@ def study(
     """
     order, count = ordered("study", model, t_end, vary, outputs, options, changes), threads_of(threads, "study")
     if chunk is not None and (not isinstance(chunk, int) or isinstance(chunk, bool) or chunk < 1):
-        raise UseError("study", [f"chunk is {quote(chunk)}: give a whole number from 1 on, or nothing"])
+        raise UseError("study", [f"chunk is {quote(chunk)}: give a whole number of at least 1, or nothing"])
     where = made_folder(path_of("study", folder, "out/study").absolute())
     with locked(where), warnings.catch_warnings():
         # a value may be rarely wanted; that of a single run is given there

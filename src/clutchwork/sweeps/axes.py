@@ -316,7 +316,7 @@ def _entangled(aim: Target) -> bool:
 
 
 def _holds_points(aim: Target, values: Sequence[Any]) -> bool:
-    """Whether values are curves or friction laws, whose points may be more or fewer; those of signals are counted."""
+    """Whether values are curves or friction laws, whose number of points may differ from variant to variant."""
     thing = aim.owner
     for name in aim.path:
         if isinstance(thing, Signal):

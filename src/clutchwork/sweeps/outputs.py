@@ -42,7 +42,7 @@ class AtEnd:
         return self.signal
 
     def of(self, run: Trajectory) -> Any:
-        """Its value in a run; NaN where that did not reach its end."""
+        """Its value in a run; NaN where the run did not finish."""
         return run[self.signal][-1].item() if run.finished else _missing(run, self.signal)
 
 
@@ -108,7 +108,7 @@ class Integral:
         return next((name for name in found if name in names), "")
 
     def of(self, run: Trajectory) -> Any:
-        """Its value in a run; NaN where that did not reach its end."""
+        """Its value in a run; NaN where the run did not finish."""
         values = run.at([run.options.t_start, run.t_end])[self.kept_as(run)]
         return (values[-1] - values[0]).item() if run.finished else np.nan
 
@@ -130,7 +130,7 @@ class SquaredJerk:
         return f"{self.shaft}.acceleration"
 
     def of(self, run: Trajectory) -> float:
-        """Its value in a run; NaN where that did not reach its end."""
+        """Its value in a run; NaN where the run did not finish."""
         if not run.finished:
             return float("nan")
         times, begins = parts.in_parts(run.repeat(None).time)

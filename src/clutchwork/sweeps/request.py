@@ -98,7 +98,7 @@ def threads_of(threads: object, call: str = "sweep") -> int:
     if threads is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     if not isinstance(threads, int) or isinstance(threads, bool) or threads < 1:
-        raise UseError(call, [f"threads is {quote(threads)}: give a whole number from 1 on"])
+        raise UseError(call, [f"threads is {quote(threads)}: give a whole number of at least 1"])
     return threads
 
 

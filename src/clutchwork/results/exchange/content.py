@@ -121,7 +121,7 @@ def content(
     times: Any = None,
     units: Mapping[str, str] | None = None,
 ) -> Content:
-    """The signals that are meant, at the instants that are meant, in the units that are meant."""
+    """Selects signals, resamples, converts units."""
     known = run.channels
     # a wrong name is reported before the run is repeated
     picked, made = chosen(names, known, known.fault), converter(run, units)

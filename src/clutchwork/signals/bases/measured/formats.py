@@ -56,4 +56,4 @@ def opened(path: Path, form: str, given: str) -> Iterator[list[Series]]:
     # libraries raise whatever they stumble over, in words that tell what is in the file
     except Exception:
         message = f"{quote(given)} cannot be read as {WORDS[form]}: it is damaged, or has another format"
-        raise FileError([("path", message, "write it once more, or give a CSV file")]) from None
+        raise FileError([("path", message, "write the file again, or give a CSV file")]) from None
